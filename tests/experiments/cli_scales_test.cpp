@@ -50,7 +50,7 @@ TEST_F(Scales, NeverOverwriteEachOther) {
   expect(2, {"show", "S2"},
          {"several figures", "tiny/2nd_-Large/S2, tiny/large/S2, tiny/small/S2"});
   expect(2, {"show", "tiny/S2"}, {"several figures"});
-  expect(0, {"figures", "--out", "out"}, {"2nd_-Large scale"});  // the last
+  expect(0, {"figures", "--out", "out"}, {"(large scale)"});  // of the run added last
   EXPECT_EQ(drawn(), before);
   EXPECT_EQ(json({"table", "--json"}).at("rows").at(0).at("scale"), "2nd_-Large");
 }

@@ -174,7 +174,7 @@ TEST_F(CommandLineTable, ANumberOfGrainsIsAParameter) {
   for (const std::string& column : columns) EXPECT_EQ(columns.count(column), 1U) << column;
   EXPECT_TRUE(columns.contains("pressure_Pa") && columns.contains("contact_pressure_Pa"));
   expect(0, {"figures", "n", "--out", "figures"});
-  const std::string csv = read_bytes(path("figures/sizes/n.csv"));
+  const std::string csv = read_bytes(path("figures/sizes/base/n.csv"));
   for (const char* row : {"pressure_Pa=700,300,", "pressure_Pa=700,400,", "pressure_Pa=954,400,"}) {
     EXPECT_TRUE(has(csv, row));
   }

@@ -176,10 +176,10 @@ TEST_F(Outputs, LabelsAreDrawnAsTheyAre) {
                               "'a`touch owned`{b}^c\\U+0041 $HOME \"d\"'}\n"));
   expect(0, {"run", "q.yaml", "-q", "--store", "labelled"});
   expect(0, {"figures", "S2", "--out", "drawn", "--store", "labelled"});
-  const std::string svg = read_bytes(path("drawn/tiny/S2a.svg"));
+  const std::string svg = read_bytes(path("drawn/tiny/base/S2a.svg"));
   EXPECT_TRUE(has(svg, ">'at ''rest'']]&gt;<"));
   EXPECT_TRUE(has(svg, ">a`touch owned`{b}^c\\</tspan>"));
-  EXPECT_TRUE(fs::exists(path("drawn/tiny/S2a.pdf")));
+  EXPECT_TRUE(fs::exists(path("drawn/tiny/base/S2a.pdf")));
   expect(0, {"report", "--out", "l.html", "--drawings", "--store", "labelled"});
   for (const std::string& file : listing()) EXPECT_FALSE(has(file, "owned"));
 }
@@ -210,7 +210,7 @@ TEST_F(Outputs, AFullFolderForTemporaryFilesLeavesNoCutDrawing) {
               "exec \"$program\" figures S2 --out of-$size'");
     if (drawn.code == 77) GTEST_SKIP() << "only root mounts";
     std::printf("%s: code %d %s\n", size, drawn.code, drawn.err.c_str());
-    const std::string svg = read_bytes(path(std::string("of-") + size + "/tiny/S2a.svg"));
+    const std::string svg = read_bytes(path(std::string("of-") + size + "/tiny/base/S2a.svg"));
     if (drawn.code == 0) {
       EXPECT_TRUE(has(svg, "</svg>"));
     } else {
