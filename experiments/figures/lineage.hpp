@@ -42,8 +42,8 @@ nlohmann::json overrides_of(const Store& store, const RunRecord& run, const Memb
 /// "S2" for a record named "drag/desk/S2", or "drag/S2" or "S2" as in older stores.
 std::string figure_name(const FigureRecord& record);
 
-/// "drag/desk/S2" also where an older version named the record "drag/S2"; "desk/table1" for a figure
-/// of all experiments.
+/// "drag/desk/S2" also where an older version named the record "drag/S2"; "desk/table1" for a
+/// figure of all experiments.
 std::string figure_path(const FigureRecord& record);
 
 /// The text of a figure's lineage file: the payload of its record without host and build.

@@ -21,7 +21,7 @@ struct ExpandOptions {
   std::optional<std::uint64_t> seeds = {};   ///< how many; of listed seeds the first ones
   std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these; empty for all
-  std::optional<std::string> engine = {};  ///< instead of the manifest's; named in the variant
+  std::optional<std::string> engine = {};      ///< instead of the manifest's; named in the variant
   /// Runs of the store. Warnings then assume the lengths that this manifest gave them before, if
   /// those are longer.
   std::span<const RunRecord> known = {};

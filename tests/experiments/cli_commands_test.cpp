@@ -222,8 +222,7 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
   EXPECT_EQ(stage(other, "shear", 1).at("state"), "done");
   EXPECT_EQ(stage(other, "shear", 1).at("shared_with"), nlohmann::json::parse(R"(["tiny"])"));
   EXPECT_EQ(other.at("stages").at(2).at("state"), "to do");
-  expect(0, {"plan", "twin.yaml", "--cycles", "1"},
-         {"also in tiny"});
+  expect(0, {"plan", "twin.yaml", "--cycles", "1"}, {"also in tiny"});
 
   // Both: the shared run counts once, as long as the one that asks for more of it.
   write("twin.yaml", twin("  cycles: 4\n"));

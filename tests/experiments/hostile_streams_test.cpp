@@ -61,25 +61,12 @@ TEST_F(Streams, ExitCodesAreTheSameWithoutStandardError) {
 }
 
 TEST_F(Streams, LostOutputIsAnError) {
-  for (const char* words : {"status",
-                            "status --json",
-                            "plan m.yaml",
-                            "plan m.yaml --json",
-                            "verify",
-                            "verify --json",
-                            "figures S2 --json --out out",
-                            "run m.yaml --cycles 1 --json -q",
-                            "run m.yaml --cycles 1 -q",
-                            "--help",
-                            "run --help",
-                            "--version",
-                            "manual",
-                            "log",
-                            "show RUN",
-                            "doctor --no-speed",
-                            "new other",
-                            "report --out r.html",
-                            "export RUN --to vtk --out v --json"}) {
+  for (const char* words :
+       {"status", "status --json", "plan m.yaml", "plan m.yaml --json", "verify", "verify --json",
+        "figures S2 --json --out out", "run m.yaml --cycles 1 --json -q",
+        "run m.yaml --cycles 1 -q", "--help", "run --help", "--version", "manual", "log",
+        "show RUN", "doctor --no-speed", "new other", "report --out r.html",
+        "export RUN --to vtk --out v --json"}) {
     std::string command = "exec \"$0\" " + std::string(words);
     if (const auto at = command.find("RUN"); at != command.npos) {
       command.replace(at, 3, last_run());

@@ -87,7 +87,8 @@ TEST_F(FigureLineageTest, NamesTheLineOfItsOwnVariant) {
 TEST_F(FigureLineageTest, FindsTheRecordOfAFile) {
   const std::string old = read_bytes(file("out/tiny/base/S2a.csv"));
   const std::string old_lineage = read_bytes(file("out/tiny/base/S2.lineage.json"));
-  for (const char* name : {"out/tiny/base/S2a.csv", "out/tiny/base/S2b.csv", "out/tiny/base/S2.lineage.json"}) {
+  for (const char* name :
+       {"out/tiny/base/S2a.csv", "out/tiny/base/S2b.csv", "out/tiny/base/S2.lineage.json"}) {
     const auto found = find_published(store_, file(name));
     ASSERT_TRUE(found.has_value()) << name;
     EXPECT_TRUE(found->matches()) << name;
