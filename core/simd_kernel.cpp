@@ -43,17 +43,17 @@ constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 2 : 1;
 template <bool kSeam, std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                           const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
-  Vectors dr[kCount];
-  V s[kCount], factor[kCount];
+  V x[kCount], y[kCount], z[kCount], s[kCount], factor[kCount];
   V deepest = hn::Zero(kD);
   for (std::size_t k = 0; k < kCount; ++k) {
     V margin;
     const Vectors other = load_rows(
         rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[k * kLanes + lane]}; },
         margin);
-    dr[k] = separation<kSeam>(own, other, depth, per_depth);
-    const auto& [x, y, z] = dr[k];
-    s[k] = hn::NegMulAdd(z, z, hn::NegMulAdd(y, y, hn::NegMulAdd(x, x, hn::Set(kD, 1.0))));
+    const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
+    x[k] = dr.x, y[k] = dr.y, z[k] = dr.z;
+    s[k] = hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0)));
+    s[k] = hn::NegMulAdd(dr.z, dr.z, s[k]);
     s[k] = hn::Max(s[k], hn::Zero(kD));  // not touching: the factor is 0
     factor[k] = series_factors(s[k]);
     deepest = k == 0 ? s[k] : hn::Max(deepest, s[k]);
@@ -62,9 +62,9 @@ HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RE
     for (std::size_t k = 0; k < kCount; ++k) factor[k] = exact_beyond(s[k], factor[k]);
   }
   for (std::size_t k = 0; k < kCount; ++k) {
-    sum.x = hn::MulAdd(factor[k], dr[k].x, sum.x);
-    sum.y = hn::MulAdd(factor[k], dr[k].y, sum.y);
-    sum.z = hn::MulAdd(factor[k], dr[k].z, sum.z);
+    sum.x = hn::MulAdd(factor[k], x[k], sum.x);
+    sum.y = hn::MulAdd(factor[k], y[k], sum.y);
+    sum.z = hn::MulAdd(factor[k], z[k], sum.z);
   }
 }
 

@@ -14,7 +14,10 @@ build() {  # name, compiler, build type, more options: the program that compares
   compiler=$2 type=$3
   shift 3
   cmake -S tests/core/bits -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE="$type" "$@" >/dev/null
-  cmake --build "$folder" >/dev/null
+  cmake --build "$folder" >"$folder/build.log" || {
+    cat "$folder/build.log" >&2
+    return 1
+  }
 }
 build g++ g++ Debug
 build clang++ clang++ Release
