@@ -11,13 +11,14 @@ std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const
                               std::uint64_t step) {
   std::uint64_t next = std::numeric_limits<std::uint64_t>::max();
   for (const CheckpointCadence& cadence : cadences) {
+    const std::uint64_t last = cadence.last_cycle * cycle_steps(drive);
+    if (last > 0 && step >= last) continue;
     const std::uint64_t stride =
         std::max<std::uint64_t>(1, cadence.every_cycles) * cycle_steps(drive);
     const std::uint64_t begin = step - step % stride;
     const auto later = std::ranges::upper_bound(cadence.steps, step - begin);
     next = std::min(next, begin + (later == cadence.steps.end() ? stride : *later));
-    const std::uint64_t last = cadence.last_cycle * cycle_steps(drive);
-    if (step < last) next = std::min(next, last);
+    if (last > 0) next = std::min(next, last);
   }
   return next;
 }

@@ -10,14 +10,14 @@
 namespace shearcell {
 
 /// Checkpoints after every so many cycles, at these steps of each cycle that follows one, and at
-/// the end of the last cycle.
+/// the end of the last cycle; none after that.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
-  std::uint64_t last_cycle = 0;           ///< 0: none
+  std::uint64_t last_cycle = 0;           ///< 0: without end
 };
 
-/// The first step after `step` at which one of the cadences has a checkpoint. There must be one.
+/// The first step after `step` at which one of the cadences has a checkpoint; 2^64 - 1 without any.
 std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
                               std::uint64_t step);
 

@@ -65,9 +65,13 @@ void require_own_schema(const sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
   own.execute("ANALYZE");  // its tables are allowed; they hold only estimates
+  sqlite::Database older = sqlite::Database::in_memory();
+  older.execute(old_tables());
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
-  for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
+  for (const sqlite::Database* one : {&own, &older}) {
+    for (sqlite::Statement row(*one, statements); row.step();) known.insert(row.text(0));
+  }
   for (sqlite::Statement row(database, statements); row.step();) {
     if (known.contains(row.text(0))) continue;
     throw StoreDamaged(fmt::format(
@@ -99,14 +103,17 @@ void require_known_schema(sqlite::Database& database) {
 }
 
 /// Brings an older schema to the newest, without changing the table `events`, in one transaction:
-/// an interrupted migration leaves the older version.
+/// an interrupted migration leaves the older version. Schema 2 added leases; schema 3 what
+/// experiments ask of a run, why it ended, and the newest manifests.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
   // Another process may have migrated it while this one waited for the lock.
-  if (database.integer("PRAGMA user_version") == 1) {
-    create_leases(database);
-    database.execute("PRAGMA user_version=2");
+  const std::int64_t version = database.integer("PRAGMA user_version");
+  if (version == 1) create_leases(database);
+  if (version < kSchemaVersion) {
+    derive_projections(database, EventLog(database), lock);
+    database.execute(fmt::format("PRAGMA user_version={}", kSchemaVersion));
   }
   lock.commit();
 }
@@ -172,6 +179,8 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
   require_known_schema(database);
   require_own_schema(database);
   const bool read_only = access == Access::read;
+  const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
+  if (read_only && older) shadow_projections(database, EventLog(database));
   database.execute(read_only ? "PRAGMA query_only=ON" : "PRAGMA journal_mode=DELETE");
   if (!read_only) migrate(database);
   return database;

@@ -17,13 +17,13 @@
 namespace shearcell {
 
 /// Version of the table layout, stored as user_version.
-inline constexpr std::int64_t kSchemaVersion = 2;
+inline constexpr std::int64_t kSchemaVersion = 3;
 
 /// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
-/// changing events. With Access::read an older schema is not migrated; the file is still opened for
-/// writing if possible, so that SQLite can roll back the transaction of a crashed program. Throws
-/// StoreDamaged when the file is not a store or has a newer schema, and MachineError when it is to
-/// be written and this user may not.
+/// changing events. With Access::read the tables of an older schema are derived in memory; the file
+/// is still opened for writing if possible, so that SQLite can roll back the transaction of a
+/// crashed program. Throws StoreDamaged when the file is not a store or has a newer schema, and
+/// MachineError when it is to be written and this user may not.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.

@@ -20,7 +20,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-constexpr const char* kTables = R"sql(
+// {} are the columns of schema 3.
+constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
   ordinal INTEGER NOT NULL UNIQUE,
@@ -37,7 +38,7 @@ CREATE TABLE runs(
   wall_seconds REAL NOT NULL DEFAULT 0,
   particle_steps REAL NOT NULL DEFAULT 0,
   error TEXT NOT NULL DEFAULT '',
-  updated_at TEXT NOT NULL
+  updated_at TEXT NOT NULL{}
 ) STRICT;
 CREATE TABLE memberships(
   run TEXT NOT NULL REFERENCES runs(id),
@@ -49,7 +50,7 @@ CREATE TABLE memberships(
   labels TEXT NOT NULL,
   target_cycles INTEGER NOT NULL,
   checkpoint_every INTEGER NOT NULL,
-  ordinal INTEGER NOT NULL,
+  ordinal INTEGER NOT NULL,{}
   PRIMARY KEY (run, experiment, scale, variant, seed, manifest)
 ) STRICT;
 CREATE TABLE checkpoints(
@@ -75,8 +76,30 @@ CREATE TABLE figures(
 ) STRICT;
 )sql";
 
-constexpr std::array<std::string_view, 4> kTableNames = {"runs", "memberships", "checkpoints",
-                                                         "figures"};
+// `registered` is the seq of the last registration, and `newest` the manifest that was registered
+// last of those that declared a run at the scale.
+constexpr const char* kVersionTables = R"sql(
+CREATE TABLE manifests(
+  sha256 TEXT PRIMARY KEY,
+  registered_at TEXT NOT NULL,
+  registered INTEGER NOT NULL
+) STRICT;
+CREATE TABLE newest(
+  experiment TEXT NOT NULL,
+  scale TEXT NOT NULL,
+  manifest TEXT NOT NULL,
+  PRIMARY KEY (experiment, scale)
+) STRICT;
+)sql";
+
+constexpr std::array<std::string_view, 6> kTableNames = {"runs",    "memberships", "checkpoints",
+                                                         "figures", "manifests",   "newest"};
+
+std::string newest_tables() {
+  return fmt::format(kTables, ",\n  ends TEXT NOT NULL DEFAULT '[]'",
+                     "\n  until TEXT NOT NULL,\n  checkpoint_phases TEXT NOT NULL,") +
+         kVersionTables;
+}
 
 /// Throws StoreDamaged when a run is to be longer, or its checkpoints further apart, than any run
 /// of this program. Step counts could overflow.
@@ -104,21 +127,40 @@ class Projector {
     require_cycles(d.target_cycles, m.checkpoint_every);
     if (has_run(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
-      run("UPDATE runs SET state = CASE WHEN state = 'completed' AND (target_cycles < ?2 OR "
-          "cycle < ?2) THEN 'declared' ELSE state END, target_cycles = max(target_cycles, ?2) "
-          "WHERE id = ?1",
+      run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
+          "(target_cycles < ?2 OR cycle < ?2)",
           id_, d.target_cycles);
+      run("UPDATE runs SET target_cycles = max(target_cycles, ?2) WHERE id = ?1", id_,
+          d.target_cycles);
     } else {
       run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
           "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?)",
           id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, d.target_cycles,
           event_.recorded_at);
     }
-    run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
+    run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
-        "checkpoint_every = excluded.checkpoint_every",
+        "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
+        "checkpoint_phases = excluded.checkpoint_phases",
         id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), d.target_cycles,
-        m.checkpoint_every, event_.seq);
+        m.checkpoint_every, event_.seq, m.until.dump(), json(m.checkpoint_phases).dump());
+    if (d.kind != "prepare") show_newest(m.experiment, m.scale, m.manifest);
+  }
+
+  /// Of a text that was registered again, the later time.
+  void register_manifest() const {
+    run("INSERT INTO manifests VALUES(?,?,?) ON CONFLICT DO UPDATE SET "
+        "registered_at = excluded.registered_at, registered = excluded.registered "
+        "WHERE excluded.registered_at >= registered_at",
+        id_, event_.recorded_at, event_.seq);
+    Statement places(database_,
+                     "SELECT DISTINCT experiment, scale FROM memberships JOIN runs ON run = id "
+                     "WHERE manifest = ? AND kind <> 'prepare'",
+                     id_);
+    for (const auto& [experiment, scale] :
+         places.all([](const Statement& row) { return std::pair(row.text(0), row.text(1)); })) {
+      show_newest(experiment, scale, id_);
+    }
   }
 
   void operator()(const events::RunStarted&) const { begin_attempt(); }
@@ -127,13 +169,16 @@ class Projector {
   void operator()(const events::RunFailed& e) const { set_state("failed", e.why); }
 
   void operator()(const events::RunCompleted& e) const {
-    // Work is left when the target was raised while the run was computed, or when the run ended
-    // early (`until`) without considering all its experiments.
-    const json asked = member_of(member_of(e.summary, "ended"), "memberships");
-    run("UPDATE runs SET error = '', state = CASE WHEN (?2 AND target_cycles > ?3) OR "
-        "?4 < (SELECT count(*) FROM memberships WHERE run = ?1) THEN 'declared' ELSE 'completed' "
-        "END WHERE id = ?1",
-        id_, std::uint64_t{e.target_cycles.has_value()}, e.target_cycles.value_or(0),
+    const json ended = member_of(e.summary, "ended");
+    run("UPDATE runs SET error = '', state = 'completed', ends = json_insert(ends, '$[#]', "
+        "json(?2)) WHERE id = ?1",
+        id_, ended.dump());
+    // The target was raised while the run was computed, or the run ended early (`until`) without
+    // considering all its experiments.
+    const json asked = member_of(ended, "memberships");
+    run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND (target_cycles > ?2 OR "
+        "?3 < (SELECT count(*) FROM memberships WHERE run = ?1))",
+        id_, e.target_cycles.value_or(INT64_MAX),
         asked.is_number_unsigned() ? asked.get<std::uint64_t>() : std::uint64_t{INT64_MAX});
   }
 
@@ -182,6 +227,16 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
+  /// Makes the manifest the newest at the scale, unless another one was registered later.
+  void show_newest(const std::string& experiment, const std::string& scale,
+                   const std::string& manifest) const {
+    run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
+        "coalesce((SELECT (registered_at, registered) >= (SELECT registered_at, registered FROM "
+        "manifests WHERE sha256 = newest.manifest) FROM manifests WHERE sha256 = ?3), "
+        "NOT EXISTS (SELECT 1 FROM manifests WHERE sha256 = newest.manifest))",
+        experiment, scale, manifest);
+  }
+
   void set_state(std::string_view state, const std::string& error) const {
     run("UPDATE runs SET state = ?2, error = ?3 WHERE id = ?1", id_, state, error);
   }
@@ -214,6 +269,14 @@ json parse(const Database& database, const std::string& text) {
   return value;
 }
 
+std::vector<double> numbers(const Database& database, const std::string& text) {
+  try {
+    return parse(database, text).get<std::vector<double>>();
+  } catch (const json::exception&) {
+    throw damaged_table(database, "holds no list of numbers");
+  }
+}
+
 template <class State>
 State state_of(const Database& database, const std::string& name) {
   if (const auto state = value_of<State>(name)) return *state;
@@ -221,13 +284,20 @@ State state_of(const Database& database, const std::string& name) {
 }
 
 std::vector<Membership> query_memberships(const Database& database, const std::string& id) {
-  Statement query(database, "SELECT * FROM memberships WHERE run = ? ORDER BY ordinal", id);
+  Statement query(database,
+                  "SELECT memberships.*, newest.manifest IS memberships.manifest FROM memberships "
+                  "LEFT JOIN newest USING (experiment, scale) WHERE run = ? ORDER BY ordinal",
+                  id);
   return query.all([&](const Statement& row) {
     Membership m;
-    std::string run, labels;
+    std::string run, labels, until, phases;
+    std::uint64_t ordinal = 0, newest = 0;
     row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
-            m.checkpoint_every);
+            m.checkpoint_every, ordinal, until, phases, newest);
     m.swept = parse(database, labels);
+    m.until = parse(database, until);
+    m.checkpoint_phases = numbers(database, phases);
+    m.newest = newest != 0;
     require_cycles(m.target_cycles, m.checkpoint_every);
     return m;
   });
@@ -241,10 +311,12 @@ std::vector<RunRecord> select_runs(const Database& database, const std::string& 
   return query.all([&](const Statement& row) {
     RunRecord run;
     std::uint64_t ordinal = 0;
-    std::string resolved, state;
+    std::string resolved, state, ends;
     row.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
             run.attempts, run.cycle, run.step, run.state_hash, run.wall_seconds, run.particle_steps,
-            run.error, run.updated_at);
+            run.error, run.updated_at, ends);
+    run.ends = parse(database, ends);
+    if (!run.ends.is_array()) throw damaged_table(database, "holds no list of ends");
     run.resolved = parse(database, resolved);
     require_cycles(run.target_cycles, 1);
     run.state = state_of<RunState>(database, state);
@@ -281,7 +353,11 @@ std::optional<Record> only(std::vector<Record> found) {
 }  // namespace
 
 void create_projections(Database& database) {
-  database.execute(kTables);
+  database.execute(newest_tables());
+}
+
+std::string old_tables() {
+  return fmt::format(kTables, "", "");
 }
 
 Database empty_projections(const std::string& name) {
@@ -293,6 +369,9 @@ Database empty_projections(const std::string& name) {
 
 void apply(Database& database, const Event& event) {
   const auto of_run = run_of(event);
+  if (event.stream.starts_with("manifest/")) {
+    return Projector(database, event).register_manifest();
+  }
   if (!of_run && !event.stream.starts_with("figure/")) return;
   const events::Any decoded = events::decode(event);
   const bool of_figure = std::holds_alternative<events::FigureGenerated>(decoded);
@@ -316,14 +395,29 @@ std::string try_apply(Database& database, const Event& event) {
   }
 }
 
-void rebuild_projections(Database& database, const EventLog& log) {
-  sqlite::WriteTransaction lock(database);
+void derive_projections(Database& database, const EventLog& log,
+                        const sqlite::WriteTransaction& /*lock*/) {
   for (auto table = kTableNames.rbegin(); table != kTableNames.rend(); ++table) {
     database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
   }
   create_projections(database);
   log.for_each([&database](const Event& event) { apply(database, event); });
+}
+
+void rebuild_projections(Database& database, const EventLog& log) {
+  sqlite::WriteTransaction lock(database);
+  derive_projections(database, log, lock);
   lock.commit();
+}
+
+void shadow_projections(Database& database, const EventLog& log) {
+  std::string tables = newest_tables();
+  for (std::size_t at = 0; (at = tables.find("CREATE TABLE", at)) != tables.npos; at += 12) {
+    tables.replace(at, 12, "CREATE TEMP TABLE");
+  }
+  database.execute("PRAGMA temp_store=MEMORY");
+  database.execute(tables.replace(tables.find("INDEX "), 6, "INDEX temp."));
+  log.for_each([&database](const Event& event) { try_apply(database, event); });
 }
 
 std::map<std::string, TableRows> projection_rows(const Database& database) {

@@ -15,8 +15,10 @@
 
 namespace shearcell {
 
-/// Creates the empty tables runs, memberships, checkpoints and figures.
+/// Creates the empty tables runs, memberships, checkpoints, figures, manifests and newest.
 void create_projections(sqlite::Database& database);
+/// The statements that created the tables of schemas 1 and 2.
+std::string old_tables();
 /// The same in memory, for the events of a log that may be damaged or forged; errors name it
 /// `name`.
 sqlite::Database empty_projections(const std::string& name);
@@ -29,6 +31,12 @@ std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log in one transaction.
 void rebuild_projections(sqlite::Database& database, const EventLog& log);
+/// The same in a transaction of the caller.
+void derive_projections(sqlite::Database& database, const EventLog& log,
+                        const sqlite::WriteTransaction& lock);
+/// Derives them in memory, in place of those of an older schema, for a connection that only reads.
+/// Events that cannot be applied are left out; `verify` names them.
+void shadow_projections(sqlite::Database& database, const EventLog& log);
 
 /// The rows of a table in ascending order, each cell as an SQL literal.
 using TableRows = std::vector<std::vector<std::string>>;

@@ -26,13 +26,16 @@ struct Membership {
   std::uint64_t target_cycles = 0;             ///< requested length of the run; set by the store
   nlohmann::json until = nullptr;              ///< measure that may end the run earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
+  /// Whether its manifest is the version registered last of those that declared a run at the scale;
+  /// set by the store.
+  bool newest = true;
 
   static void fields(auto& m, auto field) {
     field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
     field("labels", m.swept), field("seed", m.seed), field("manifest", m.manifest);
     field("checkpoint_every", m.checkpoint_every);
   }
-  /// Those that are recorded if they are given. The events alone have them.
+  /// Those that are recorded if they are given.
   static void optional_fields(auto& m, auto field) {
     field("until", m.until), field("checkpoint_phases", m.checkpoint_phases);
   }
@@ -85,13 +88,14 @@ struct RunRecord {
   /// not ended; after a kill this remains until the run is resumed.
   RunState state = RunState::declared;
   std::uint64_t grains = 0;
-  std::uint64_t target_cycles = 0;      ///< the largest declared target
-  std::uint64_t attempts = 0;           ///< number of starts and resumes
-  double cycle = 0;                     ///< of the furthest checkpoint with a file
-  std::uint64_t step = 0;               ///< of that checkpoint
-  std::string state_hash;               ///< of that checkpoint; "" before the first
-  double wall_seconds = 0;              ///< sum over recorded efforts
-  double particle_steps = 0;            ///< sum over recorded efforts
+  std::uint64_t target_cycles = 0;                ///< the largest declared target
+  std::uint64_t attempts = 0;                     ///< number of starts and resumes
+  double cycle = 0;                               ///< of the furthest checkpoint with a file
+  std::uint64_t step = 0;                         ///< of that checkpoint
+  std::string state_hash;                         ///< of that checkpoint; "" before the first
+  double wall_seconds = 0;                        ///< sum over recorded efforts
+  double particle_steps = 0;                      ///< sum over recorded efforts
+  nlohmann::json ends = nlohmann::json::array();  ///< why each completion ended the run
   std::string error;                    ///< why it failed or was interrupted; "" otherwise
   std::string updated_at;               ///< time of its last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared

@@ -213,8 +213,8 @@ void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Kno
         context,
         fmt::format(
             "{}: the store's newest manifest of experiment {} is another text, with {} that "
-            "this plan does not have. Once this manifest is run, figures show its version alone "
-            "(--all-versions adds others).",
+            "this plan does not have. Once this manifest is run, figures show its version alone; "
+            "to show all, run one manifest that states the runs of both: it computes nothing new.",
             manifest.file, plan.experiment, counted(left_out, "run")));
   }
 }

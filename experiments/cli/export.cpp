@@ -18,9 +18,8 @@
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
-#include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/asks.hpp"
+#include "experiments/runner/look.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
@@ -108,7 +107,7 @@ struct WantedRun : SelectedRun {
 // The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
   const RunRecord& run = wanted.run;
-  if (wanted.places.empty()) return checkpoints_for(store, run, asks_of(store, run.id));
+  if (wanted.places.empty()) return checkpoints_for(store, run, run.memberships);
   std::vector<CheckpointRecord> all;
   for (const Membership& place : wanted.places) {
     std::ranges::move(checkpoints_for(store, run, place, {}), std::back_inserter(all));
@@ -197,8 +196,8 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
   if (folder) fs::create_directory(out);
   std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  std::uint64_t every = run.places.empty() ? checkpoint_cadence(run.run) : 0;
-  for (const Membership& place : run.places) every = std::gcd(every, place.checkpoint_every);
+  const std::uint64_t every =
+      checkpoint_cadence(run.places.empty() ? run.run.memberships : run.places);
   MeasureSources sources(store, {{run.run.id, every}});
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
@@ -242,8 +241,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
     add({run, first_membership(run)});
   }
   if (!runs.empty()) return runs;
-  const NewestRuns newest =
-      newest_runs(select_runs(store, options.selection), options.selection.all_versions);
+  const NewestRuns newest = newest_runs(select_runs(store, options.selection));
   for (const std::string& note : newest.notes) print_stderr("{}\n", note);
   for (const SelectedRun& one : newest.runs) add(one).places.push_back(one.membership);
   if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
@@ -342,9 +340,7 @@ void add_export(CLI::App& app, Context& context) {
   CLI::Option* named = command->add_option(
       "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
   add_selection_options(*command, options->selection);
-  command->add_flag("--all-versions", options->selection.all_versions,
-                    "Runs of older versions of a manifest too");
-  for (const char* filter : {"--experiment", "--scale", "--variant", "--seed", "--all-versions"}) {
+  for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));
   }
   std::vector<std::string> names;

@@ -151,8 +151,6 @@ void add_figures(CLI::App& app, Context& context) {
       ->description("Only of this experiment, even if its manifest does not list the figure");
   command->get_option("--scale")->description(
       "Scale of the runs (default: for each experiment, that of its run added last)");
-  command->add_flag("--all-versions", how.runs.all_versions,
-                    "Runs of older versions of a manifest too, as variants of their own");
   command
       ->add_option_function<std::string>(
           "--width", [options](const std::string& width) { options->how.wide = width == "double"; },

@@ -32,7 +32,7 @@ ShownAt shown_of(const Store& store) {
     return shown[{one.membership.experiment, one.membership.scale}];
   };
   for (const SelectedRun& one : all) at(one).left_out.insert(one.run.id);
-  for (const SelectedRun& one : newest_runs(all, false).runs) {
+  for (const SelectedRun& one : newest_runs(all).runs) {
     at(one).left_out.erase(one.run.id);
     at(one).versions[one.membership.manifest].insert(one.run.id);
   }

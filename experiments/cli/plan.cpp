@@ -18,42 +18,49 @@
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
-#include "experiments/runner/run_end.hpp"
+#include "experiments/runner/look.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-// Stages of the plan, each once, with what the store holds of them.
-struct Line {
-  const PlannedRun* run;
-  const StageSpec* stage;
-  std::string state = "to do";
-  double cycle = 0;  // of the newest checkpoint
-  double from = 0;   // cycle from which it is computed
-  StageCost left = {};
-  std::optional<double> left_until = 0;       // particle-steps; nothing when it is not known
-  std::vector<std::string> shared_with = {};  // other experiments that contain it
-};
+using Line = PlannedStage;
+
+// What the store has of the stage, and what becomes of it.
+std::string state_of(const Line& line) {
+  if (line.look.done) return "done";
+  if (line.stage.attempts == 0) return "to do";
+  if (line.stage.state != RunState::completed) return std::string(name_of(line.stage.state));
+  // Short of checkpoints that were asked for later, or of cycles.
+  return line.look.missing.empty() ? "to extend" : "to replay";
+}
+
+// The number of cycles that the stage gets at most.
+double cycles_of(const Line& line) {
+  return std::max(static_cast<double>(line.run->target_cycles), line.look.end);
+}
+
+// Other experiments that have the stage.
+std::vector<std::string> shared_with(const Line& line) {
+  std::vector<std::string> others;
+  for (const Membership& m : line.stage.memberships) {
+    const bool known = std::ranges::count(others, m.experiment) > 0;
+    if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
+  }
+  return others;
+}
 
 // "also in twin".
 std::string remark(const Line& line) {
-  return line.shared_with.empty() ? ""
-                                  : fmt::format("also in {}", fmt::join(line.shared_with, ", "));
-}
-
-void add_shares(const RunRecord& record, const std::string& experiment, Line& line) {
-  for (const Membership& m : record.memberships) {
-    const bool known = std::ranges::count(line.shared_with, m.experiment) > 0;
-    if (m.experiment != experiment && !known) line.shared_with.push_back(m.experiment);
-  }
+  const std::vector<std::string> others = shared_with(line);
+  return others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "));
 }
 
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = line.run->parameters;
-  if (line.stage->stage == Stage::prepare) return settle_time_step(p);
-  if (line.stage->stage == Stage::stiffen) return std::nullopt;
+  if (line.stage.kind == name_of(Stage::prepare)) return settle_time_step(p);
+  if (line.stage.kind == name_of(Stage::stiffen)) return std::nullopt;
   return shear_time_step(p);
 }
 
@@ -69,10 +76,10 @@ void print_numerics(const std::vector<Line>& lines) {
   std::vector<Row> rows;
   for (const Line& line : lines) {
     const Parameters& p = line.run->parameters;
-    const Stage stage = line.stage->stage;
-    Row row = {std::string(name_of(stage)),
-               stage == Stage::prepare ? "" : line.run->name,
-               stage == Stage::shear ? std::to_string(p.steps_per_cycle) : "",
+    const std::string& kind = line.stage.kind;
+    Row row = {kind,
+               kind == name_of(Stage::prepare) ? "" : line.run->name,
+               kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : "",
                "",
                "",
                "",
@@ -111,42 +118,43 @@ std::vector<std::string> notes_of(const Plan& plan) {
   return notes;
 }
 
-// What is left if the run ends where others with the same `until` ended; nothing when none did.
-// `ends` keeps where those ended, as a search reads every run.
-using ExpectedEnds = std::map<std::string, std::optional<double>>;
-std::optional<double> left_until(const Line& line, const std::optional<Store>& store,
-                                 ExpectedEnds& ends) {
-  if (!line.run->ends_early || line.stage->stage == Stage::prepare) return line.left.particle_steps;
-  const auto [known, fresh] = ends.try_emplace(describe(*line.run->ends_early));
-  if (fresh && store) known->second = expected_end(*store, *line.run->ends_early);
-  const std::optional<double> end = known->second;
-  if (!end) return std::nullopt;
-  PlannedRun shorter = *line.run;
-  shorter.target_cycles =
-      std::min(shorter.target_cycles, static_cast<std::uint64_t>(std::llround(*end)));
-  return stage_cost(shorter, *line.stage, line.from).particle_steps;
+bool has_until(const Membership& ask) {
+  return !ask.until.is_null();
 }
 
-// The same of the whole plan; nothing without `until`, or when it is not known of some run.
-nlohmann::json left_until(const std::vector<Line>& lines) {
+// Particle-steps that are left if runs end where others with the same `until` ended; null without
+// `until`, or where no such run has ended.
+nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
+  std::map<nlohmann::json, std::optional<double>>
+      ends;  // by `until`, since a search reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
-    asked = asked || line.run->ends_early;
-    if (!line.left_until) return nullptr;
-    sum += *line.left_until;
+    std::vector<Membership> asks = line.asks;
+    for (Membership& ask : asks) {
+      if (!has_until(ask) || line.look.done) continue;
+      const auto [end, fresh] = ends.try_emplace(ask.until);
+      if (fresh) end->second = expected_end(known, ask.until);
+      if (!end->second) return nullptr;
+      const auto cycles = static_cast<std::uint64_t>(std::llround(*end->second));
+      ask.target_cycles = std::min(ask.target_cycles, cycles);
+    }
+    asked = asked || std::ranges::any_of(line.asks, has_until);
+    sum += outlook(line.stage, asks, line.checkpoints).particle_steps;
   }
   return asked ? nlohmann::json(sum) : nlohmann::json();
 }
 
-void print_until(const std::vector<Line>& lines, double at_most) {
+void print_until(const std::vector<Line>& lines, const nlohmann::json& left, double at_most) {
   std::set<std::string> ends;
   for (const Line& line : lines) {
-    if (line.run->ends_early) ends.insert(describe(*line.run->ends_early));
+    for (const Membership& ask : line.asks) {
+      if (has_until(ask)) ends.insert(describe(until_from_json(ask.until)));
+    }
   }
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
-  if (const nlohmann::json left = left_until(lines); left.is_null()) {
+  if (left.is_null()) {
     fmt::print("less, by how much is known once such a run has ended\n");
   } else {
     fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
@@ -154,40 +162,8 @@ void print_until(const std::vector<Line>& lines, double at_most) {
   }
 }
 
-std::vector<Line> lines_of(const Plan& plan, const std::optional<Store>& store,
-                           const std::vector<RunRecord>& runs) {
-  std::map<std::string_view, const RunRecord*> known;
-  for (const RunRecord& run : runs) known.emplace(run.id, &run);
-  ExpectedEnds ends;
-  std::vector<Line> lines;
-  std::set<std::string> seen;
-  for (const PlannedRun& run : plan.runs) {
-    for (const StageSpec* stage : {&run.prepare, &run.last}) {
-      if (!seen.insert(stage->key).second) continue;
-      Line line{.run = &run, .stage = stage};
-      if (const auto found = known.find(stage->key); found != known.end()) {
-        const RunRecord* record = found->second;
-        line.cycle = record->cycle;
-        add_shares(*record, run.experiment, line);
-        const auto from = cycle_to_continue(run, *stage, record, &*store);
-        line.from = from.value_or(line.cycle);
-        line.state = !from ? "done" : record->attempts > 0 ? name_of(record->state) : "to do";
-        // Short of checkpoints that were asked for later, or of cycles.
-        const bool replayed = line.from < line.cycle;
-        if (line.state == "completed") line.state = replayed ? "to replay" : "to extend";
-      }
-      if (line.state != "done") {
-        line.left = stage_cost(run, *stage, line.from);
-        line.left_until = left_until(line, store, ends);
-      }
-      lines.push_back(line);
-    }
-  }
-  return lines;
-}
-
 struct Left {
-  RemainingWork work;
+  Work work;
   double bytes = 0;
   double rate = 0;  ///< mean particle-steps/s of one core
 };
@@ -196,13 +172,12 @@ Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known
   Left left;
   const Rates rates(known);
   for (const Line& line : lines) {
-    const Rate own =
-        rates.of(engine_of(line.stage->resolved), static_cast<double>(line.run->parameters.grains));
-    left.work.add(line.stage->key, line.stage->parent, line.left.particle_steps, own);
-    left.bytes += line.left.bytes;
-    if (left.rate == 0) left.rate = own.particle_steps_per_second;  // where nothing is left to do
+    left.work.add(line.stage, line.look.particle_steps, rates);
+    left.bytes += line.look.bytes;
+    // Where nothing is left to do.
+    if (left.rate == 0) left.rate = rates.of(line.stage).particle_steps_per_second;
   }
-  const RemainingWork& work = left.work;
+  const Work& work = left.work;
   if (work.core_seconds > 0) left.rate = work.particle_steps / work.core_seconds;
   return left;
 }
@@ -212,21 +187,22 @@ nlohmann::json experiment_facts(const Plan& plan) {
 }
 
 nlohmann::json facts(const Line& line) {
-  return {{"id", line.stage->key},
+  return {{"id", line.stage.id},
           {"experiment", line.run->experiment},
-          {"parent", line.stage->parent},
-          {"stage", name_of(line.stage->stage)},
+          {"parent", line.stage.parent},
+          {"stage", line.stage.kind},
           {"variant", line.run->variant},
-          {"parameters", effective_parameters(line.stage->resolved)},
+          {"parameters", effective_parameters(line.stage.resolved)},
           {"seed", line.run->seed},
           {"N", line.run->parameters.grains},
-          {"cycles", line.run->target_cycles},
-          {"state", line.state},
-          {"shared_with", line.shared_with},
+          {"cycles", static_cast<std::uint64_t>(cycles_of(line))},
+          {"state", state_of(line)},
+          {"shared_with", shared_with(line)},
           {"time_step", facts(time_step_of(line))},
           {"expected_overlap_d", expected_overlap(line.run->parameters)},
-          {"particle_steps_left", line.left.particle_steps},
-          {"bytes_left", line.left.bytes},
+          {"particle_steps_left", line.look.particle_steps},
+          {"checkpoints_left", line.look.checkpoints},
+          {"bytes_left", line.look.bytes},
           {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
 }
 
@@ -234,14 +210,14 @@ void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
   Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
   if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
   print_table(header, lines, [&](const Line& line) {
-    const bool prepare = line.stage->stage == Stage::prepare;
-    Row row = {line.stage->key.substr(0, 8),
-               std::string(name_of(line.stage->stage)),
+    const bool prepare = line.stage.kind == name_of(Stage::prepare);
+    Row row = {line.stage.id.substr(0, 8),
+               line.stage.kind,
                prepare ? "" : line.run->name,
                std::to_string(line.run->seed),
                std::to_string(line.run->parameters.grains),
-               prepare ? "" : fmt::format("{:.4g}/{}", line.cycle, line.run->target_cycles),
-               line.state,
+               prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles_of(line)),
+               state_of(line),
                remark(line)};
     if (of_several_experiments) row.insert(row.begin() + 2, line.run->experiment);
     return row;
@@ -251,17 +227,19 @@ void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
 void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
           Context& context) {
   const std::vector<Plan> plans = load_manifests(manifests, options, context).plans;
-  Plan expanded = joined(plans);
+  const Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
-  const std::size_t longer = take_longer_targets(runs, expanded);
-  const std::vector<Line> lines = lines_of(expanded, store, runs);
+  const std::vector<Line> lines = look_at(expanded, store ? &*store : nullptr);
   const Left left = left_of(lines, runs);
-  std::set<const PlannedRun*> unfinished;  // each is computed by one core
+  const nlohmann::json with_until = left_until(lines, runs);
+  std::set<const PlannedRun*> left_runs;  // each is computed by one core
+  std::size_t longer = 0;
   for (const Line& line : lines) {
-    if (line.state != "done") unfinished.insert(line.run);
+    if (!line.look.done) left_runs.insert(line.run);
+    longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
   }
-  const std::size_t cores = std::clamp<std::size_t>(unfinished.size(), 1, usable_cores());
+  const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.work.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
   const std::filesystem::path place = existing_folder(context.store);
@@ -284,7 +262,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
                        {"runs", expanded.runs.size()},
                        {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
                        {"particle_steps_left", left.work.particle_steps},
-                       {"particle_steps_left_with_until", left_until(lines)},
+                       {"particle_steps_left_with_until", with_until},
                        {"bytes_left", left.bytes},
                        {"seconds_left", seconds},
                        {"cores", cores},
@@ -295,7 +273,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
   print_stages(lines, manifests.size() > 1);
   print_numerics(lines);
-  if (std::ranges::all_of(lines, [](const Line& line) { return line.state == "done"; })) {
+  if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {
     fmt::print("\nleft: nothing\n");
   } else {
     fmt::print(
@@ -305,7 +283,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
         left.rate * 1e-6,
         left.work.measured ? "measured in this store" : "assumed until a run has been measured",
         format_bytes(left.bytes));
-    print_until(lines, left.work.particle_steps);
+    print_until(lines, with_until, left.work.particle_steps);
   }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }

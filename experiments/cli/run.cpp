@@ -143,7 +143,7 @@ and merge their stores.)");
   resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
   resume->callback([resume_options, &context] {
     Store store(context.store, Access::write);
-    const std::vector<StageJob> jobs = unfinished(store, resume_options->inputs);
+    const std::vector<StageJob> jobs = stages_to_resume(store, resume_options->inputs);
     const auto by_lammps = [&](const StageJob& job) {
       return engine_of(store.run(job.id).resolved) == EngineKind::lammps;
     };

@@ -12,12 +12,11 @@
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/figures/experiment_part.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/run_end.hpp"
+#include "experiments/runner/look.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/words.hpp"
 
@@ -125,7 +124,7 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
           {"checkpoints", facts_of_all(store, run, checkpoints)},
           {"measures", as_json(newest_measures(store, checkpoints, context))},
           {"error", run.error},
-          {"ended", end_of(store, run)}};
+          {"ended", end_of(run)}};
 }
 
 void print_run(const Store& store, const RunRecord& run) {
@@ -138,7 +137,7 @@ void print_run(const Store& store, const RunRecord& run) {
                engine.value("version", ""), engine.value("processes", 1));
   }
   if (!run.error.empty()) print_text("error    {}\n", run.error);
-  if (const std::string why = describe_end(end_of(store, run)); !why.empty()) {
+  if (const std::string why = describe_end(end_of(run)); !why.empty()) {
     print_text("ended    {}\n", why);
   }
   for (const Membership& m : run.memberships) {

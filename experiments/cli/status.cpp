@@ -5,20 +5,18 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
-#include <tuple>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/words.hpp"
 
@@ -44,31 +42,10 @@ struct View {
         waiting(waiting_for_failed(store.runs())),
         queue(view_queue(store)),
         names(store) {
-    using Place = std::tuple<std::string, std::string, std::string>;
-    const auto place_of = [](const SelectedRun& s) -> Place {
-      return {s.membership.experiment, s.membership.scale, s.run.id};
-    };
-    const std::vector<SelectedRun> selected = select_runs(store, selection);
-    std::map<Place, std::vector<SelectedRun>> newest;  // one for each variant that the run is
-    for (SelectedRun& one : newest_runs(selected, false).runs) {
-      newest[place_of(one)].push_back(std::move(one));
-    }
-    for (const SelectedRun& found : selected) {  // the places of a run follow each other
+    for (const SelectedRun& found : select_runs(store, selection)) {
+      // The places of a run follow each other.
       if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
-      std::vector<SelectedRun>& places = runs.back().places;
-      const auto known = std::ranges::find(places, place_of(found), place_of);
-      if (const auto variants = newest.find(place_of(found)); variants != newest.end()) {
-        if (known == places.end()) std::ranges::copy(variants->second, std::back_inserter(places));
-        continue;
-      }
-      // If versions of a manifest named the variant differently, the last one is kept.
-      SelectedRun place = found;
-      place.of_newest_version = found.run.kind == name_of(Stage::prepare);
-      if (known == places.end()) {
-        places.push_back(std::move(place));
-      } else {
-        *known = std::move(place);
-      }
+      runs.back().places.push_back(found);
     }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
@@ -121,7 +98,7 @@ nlohmann::json facts(const ListedRun& listed, const View& view) {
   const QueuedRun* queued = view.queued(run);
   const auto place = [&](const SelectedRun& one) {
     nlohmann::json all = place_facts(one, view);
-    all.update({{"newest", one.of_newest_version}, {"manifest", one.membership.manifest}});
+    all.update({{"newest", one.membership.newest}, {"manifest", one.membership.manifest}});
     return all;
   };
   nlohmann::json all = place_facts(listed, view);
@@ -140,7 +117,7 @@ nlohmann::json facts(const ListedRun& listed, const View& view) {
               {"state_hash", run.state_hash},
               {"error", run.error},
               {"updated_at", run.updated_at},
-              {"ended", end_of(view.store, run)},
+              {"ended", end_of(run)},
               {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
               {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}});
   return all;
@@ -168,7 +145,7 @@ struct Shown {
 
 /// The work that is left, and the time that it takes at the present speed.
 struct Estimate {
-  RemainingWork work;
+  Work work;
   std::size_t at_a_time = 1;  ///< stages
   bool running = false;       ///< false: estimated for all cores of this machine
   bool at_most = false;       ///< `until` may end runs earlier
@@ -176,22 +153,26 @@ struct Estimate {
   double seconds() const { return work.seconds(at_a_time); }
 };
 
+/// Nothing if nothing is left, or where this version cannot read a record (`verify` names it).
+/// Stages that failed or cannot start are left out.
 std::optional<Estimate> estimate(const View& view) {
-  std::vector<RunRecord> records;
+  const Rates rates(view.store.runs());
   std::size_t running = 0;
   Estimate made;
   for (const SelectedRun& selected : view.runs) {
-    const RunRecord& run = records.emplace_back(selected.run);
-    const QueuedRun* queued = view.queued(run);
+    const RunRecord& stage = selected.run;
+    const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
-    running += view.holders.contains(run.id) || in_task ? 1 : 0;
-    if (run.state == RunState::completed) continue;
-    made.at_most = made.at_most || may_end_early(view.store, run.id);
-  }
-  try {
-    made.work = remaining_work(view.store, records);
-  } catch (const std::runtime_error&) {
-    return std::nullopt;  // a record that this version cannot read; `verify` names it
+    running += view.holders.contains(stage.id) || in_task ? 1 : 0;
+    if (stage.state == RunState::failed || view.waiting.contains(stage.id)) continue;
+    const Outlook look = look_at(view.store, stage);
+    if (look.done) continue;
+    if (!look.unreadable.empty()) return std::nullopt;
+    made.at_most = made.at_most ||
+                   std::ranges::any_of(stage.memberships, [](const Membership& ask) {
+                     return !ask.until.is_null();
+                   });
+    made.work.add(stage, look.particle_steps, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
   made.running = running > 0;
@@ -238,8 +219,7 @@ void print_tables(const View& view) {
       const std::string name = place.experiment + " at scale " + scale_name(place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
       Row& row = tables[name].emplace_back(Row{
-          run.id.substr(0, 8),
-          view.called(selected) + (selected.of_newest_version ? "" : " (older version)"),
+          run.id.substr(0, 8), view.called(selected) + (place.newest ? "" : " (older version)"),
           std::to_string(place.seed), std::to_string(run.grains),
           fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
           run.kind == name_of(Stage::prepare)
@@ -284,7 +264,7 @@ void print(const View& view) {
   for (const ListedRun& listed : view.runs) {
     const RunRecord& run = listed.run;
     if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
-    if (const nlohmann::json ended = end_of(view.store, run); !ended.is_null()) {
+    if (const nlohmann::json ended = end_of(run); !ended.is_null()) {
       print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
                  describe_end(ended));
     }

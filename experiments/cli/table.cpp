@@ -54,8 +54,6 @@ void add_table(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("table", "Write runs and their measures as one table, CSV or JSON");
   add_selection_options(*command, options->selection);
-  command->add_flag("--all-versions", options->selection.all_versions,
-                    "Runs of older versions of a manifest too");
   CLI::Option* per =
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
           ->check(one_of<RowPer>())

@@ -91,7 +91,7 @@ void work(const WorkOptions& options, Context& context) {
     const Repeated reports(kReportEvery, tried(report, kReportEvery));
     std::optional<Repeated> saves;
     if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
-    std::vector<StageJob> jobs = unfinished(*store, {});
+    std::vector<StageJob> jobs = stages_to_resume(*store, {});
     if (options.leave_failed) failed_before = leave_failed(*store, jobs);
     Progress progress(jobs.size());
     result = run_campaign(*store, jobs, options.jobs, progress, {options.threads, 1});

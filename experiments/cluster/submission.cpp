@@ -11,9 +11,9 @@
 
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/look.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -152,35 +152,26 @@ void Share::add(const Share& other) {
   core_seconds += other.core_seconds;
 }
 
-std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store) {
-  const auto runs = store == nullptr ? std::vector<RunRecord>{} : store->runs();
-  const Rates rates(runs);
-  std::map<std::string, const RunRecord*> known;
-  for (const RunRecord& run : runs) known.emplace(run.id, &run);
-  // Adds what is left of a stage; false when it is done.
-  const auto add = [&](const PlannedRun& run, const StageSpec& stage, Share& share) {
-    const auto cycle = cycle_to_continue(run, stage, known[stage.key], store);
-    if (!cycle) return false;
-    const double steps = stage_cost(run, stage, *cycle).particle_steps;
-    const Rate rate =
-        rates.of(engine_of(stage.resolved), static_cast<double>(run.parameters.grains));
-    share.particle_steps += steps;
-    share.core_seconds += steps / rate.particle_steps_per_second;
-    return true;
+std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
+  const Rates rates(store == nullptr ? std::vector<RunRecord>{} : store->runs());
+  const std::vector<PlannedStage> stages = look_at(joined(plans), store);
+  const auto share = [&](const PlannedStage& one) {
+    const double steps = one.look.particle_steps;
+    return Share{{}, {}, steps, steps / rates.of(one.stage).particle_steps_per_second};
   };
+  std::map<std::string, const PlannedStage*> packings;
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // of each packing in shares
-  Plan all = joined(plans);
-  take_longer_targets(runs, all);
-  for (const PlannedRun& run : all.runs) {
-    Share left;
-    if (!add(run, run.last, left)) continue;
-    left.runs = {run.last.key};
-    const auto [place, fresh] = places.try_emplace(run.prepare.key, shares.size());
+  for (const PlannedStage& one : stages) {
+    if (one.stage.parent.empty()) packings[one.stage.id] = &one;
+    if (one.stage.parent.empty() || one.look.done) continue;
+    const auto [place, fresh] = places.try_emplace(one.stage.parent, shares.size());
     if (fresh) {
-      shares.emplace_back().packings = {run.prepare.key};
-      add(run, run.prepare, shares.back());
+      shares.push_back(share(*packings.at(one.stage.parent)));
+      shares.back().packings = {one.stage.parent};
     }
+    Share left = share(one);
+    left.runs = {one.stage.id};
     shares[place->second].add(left);
   }
   return shares;
@@ -202,7 +193,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job) {
   Proposal made;
-  std::vector<Share> packings = work_left(plans, store);
+  std::vector<Share> packings = shares_of(plans, store);
   std::erase_if(packings, [&](const Share& packing) {
     const auto is_busy = [&](const std::string& id) { return busy.contains(id); };
     const bool taken = std::ranges::any_of(packing.packings, is_busy) ||
@@ -283,7 +274,7 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
-  const auto is_done = [&](const std::string& id) { return !has_work_left(store, store.run(id)); };
+  const auto is_done = [&](const std::string& id) { return look_at(store, store.run(id)).done; };
   std::erase_if(open, [&](const Submission& submission) {
     // Submissions without a folder were merged from other stores.
     return !fs::exists(submission.folder(store.folder())) ||

@@ -33,7 +33,7 @@ struct Share {
 
 /// The runs of the plans that are not done in the store (which may be null), each once. One share
 /// for each packing, in the order of the plans.
-std::vector<Share> work_left(const std::vector<Plan>& plans, const Store* store);
+std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
 /// Distributes the shares of packings, the longest first, each to the task with the least core
 /// time; equal ones in turn. At most `tasks` shares, none empty. The same input gives the same
@@ -103,7 +103,7 @@ Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::
 /// Oldest first. Throws StoreDamaged when the payload of an event is invalid.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Submissions with a folder in this store and with runs for which has_work_left().
+/// Submissions with a folder in this store and with runs that are not done by their Outlook.
 std::vector<Submission> unfinished_submissions(const Store& store);
 
 /// Merges the stores of a submission's tasks that still exist into the store. Returns the number of

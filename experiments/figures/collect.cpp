@@ -12,12 +12,11 @@
 
 #include "analysis/derived_measures.hpp"
 #include "analysis/own_figure.hpp"
-#include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
@@ -28,9 +27,9 @@ namespace {
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-RunAsk ask_for(const Figure& figure, const CollectedRun& run) {
-  RunAsk ask = run.ask;
-  if (!figure.within) ask.phases.clear();
+Membership ask_for(const Figure& figure, const CollectedRun& run) {
+  Membership ask = run.membership;
+  if (!figure.within) ask.checkpoint_phases.clear();
   return ask;
 }
 
@@ -48,7 +47,7 @@ double last_cycle(const Figure& figure, const CollectedRun& run) {
 /// measures nothing gets only the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  const RunAsk ask = ask_for(figure, run);
+  const Membership ask = ask_for(figure, run);
   std::vector<CheckpointRecord> found =
       checkpoints_for(store, run.run, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
   if (figure.form == FigureForm::table && !found.empty()) {
@@ -59,26 +58,31 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
 
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
 /// missing.
-std::size_t missing_of(const Figure& figure, const CollectedRun& run) {
-  const double end = std::min(run.run.cycle, last_cycle(figure, run));
-  auto asked = asked_steps(run.run, ask_for(figure, run), first_cycle(figure), end);
-  for (const CheckpointRecord& record : run.checkpoints) std::erase(asked, record.step);
-  return asked.size();
+std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const CollectedRun& run) {
+  const std::optional<Drive> motion = shear_drive(run.run);
+  if (!motion) return 0;
+  Membership ask = ask_for(figure, run);
+  ask.until = nullptr;
+  ask.target_cycles = static_cast<std::uint64_t>(last_cycle(figure, run));
+  const Outlook look = outlook(run.run, {&ask, 1}, seen_checkpoints(store, run.run.id));
+  const double first = first_cycle(figure) * static_cast<double>(cycle_steps(*motion));
+  const auto taken = [first](std::uint64_t step) { return static_cast<double>(step) >= first; };
+  return std::ranges::count_if(look.missing, taken) + std::ranges::count_if(look.lost, taken);
 }
 
 /// Notes how many checkpoints are missing up to the end of the runs: a manifest may state a denser
 /// cadence than that of the runs.
-void note_never_made(const Figure& figure, CollectedRuns& collected) {
+void note_never_made(const Store& store, const Figure& figure, CollectedRuns& collected) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
   for (const CollectedRun& run : collected.runs) {
-    const std::size_t missing = missing_of(figure, run);
+    const std::ptrdiff_t missing = missing_for(store, figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
-    lack.checkpoints += missing;
+    lack.checkpoints += static_cast<std::size_t>(missing);
     lack.runs.insert(run.run.id.substr(0, 8));
   }
   for (const auto& [of_lammps, lack] : lacks) {
@@ -304,23 +308,15 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     collected.notes.push_back(fmt::format("left out: experiments without a run at scale {}: {}",
                                           scale_name(collected.scale), some_of(elsewhere)));
   }
-  NewestRuns newest = newest_runs(std::move(selected), selection.all_versions);
+  NewestRuns newest = newest_runs(std::move(selected));
   if (newest.runs.empty()) {
-    throw NotFound(
-        fmt::format("the runs selected for figure {} are of an older version of the "
-                    "manifest; --all-versions adds them",
-                    wanted.path()));
+    throw NotFound(fmt::format(
+        "the runs selected for figure {} are of an older version of the manifest; run the version "
+        "that states them, which computes nothing new",
+        wanted.path()));
   }
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
-  for (SelectedRun& run : newest.runs) {
-    Membership& m = run.membership;
-    RunAsk ask = ask_of(store, run.run.id, m);
-    if (!run.of_newest_version) {
-      m.swept["manifest"] = m.manifest.substr(0, 8);
-      m.variant += fmt::format(",manifest={:.8}", m.manifest);
-    }
-    collected.runs.push_back({std::move(run), std::move(ask)});
-  }
+  for (SelectedRun& run : newest.runs) collected.runs.push_back({std::move(run)});
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);
@@ -334,13 +330,13 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     });
   }
   for (CollectedRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.run, run.ask, measuring)
+    run.end = measured ? end_for(store, run.run, run.membership, measuring)
                        : static_cast<double>(run.membership.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {
     leave_out_not_begun(wanted.figure, collected);
-    note_never_made(wanted.figure, collected);
+    note_never_made(store, wanted.figure, collected);
   }
   return collected;
 }

@@ -7,7 +7,6 @@
 
 #include "analysis/figure.hpp"
 #include "experiments/figures/select_runs.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/measure.hpp"
 #include "provenance/store.hpp"
 
@@ -40,7 +39,6 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 
 /// One run of a figure.
 struct CollectedRun : SelectedRun {
-  RunAsk ask = {};                                 ///< what the experiment asks of it
   std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest
@@ -60,8 +58,7 @@ struct CollectedRuns {
 
 /// The selected newest_runs() of the experiment that the figure uses, at the scale declared last,
 /// with their checkpoints up to end_for(). A figure of all experiments has a run once per
-/// experiment. Runs of older versions of a manifest have their own variants, as
-/// "fluid=cell,manifest=1f2e3d4c". Throws NotFound if there is no such run.
+/// experiment. Throws NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

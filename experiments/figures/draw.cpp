@@ -124,12 +124,6 @@ void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>
   }
   const std::string key = averaged_key(variants);
   if (key.empty()) return;
-  if (find_field(key) == nullptr) {  // `manifest`, not swept
-    throw UsageError(
-        fmt::format("figure {} would average over several versions of the manifest of experiment "
-                    "{}; leave out --all-versions",
-                    wanted.figure.name, wanted.experiment));
-  }
   const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
   throw UsageError(fmt::format(
       "figure {} would average over the values of {} that experiment {} sweeps; {}",

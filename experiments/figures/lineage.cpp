@@ -32,7 +32,7 @@ FigureInput read_input(const json& input) {
 // The swept values of the run, by the membership that the figure used.
 json swept_values_of(const RunRecord& run, const FigureInput& input) {
   for (const Membership& member : run.memberships) {
-    // The variant of an older version ends in that version (collect.hpp).
+    // In figures of earlier programs the variant of an older version ends in that version.
     const bool same =
         input.variant == member.variant || input.variant.starts_with(member.variant + ",manifest=");
     if (member.manifest == input.manifest && same) return member.swept;

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "analysis/onset.hpp"
-#include "experiments/figures/experiment_part.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/registered.hpp"
 
 namespace shearcell {
@@ -174,16 +174,12 @@ json swept_value(const Field& field, const SelectedRun& selected) try {
 
 /// The columns that distinguish runs.
 std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
-                                    const VariantNames& variants, bool all_versions) {
+                                    const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
   for (const MeasuredRun& run : runs) {
     for (const auto& [key, value] : run.membership.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
-  if (all_versions) {
-    columns.push_back(of_run("manifest", "SHA-256 of the manifest",
-                             [](const SelectedRun& s) { return s.membership.manifest; }));
-  }
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
     columns.push_back({{std::string(field.name), std::string(field.doc)},
@@ -193,8 +189,8 @@ std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
 }
 
 std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per,
-                                const VariantNames& variants, bool ledger, bool all_versions) {
-  std::vector<Column> columns = columns_of_runs(runs, variants, all_versions);
+                                const VariantNames& variants, bool ledger) {
+  std::vector<Column> columns = columns_of_runs(runs, variants);
   std::ranges::move(measures(ledger), std::back_inserter(columns));
   if (per == RowPer::run) std::ranges::move(ends(), std::back_inserter(columns));
   return columns;
@@ -202,7 +198,7 @@ std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per
 
 std::vector<MeasuredRun> select(const Store& store, const RunSelection& selection,
                                 const MeasureOptions& options, RunTable& table) {
-  NewestRuns newest = newest_runs(select_runs(store, selection), selection.all_versions);
+  NewestRuns newest = newest_runs(select_runs(store, selection));
   table.notes = std::move(newest.notes);
   std::vector<MeasuredRun> runs;
   for (SelectedRun& selected : newest.runs) {
@@ -275,8 +271,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   measure_where(store, names, options, runs, has_row, table);
   // Onsets need only the scalars of the other checkpoints.
   measure_where(store, table_measures().first(1), options, runs, std::not_fn(has_row), table);
-  const std::vector<Column> columns =
-      columns_for(runs, per, VariantNames(store), ledger, selection.all_versions);
+  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), ledger);
   table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
@@ -306,7 +301,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
   std::vector<MeasuredRun> runs = select(store, selection, options, table);
   const auto all = [](const MeasuredRun&, std::size_t) { return true; };
   measure_where(store, {&derived, 1}, options, runs, all, table);
-  std::vector<Column> columns = columns_of_runs(runs, VariantNames(store), selection.all_versions);
+  std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
@@ -328,7 +323,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
 }
 
 std::vector<TableColumn> table_columns() {
-  const std::vector<Column> columns = columns_for({}, RowPer::run, VariantNames(), true, false);
+  const std::vector<Column> columns = columns_for({}, RowPer::run, VariantNames(), true);
   return {columns.begin(), columns.end()};
 }
 

@@ -14,7 +14,6 @@
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/registered.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -29,42 +28,35 @@ void require_found(const char* what, const Filter& filter) {
                              did_you_mean(*missing, known)));
 }
 
-/// When each version of a manifest was registered last, by its SHA-256: larger is newer.
-using Versions = std::map<std::string, std::size_t>;
-
-Versions versions_of(const Store& store) {
-  Versions versions;
-  std::size_t registered = 0;
-  for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    versions[manifest.sha256] = ++registered;
-  }
-  return versions;
-}
-
 /// The same of all versions of a manifest.
 auto place(const Membership& m) {
   return std::tie(m.experiment, m.scale, m.variant, m.seed);
 }
 
-/// Of a run that an edited manifest declared again, the newest place alone.
-std::vector<Membership> newest_memberships(const RunRecord& run, Versions& versions) {
-  std::vector<Membership> newest;
-  for (const Membership& m : run.memberships) {
-    const auto same = std::ranges::find(newest, place(m), place);
-    if (same == newest.end()) {
-      newest.push_back(m);
-    } else if (versions[m.manifest] >= versions[same->manifest]) {
-      *same = m;
-    }
-  }
-  if (newest.empty()) newest.emplace_back();
-  return newest;
+bool at_same_scale(const Membership& a, const Membership& b) {
+  return a.experiment == b.experiment && a.scale == b.scale;
 }
 
-/// Newest versions first, then by experiment, scale, variant and seed, so that the order does not
-/// depend on the store's history.
+/// The places of the run in each experiment at each scale: those in the newest version of the
+/// manifest or, if that does not have the run, the place that was declared last.
+std::vector<Membership> places_of(const RunRecord& run) {
+  std::vector<Membership> places;
+  for (const Membership& m : run.memberships) {
+    const auto known = std::ranges::find_if(
+        places, [&](const Membership& other) { return at_same_scale(m, other); });
+    if (known == places.end() || (known->newest && m.newest)) {
+      places.push_back(m);
+    } else if (m.newest || !known->newest) {
+      *known = m;
+    }
+  }
+  if (places.empty()) places.emplace_back();
+  return places;
+}
+
+/// By experiment, scale, variant and seed, so that the order does not depend on the store's
+/// history.
 bool in_order(const SelectedRun& a, const SelectedRun& b) {
-  if (a.of_newest_version != b.of_newest_version) return a.of_newest_version;
   const auto key = [](const Membership& m) {
     return std::tie(m.experiment, m.scale, m.swept, m.seed);
   };
@@ -83,7 +75,7 @@ void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::strin
     double had = 0;
   };
   std::map<ExperimentScale, Shortened> shortened;
-  for (const auto& [run, m, newest] : runs) {
+  for (const auto& [run, m] : runs) {
     const bool asked_for_more =
         std::ranges::any_of(run.memberships, [&m = m](const Membership& older) {
           return place(older) == place(m) && older.target_cycles > m.target_cycles;
@@ -113,14 +105,12 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   Filter seed(texts_of(selection.seeds));
   Filter variant(selection.variants, has_values, keys_of);
   std::vector<SelectedRun> selected;
-  Versions versions = versions_of(store);
-  std::map<ExperimentScale, std::size_t> newest;  // version that has runs, selected or not
+  using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
+  std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`
   for (const RunRecord& run : store.runs()) {
     const bool packing = run.kind == name_of(Stage::prepare);
     if (packing && !selection.packings) continue;
-    for (const Membership& m : newest_memberships(run, versions)) {
-      std::size_t& known = newest[experiment_scale(m)];
-      if (!packing) known = std::max(known, versions[m.manifest]);
+    for (const Membership& m : places_of(run)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
       passes &= scale.passes(scale_name(m.scale));
@@ -128,64 +118,52 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
       passes &= seed.passes(std::to_string(m.seed));
       passes &=
           selection.states.empty() || std::ranges::count(selection.states, name_of(run.state)) > 0;
-      if (passes) selected.push_back({run, m});
+      if (!passes) continue;
+      if (!packing && m.newest) {
+        // The same manifest may have meant another run to another version of the program.
+        const Seed same = {experiment_scale(m), m.variant, m.seed};
+        const auto [known, first] = seeds.try_emplace(same, selected.size());
+        if (!first) selected[known->second].membership.newest = false;
+        known->second = selected.size();
+      }
+      selected.push_back({run, m});
     }
   }
   require_found("experiment", experiment);
   require_found("scale", scale);
   require_found("variant", variant);
   require_found("seed", seed);
-  for (SelectedRun& run : selected) {
-    const Membership& m = run.membership;
-    run.of_newest_version = versions[m.manifest] == newest[experiment_scale(m)];
-  }
   return selected;
 }
 
-NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions) {
+NewestRuns newest_runs(std::vector<SelectedRun> selected) {
   std::erase_if(selected,
                 [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
-  std::stable_partition(selected.begin(), selected.end(),
-                        [](const SelectedRun& s) { return s.of_newest_version; });
+  const auto older = std::stable_partition(
+      selected.begin(), selected.end(), [](const SelectedRun& s) { return s.membership.newest; });
   NewestRuns chosen;
-  struct Taken {
-    std::string manifest;
-    std::set<nlohmann::json> variants;
-  };
-  std::map<std::pair<ExperimentScale, std::string>, Taken> taken;  // by the run's id
-  using Seed = std::tuple<ExperimentScale, std::string, std::string, std::uint64_t>;
-  std::map<Seed, std::size_t> places;                        // by manifest, variant and seed
-  std::map<ExperimentScale, std::vector<std::string>> left;  // variants
-  for (SelectedRun& run : selected) {
-    const Membership& m = run.membership;
-    if (!run.of_newest_version && !all_versions) {
-      left[experiment_scale(m)].push_back(m.variant);
-      continue;
-    }
-    // A run that is several variants of one manifest is listed for each of them.
-    Taken& of_run =
-        taken.try_emplace({experiment_scale(m), run.run.id}, Taken{m.manifest, {}}).first->second;
-    if (of_run.manifest != m.manifest || !of_run.variants.insert(m.swept).second) continue;
-    const auto [place, first] = places.try_emplace(
-        {experiment_scale(m), m.manifest, m.variant, m.seed}, chosen.runs.size());
-    if (first) {
-      chosen.runs.push_back(std::move(run));
-      continue;
-    }
-    // The same manifest meant another run to another version of the program.
-    SelectedRun& known = chosen.runs[place->second];
-    chosen.notes.push_back(fmt::format(
-        "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared with "
-        "run {:.8} in its place",
-        m.experiment, known.run.id, m.variant, m.seed, run.run.id));
-    known = std::move(run);
-  }
+  chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
+  std::map<ExperimentScale, std::vector<std::string>> left;  // variants
+  for (const SelectedRun& one : std::ranges::subrange(older, selected.end())) {
+    const Membership& m = one.membership;
+    const auto instead = std::ranges::find_if(chosen.runs, [&](const SelectedRun& other) {
+      return place(other.membership) == place(m) && other.membership.manifest == m.manifest;
+    });
+    if (instead == chosen.runs.end()) {
+      left[experiment_scale(m)].push_back(m.variant);
+    } else {
+      chosen.notes.push_back(fmt::format(
+          "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
+          "with run {:.8} in its place",
+          m.experiment, one.run.id, m.variant, m.seed, instead->run.id));
+    }
+  }
   for (const auto& [where, variants] : left) {
     chosen.notes.push_back(fmt::format(
-        "experiment {}: left out: {} of another version of its manifest: {}; --all-versions adds "
-        "them",
+        "experiment {}: left out: {} of another version of its manifest: {}; to show all, run one "
+        "manifest that states the runs of both, which computes nothing new",
         where.first, counted(variants.size(), "run"),
         some_of(std::set<std::string>(variants.begin(), variants.end()))));
   }

@@ -18,33 +18,30 @@ struct RunSelection {
   std::vector<std::string> variants = {};
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::string> states = {};  ///< names of RunState
-  bool all_versions = false;  ///< newest_runs(): those of older versions of a manifest too
-  bool packings = false;      ///< settled packings too, whose variant is "packing"
+  bool packings = false;                 ///< settled packings too, whose variant is "packing"
 };
 
+/// A run in one of its places: a run of two experiments is selected once for each.
 struct SelectedRun {
   RunRecord run;
-  Membership membership;  ///< a run of two experiments is selected once for each
-  /// Declared by the newest version of the experiment's manifest that has runs at this scale.
-  bool of_newest_version = true;
+  /// `newest` is false also where the manifest was later declared with another run in this place.
+  Membership membership;
 };
 
-/// In the order of declaration. A run that several versions of a manifest declared is that of the
-/// newest. Throws NotFound for an experiment, scale, variant or seed that the store does not have,
-/// and names those that it has.
+/// In the order of declaration. Throws NotFound for an experiment, scale, variant or seed that the
+/// store does not have, and names those that it has.
 std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
-  std::vector<SelectedRun> runs;   ///< those of newest versions first
+  std::vector<SelectedRun> runs;   ///< by experiment, scale, variant and seed
   std::vector<std::string> notes;  ///< what was left out
 };
 
-/// Of each experiment at each scale the runs of the newest version of its manifest that has any
-/// there; with `all_versions` those of older versions too. Settled packings are left out.
-/// Each seed of a variant is listed once: a run counted twice would make errors too small. A run is
-/// listed once, or once for each variant of its manifest that is this run. Runs are in the order of
-/// experiment, scale, variant and seed, whatever the order of declaration.
-NewestRuns newest_runs(std::vector<SelectedRun> selected, bool all_versions);
+/// The runs that figures and tables show: those of each manifest as it stands, the version
+/// registered last of those that have runs at the scale. Each seed of a variant is listed once: a
+/// run counted twice would make errors too small. A run that is several variants is listed for
+/// each. Settled packings are left out.
+NewestRuns newest_runs(std::vector<SelectedRun> selected);
 
 /// A run that no experiment declared, as a damaged store may hold it, has an empty membership.
 Membership first_membership(const RunRecord& run);

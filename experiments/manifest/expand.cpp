@@ -183,8 +183,9 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.target_cycles = target_cycles(run.parameters);
   run.prepare = prepare_stage(run.parameters, seed);
   run.last = last_stage(run.parameters, seed, run.prepare);
-  if (run.last.stage == Stage::shear) run.ends_early = scale.until->until;
-  if (run.ends_early) run.until = to_json(*run.ends_early);
+  if (run.last.stage == Stage::shear && scale.until->until) {
+    run.until = to_json(*scale.until->until);
+  }
   run.memberships = {run};
   return run;
 }
@@ -299,16 +300,8 @@ Plan joined(std::span<const Plan> plans) {
         all.runs.push_back(run);
         continue;
       }
-      PlannedRun& known = all.runs[place->second];
-      const bool longer = run.target_cycles > known.target_cycles;
-      if (known.ends_early && (longer || !run.ends_early)) known.ends_early = run.ends_early;
-      known.target_cycles = std::max(known.target_cycles, run.target_cycles);
-      known.checkpoint_every = std::gcd(known.checkpoint_every, run.checkpoint_every);
-      for (const double phase : run.checkpoint_phases) {
-        if (std::ranges::count(known.checkpoint_phases, phase) > 0) continue;
-        known.checkpoint_phases.push_back(phase);
-      }
-      std::ranges::copy(run.memberships, std::back_inserter(known.memberships));
+      std::vector<Membership>& asks = all.runs[place->second].memberships;
+      std::ranges::copy(run.memberships, std::back_inserter(asks));
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));

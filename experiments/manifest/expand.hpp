@@ -31,8 +31,7 @@ struct ExpandOptions {
 struct PlannedRun : Membership {
   std::string name;  ///< of the variant, for people (variants.hpp)
   StageSpec prepare;
-  StageSpec last;                   ///< shear or stiffening of the packing
-  std::optional<Until> ends_early;  ///< `until`, read
+  StageSpec last;  ///< shear or stiffening of the packing
   Parameters parameters;
   std::vector<Membership> memberships;  ///< of each of the joined plans; its own first
 };
@@ -47,8 +46,7 @@ struct Plan {
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// The runs of one or more manifests, each once: with the largest number of cycles, the checkpoints
-/// of all, and an early end only if all have one.
+/// The runs of one or more manifests, each once, with what all of them ask for.
 Plan joined(std::span<const Plan> plans);
 
 /// Whether LAMMPS computes any of its runs.

@@ -13,9 +13,9 @@
 #include "analysis/motion.hpp"
 #include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/registered.hpp"
@@ -71,9 +71,9 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
-  for (const auto& [run, member, newest] : runs) {
+  for (const auto& [run, member] : runs) {
     if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, asks_of(store, run.id));
+    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, run.memberships);
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
@@ -98,7 +98,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
     return chosen;
   }
   std::set<std::string> known;
-  const std::vector<SelectedRun> runs = newest_runs(select_runs(store, selection), false).runs;
+  const std::vector<SelectedRun> runs = newest_runs(select_runs(store, selection)).runs;
   for (const std::string& experiment : experiments) {
     for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
       if (known.insert(run.run.id).second) chosen.push_back(std::move(run));

@@ -81,7 +81,7 @@ std::string checkpoints_html(const ReportData& data, const ReportExperiment& exp
   return counts_html({{"done", "✓", "stored", count[CheckpointState::recorded]},
                       {"stopped", "‖", "pruned", count[CheckpointState::pruned]},
                       {"failed", "✗", "damaged", count[CheckpointState::rejected]},
-                      {"waiting", "·", "to come, at most", experiment.to_come}});
+                      {"waiting", "·", "to come, at most", experiment.checkpoints_left}});
 }
 
 std::string figures_html(const ReportData& data, const ReportExperiment& experiment) {

@@ -14,8 +14,8 @@
 #include "analysis/plot.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/look.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
@@ -138,19 +138,6 @@ void add_lineage(const Store& store, const std::string& id, ReportData& data) {
   }
 }
 
-/// Checkpoints that a run will still record for the experiment if nothing ends it early. Those of
-/// a packing are not counted: how long it takes to settle is not known.
-std::size_t to_come(const Store& store, const RunLineage& lineage, const std::string& experiment) {
-  const RunRecord& run = lineage.run;
-  if (run.state == RunState::completed || run.kind == name_of(Stage::prepare)) return 0;
-  double most = 0;
-  for (const Membership& m : run.memberships) {
-    if (m.experiment != experiment) continue;
-    most = std::max(most, checkpoints_left(run.kind, ask_of(store, run.id, m), run.cycle));
-  }
-  return static_cast<std::size_t>(most) + (lineage.checkpoints.empty() ? 1 : 0);
-}
-
 void add_runs(const Store& store, ReportData& data) {
   for (ReportExperiment& experiment : data.experiments) {
     if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
@@ -159,7 +146,14 @@ void add_runs(const Store& store, ReportData& data) {
     }
     for (const RunRecord& run : experiment.runs) {
       add_lineage(store, run.id, data);
-      experiment.to_come += to_come(store, data.runs.at(run.id), experiment.manifest.experiment);
+      // How long a packing takes to settle is not known.
+      if (run.kind == name_of(Stage::prepare)) continue;
+      std::vector<Membership> asks = run.memberships;
+      std::erase_if(asks, [&](const Membership& ask) {
+        return ask.experiment != experiment.manifest.experiment;
+      });
+      const Outlook look = outlook(run, asks, seen_checkpoints(store, run.id));
+      if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
     }
   }
   for (const ReportFigure& figure : data.figures) {

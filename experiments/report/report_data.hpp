@@ -56,8 +56,8 @@ struct ReportExperiment {
   std::vector<std::size_t> figures = {};  ///< of ReportData::figures
   std::vector<std::string> unmade = {};   ///< figures that cannot be made of its runs
   std::vector<RunRecord> runs = {};
-  std::size_t to_come = 0;  ///< checkpoints of unfinished runs if nothing ends them early
-  RunTable table = {};      ///< a row for each run, without those that settle packings
+  std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
+  RunTable table = {};               ///< a row for each run, without those that settle packings
   /// For the front end: [{id, kind, scale, variant, seed, cycle, phi, percent}] in the order of the
   /// rows; the last three are arrays over the checkpoints, null where a value is unknown.
   nlohmann::json traces = nlohmann::json::array();

@@ -16,10 +16,9 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/asks.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
@@ -197,7 +196,7 @@ class Campaign {
   JobState compute(std::size_t j, bool was_held) {
     const StageJob& job = jobs_[j];
     const RunRecord run = store_.run(job.id);
-    if (stage_done(store_, run)) {
+    if (is_done(store_, run)) {
       if (was_held) {
         finish(job, &CampaignResult::elsewhere, "done by another program", true);
       } else {
@@ -252,7 +251,7 @@ class Campaign {
   }
 
   std::string done_text(const StageJob& job) const {
-    const std::string why = describe_end(end_of(store_, store_.run(job.id)));
+    const std::string why = describe_end(end_of(store_.run(job.id)));
     return why.empty() ? "done" : "done, " + why;
   }
 
@@ -356,12 +355,12 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   return jobs;
 }
 
-std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes) {
+std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
   std::vector<RunRecord> asked;
   for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
   if (prefixes.empty()) {
     asked = store.runs();
-    std::erase_if(asked, [&](const RunRecord& run) { return !has_work_left(store, run); });
+    std::erase_if(asked, [&](const RunRecord& run) { return look_at(store, run).done; });
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;

@@ -35,10 +35,10 @@ struct CampaignResult {
 /// first and otherwise in the plan's order.
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan);
 
-/// Stages of the store that are not completed or lack checkpoints that were asked for, or those
-/// whose run begins with one of `prefixes`, with the stages before them. Throws NotFound for a
-/// prefix that fits no run or several.
-std::vector<StageJob> unfinished(Store& store, const std::vector<std::string>& prefixes);
+/// The stages of the store that are not done by their Outlook, or those whose id begins with one of
+/// `prefixes`, with the stages before them. Throws NotFound for a prefix that fits no stage or
+/// several.
+std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
 /// that another program computes are left to it while there is other work, then waited for, and

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Estimates the cost of stages before they run.
+// Estimates of what stages cost: memory, files, time.
 #pragma once
 
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/filling.hpp"
-#include "experiments/manifest/expand.hpp"
-#include "experiments/runner/asks.hpp"
+#include "experiments/manifest/parameters.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -27,30 +24,13 @@ double run_bytes(const Geometry& shape);
 /// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
 double checkpoint_bytes(const Geometry& shape);
 
-struct StageCost {
-  double particle_steps = 0;
-  double bytes = 0;  ///< of checkpoint files
-};
+/// Simulated time [s] that a packing takes to settle; within a third of the measured 0.9, 1.1, 1.6
+/// and 2.8 s at N = 600, 2000, 5200 and 18200.
+double settling_time_s(const Parameters& parameters);
 
-/// Raises each target to the longest that the run was ever declared with, as `run` does. Returns
-/// how many were raised.
-std::size_t take_longer_targets(const std::vector<RunRecord>& known, Plan& plan);
-
-/// The cycle from which the stage must be computed; nothing when it is done. `known` is its record
-/// in `store`, or null. It is done when it has its length, or ended early by the same `until` of an
-/// experiment that asked for at least this length; and when it has every checkpoint that was asked
-/// for and that the planned run asks for. If checkpoints are missing: the cycle of the last one
-/// before them.
-std::optional<double> cycle_to_continue(const PlannedRun& run, const StageSpec& stage,
-                                        const RunRecord* known, const Store* store);
-
-/// Checkpoints that a shear or stiffen stage still records from `cycle` on, without the one at its
-/// beginning. Phases at which it already recorded the cycle in progress are not counted.
-double checkpoints_left(std::string_view kind, const RunAsk& ask, double cycle);
-
-/// Cost of a planned stage from `cycle` on. Settling is estimated from what it took at N = 600 to
-/// 18200; checkpoints by checkpoint_bytes.
-StageCost stage_cost(const PlannedRun& run, const StageSpec& stage, double cycle);
+/// Evaluations of the forces in one minimization at the default tolerance, on average over the nine
+/// of B.2; within a sixth of the measured 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
+double minimization_evaluations(double grains);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
@@ -62,9 +42,9 @@ class Rates {
  public:
   explicit Rates(const std::vector<RunRecord>& runs);
 
-  /// Mean over the runs of one engine. Without such runs, the rate that was measured on another
-  /// machine for this number of grains.
-  Rate of(EngineKind engine, double grains) const;
+  /// Mean over the runs of the stage's engine. Without such runs, the rate that was measured on
+  /// another machine for this number of grains.
+  Rate of(const RunRecord& stage) const;
 
  private:
   struct Sum {
@@ -74,7 +54,7 @@ class Rates {
 };
 
 /// What is left of stages.
-struct RemainingWork {
+struct Work {
   std::size_t stages = 0;
   double particle_steps = 0;
   double core_seconds = 0;
@@ -83,16 +63,12 @@ struct RemainingWork {
   std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
 
   /// Adds a stage, after its parent.
-  void add(const std::string& id, const std::string& parent, double steps_left, const Rate& rate);
+  void add(const RunRecord& stage, double steps_left, const Rates& rates);
   /// Wall time [s] with so many stages at a time.
   double seconds(std::size_t at_a_time) const;
 };
 
 /// Ids of unfinished runs that cannot start, because the packing that they start from failed.
 std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs);
-
-/// What is left of recorded stages, except those that failed or cannot start, at the rates of the
-/// store's runs.
-RemainingWork remaining_work(const Store& store, const std::vector<RunRecord>& stages);
 
 }  // namespace shearcell

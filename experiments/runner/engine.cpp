@@ -6,6 +6,7 @@
 
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/runner/outlook.hpp"
 
 namespace shearcell {
 namespace {
@@ -43,7 +44,7 @@ class LammpsEngine final : public Engine {
   LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(plan.checkpoint_every * cycle_steps(plan.protocol->drive())),
+        stride_(checkpoint_cadence(plan.run.memberships) * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),

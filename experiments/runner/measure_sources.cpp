@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/drive.hpp"
-#include "experiments/runner/asks.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {

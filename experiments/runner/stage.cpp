@@ -11,8 +11,8 @@
 #include "core/filling.hpp"
 #include "core/machine.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/stop.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
@@ -43,10 +43,9 @@ void require_memory(const StageRecord& stage) {
       stage.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t cycles,
-                                        std::uint64_t checkpoint_every,
-                                        std::span<const RunAsk> asks) {
+std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, const RunRecord& run) {
   const Parameters& p = stage.parameters;
+  const std::uint64_t cycles = run.target_cycles;
   if (stage.stage == Stage::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
@@ -58,9 +57,8 @@ std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, std::uint64_t 
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  std::vector<CheckpointCadence> asked;
-  for (const RunAsk& ask : asks) asked.push_back(cadence_of(ask, drive(p)));
-  return std::make_unique<CyclicShear>(drive(p), cycles, checkpoint_every, std::move(asked));
+  return std::make_unique<CyclicShear>(drive(p), cycles, cycles,
+                                       cadences_of(run.memberships, drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
@@ -121,9 +119,8 @@ StagePlan plan_stage(const Store& store, RunRecord run) {
   limit = overlap_limit(store, run, limit);
   require_memory(stage);
   const Scene scene = make_scene(stage);
-  const std::uint64_t every = checkpoint_cadence(run);
-  auto protocol = make_protocol(stage, run.target_cycles, every, asks_of(store, run.id));
-  return {std::move(run), std::move(stage), scene, std::move(protocol), every};
+  auto protocol = make_protocol(stage, run);
+  return {std::move(run), std::move(stage), scene, std::move(protocol)};
 }
 
 Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,

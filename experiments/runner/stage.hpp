@@ -28,7 +28,6 @@ struct StagePlan {
   StageRecord stage;
   Scene scene;
   std::unique_ptr<Protocol> protocol;
-  std::uint64_t checkpoint_every = 1;  ///< whole cycles
 };
 
 /// The watchdog's overlap limit is the largest that a manifest of the run states. Throws

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/stage_runner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "experiments/runner/engine.hpp"
 #include "experiments/runner/host.hpp"
-#include "experiments/runner/run_end.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
@@ -41,8 +42,7 @@ class StageAttempt {
     start(beginning, facts);
     if (options_.begun) options_.begun();
     return guarded([&] {
-      if (may_end_early(store_, id()))
-        end_.emplace(store_, plan_.run, fresh ? 0 : beginning.from->step);
+      seen_ = seen_checkpoints(store_, id());
       if (ends_early()) return StageOutcome::completed;
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel, lammps);
       first_step_ = engine->step();
@@ -57,7 +57,8 @@ class StageAttempt {
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = continue_stage(store_, plan_, nullptr, steps.front());
     const bool fresh = !beginning.from;
-    nlohmann::json ended = recorded_end(store_, id());
+    const nlohmann::json& ends = plan_.run.ends;
+    nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
     start(beginning, host_facts(), true);
     return guarded([&] {
@@ -153,12 +154,16 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the run when what is recorded is all that the experiments ask for.
+  // Completes the stage when what is recorded is all that the experiments ask for, those included
+  // that declared it meanwhile.
   bool ends_early() {
-    const auto why = end_ ? end_->ended() : std::nullopt;
+    const RunRecord now = store_.run(id());
+    const auto has_until = [](const Membership& ask) { return !ask.until.is_null(); };
+    if (seen_.empty() || std::ranges::none_of(now.memberships, has_until)) return false;
+    const nlohmann::json ended = decide(store_, now, now.memberships, seen_, {}).ended;
     recorded_.restart();  // measuring is not computing
-    if (why) complete(*why);
-    return why.has_value();
+    if (!ended.is_null()) complete(ended);
+    return !ended.is_null();
   }
 
   void complete(const nlohmann::json& ended) {
@@ -173,7 +178,7 @@ class StageAttempt {
     const CheckpointRecord recorded = store_.record_checkpoint(
         id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
     computed_ = true;
-    if (end_) end_->add(recorded);
+    seen_.push_back({recorded});
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
   }
@@ -201,7 +206,7 @@ class StageAttempt {
   Store& store_;
   const StageOptions& options_;
   StagePlan plan_;
-  std::optional<RunEnd> end_;  ///< where an experiment asks for `until`
+  std::vector<SeenCheckpoint> seen_;
   bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
   Stopwatch started_, recorded_, reported_;
@@ -226,9 +231,10 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
       if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
       computed = attempt.computed();
     }
-    const std::vector<std::uint64_t> missing = missing_checkpoints(store, run);
-    // Read again: its record must have every experiment whose checkpoints are missing.
-    if (!missing.empty()) return StageAttempt(store, store.run(id), options).fill(missing);
+    // A denser cadence may have been asked for.
+    const std::vector<std::uint64_t> missing =
+        outlook(run, run.memberships, seen_checkpoints(store, id)).missing;
+    if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
     return StageOutcome::held;
@@ -239,9 +245,9 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
   }
 }
 
-bool stage_done(const Store& store, const RunRecord& run) {
-  return run.state == RunState::completed && newest_is_sound(store, run) &&
-         missing_checkpoints(store, run).empty();
+bool is_done(const Store& store, const RunRecord& stage) {
+  return outlook(stage, stage.memberships, seen_checkpoints(store, stage.id)).done &&
+         newest_is_sound(store, stage);
 }
 
 }  // namespace shearcell

@@ -40,8 +40,7 @@ struct StageOptions {
 /// its cell is filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Whether the stage is completed, its last state can be read, and it has every checkpoint that an
-/// experiment asks for.
-bool stage_done(const Store& store, const RunRecord& run);
+/// Whether the stage is done and its last state can be read.
+bool is_done(const Store& store, const RunRecord& stage);
 
 }  // namespace shearcell

@@ -10,7 +10,7 @@
 
 #include "experiments/cluster/submission.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/run_end.hpp"
+#include "experiments/runner/look.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/variable.hpp"
@@ -26,7 +26,7 @@ class Submitted : public StoreTest {
     const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml");
     const Plan plan = expand(manifest, {.cycles = cycles, .seeds = 2});
     declare(store_, manifest, plan);
-    return share_out(work_left({plan}, &store_), 2);
+    return share_out(shares_of({plan}, &store_), 2);
   }
 
   Submission submit(const std::vector<Share>& parts) {
@@ -91,7 +91,7 @@ TEST_F(Submitted, HaveWorkLeftWhileACompletedRunLacksCheckpoints) {
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
   declare(store_, manifest, plan);
-  const Submission made = submit(share_out(work_left({plan}, &store_), 1));
+  const Submission made = submit(share_out(shares_of({plan}, &store_), 1));
   EXPECT_EQ(unfinished_submissions(store_).size(), 1U) << "its tasks have only begun";
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 1U);
@@ -105,19 +105,19 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
   declare(store_, manifest, plan);
-  const Submission made = submit(share_out(work_left({plan}, &store_), 1));
+  const Submission made = submit(share_out(shares_of({plan}, &store_), 1));
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 2U);
   merge_tasks(store_, made);
   const RunRecord run = runs_of_kind(store_, "shear").front();
   EXPECT_EQ(run.state, RunState::completed);
   EXPECT_EQ(run.cycle, 1);
-  EXPECT_EQ(describe_end(end_of(store_, run)), "phi >= 0.1 at cycle 0 and 1 more cycle");
-  EXPECT_TRUE(work_left({plan}, &store_).empty());
+  EXPECT_EQ(describe_end(end_of(run)), "phi >= 0.1 at cycle 0 and 1 more cycle");
+  EXPECT_TRUE(shares_of({plan}, &store_).empty());
   const Plan edited = expand(parse_manifest(text + "# edited\n", "tiny.yaml"));
-  EXPECT_TRUE(work_left({edited}, &store_).empty()) << "its `until` is the same";
+  EXPECT_TRUE(shares_of({edited}, &store_).empty()) << "its `until` is the same";
   const Plan longer = expand(manifest, {.cycles = 9});
-  EXPECT_EQ(work_left({longer}, &store_).size(), 1U) << "nobody asked for this length yet";
+  EXPECT_EQ(shares_of({longer}, &store_).size(), 1U) << "nobody asked for this length yet";
 }
 
 TEST_F(Submitted, WorkIsThatOfTheLongestTarget) {
@@ -265,7 +265,7 @@ ExpandOptions of(std::uint64_t seeds, std::uint64_t cycles = 2) {
 }
 
 TEST(WorkLeft, BundlesRunsByTheirPacking) {
-  const auto bundles = work_left(plans(tiny_manifest("", kBothFluids), of(3)), nullptr);
+  const auto bundles = shares_of(plans(tiny_manifest("", kBothFluids), of(3)), nullptr);
   ASSERT_EQ(bundles.size(), 3U);
   for (const Share& bundle : bundles) {
     EXPECT_EQ(bundle.runs.size(), 2U) << "both fluids shear one packing";
@@ -277,9 +277,9 @@ TEST(WorkLeft, BundlesRunsByTheirPacking) {
 TEST(WorkLeft, HasARunOfTwoManifestsOnceAtItsLongerLength) {
   const std::string both = tiny_manifest("", kBothFluids);
   std::vector<Plan> two = plans(both, of(2));
-  const auto shorter = work_left(two, nullptr);
+  const auto shorter = shares_of(two, nullptr);
   two.push_back(plans(tiny_manifest(), of(2, 9)).front());  // the still fluid, longer
-  const auto bundles = work_left(two, nullptr);
+  const auto bundles = shares_of(two, nullptr);
   ASSERT_EQ(bundles.size(), 2U);
   EXPECT_EQ(bundles[0].runs, shorter[0].runs);
   EXPECT_NEAR(bundles[0].particle_steps - shorter[0].particle_steps, 7.0 * kStepsPerCycle * kGrains,
@@ -293,11 +293,11 @@ TEST(WorkLeft, HasTheCheckpointsOfEveryManifestThatSharesARun) {
   const std::string sparse = renamed(dense, "sparse") + "checkpoints: {every_cycles: 2}\n";
   compute(store, sparse);
   std::vector<Plan> both = plans(sparse);
-  EXPECT_TRUE(work_left(both, &store).empty());
+  EXPECT_TRUE(shares_of(both, &store).empty());
   both.push_back(plans(dense).front());
-  EXPECT_EQ(work_left(both, &store).size(), 1U) << "cycles 1 and 3 are missing";
+  EXPECT_EQ(shares_of(both, &store).size(), 1U) << "cycles 1 and 3 are missing";
   compute(store, dense);
-  EXPECT_TRUE(work_left(both, &store).empty());
+  EXPECT_TRUE(shares_of(both, &store).empty());
 }
 
 TEST(WorkLeft, LeavesOutFinishedWork) {
@@ -305,12 +305,12 @@ TEST(WorkLeft, LeavesOutFinishedWork) {
   Store store(folder.path() / "store", Access::create);
   const std::string text = tiny_manifest("", kBothFluids);
   compute(store, text, of(1));
-  EXPECT_TRUE(work_left(plans(text, of(1)), &store).empty());
-  const auto more = work_left(plans(text, of(2)), &store);
+  EXPECT_TRUE(shares_of(plans(text, of(1)), &store).empty());
+  const auto more = shares_of(plans(text, of(2)), &store);
   ASSERT_EQ(more.size(), 1U);
   EXPECT_EQ(more[0].runs.size(), 2U);
   // A longer run continues: its packing and its first cycles cost nothing.
-  const auto longer = work_left(plans(text, of(1, 5)), &store);
+  const auto longer = shares_of(plans(text, of(1, 5)), &store);
   ASSERT_EQ(longer.size(), 1U);
   EXPECT_NEAR(longer[0].particle_steps, 2 * 3.0 * kStepsPerCycle * kGrains, 1);
 }

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/registered.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
@@ -31,7 +31,7 @@ TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
     EXPECT_TRUE(seen.insert(job.id).second) << job.name;
   }
   EXPECT_EQ(store_.runs().size(), 6U);
-  EXPECT_EQ(unfinished(store_, {}).size(), 6U);
+  EXPECT_EQ(stages_to_resume(store_, {}).size(), 6U);
 
   const Head head = store_.head();
   EXPECT_EQ(declare(store_, manifest, plan).size(), 6U);
@@ -49,7 +49,7 @@ TEST_F(CampaignTest, NamesPackingsByTheirDifferences) {
   const std::set<std::string> expected = {"tiny packing N=200 seed=1", "tiny packing N=300 seed=1",
                                           "tiny N=200 seed=1", "tiny N=300 seed=1"};
   EXPECT_EQ(names(jobs), expected);
-  EXPECT_EQ(names(unfinished(store_, {})), expected);
+  EXPECT_EQ(names(stages_to_resume(store_, {})), expected);
 }
 
 // Without gravity, pressure_at has no effect and is not named.
@@ -99,7 +99,7 @@ TEST_F(CampaignTest, ComputesEachPackingOnceForBothFluids) {
   EXPECT_EQ(again.already, 3U);
   EXPECT_EQ(again.completed, 0U);
   EXPECT_EQ(store_.head().hash, head.hash) << "computing nothing recorded something";
-  EXPECT_TRUE(unfinished(store_, {}).empty());
+  EXPECT_TRUE(stages_to_resume(store_, {}).empty());
 }
 
 TEST_F(CampaignTest, GivesTheSameStatesWithAnyNumberOfWorkers) {
@@ -138,7 +138,7 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   const std::vector<StageJob> all = declared(store_, tiny_manifest("", "seeds: 2\n"));
   ASSERT_EQ(all.size(), 4U);
   const StageJob& wanted = all[3];
-  const std::vector<StageJob> jobs = unfinished(store_, {wanted.id.substr(0, 12)});
+  const std::vector<StageJob> jobs = stages_to_resume(store_, {wanted.id.substr(0, 12)});
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].id, wanted.parent);
   EXPECT_EQ(jobs[1].id, wanted.id);
@@ -147,8 +147,8 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   EXPECT_EQ(store_.run(wanted.id).state, RunState::completed);
   EXPECT_EQ(store_.run(all[1].id).state, RunState::declared);
 
-  EXPECT_THROW(unfinished(store_, {"no digest"}), NotFound);
-  EXPECT_THROW(unfinished(store_, {""}), NotFound) << "an empty prefix fits every run";
+  EXPECT_THROW(stages_to_resume(store_, {"no digest"}), NotFound);
+  EXPECT_THROW(stages_to_resume(store_, {""}), NotFound) << "an empty prefix fits every run";
 }
 
 TEST_F(CampaignTest, ARecordThatCannotBeReadStopsOnlyItsRun) {
@@ -206,7 +206,7 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   Store both(folder_.path() / "both", Access::create);
   declared(both, text + "checkpoints: {every_cycles: 2}\n");
   compute(both, "# three\n" + text + "checkpoints: {every_cycles: 3}\n");
-  EXPECT_TRUE(missing_checkpoints(both, both.run(run)).empty());
+  EXPECT_TRUE(look_at(both, both.run(run)).missing.empty());
 }
 
 // An experiment whose last cycle is not a multiple of its cadence has a checkpoint there, whichever

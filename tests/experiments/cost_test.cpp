@@ -12,6 +12,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "protocols/settle.hpp"
 #include "provenance/words.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -22,6 +23,24 @@ namespace {
 
 PlannedRun only_run(const std::string& text) {
   return expand(parse_manifest(text, "t")).runs.at(0);
+}
+
+/// What is left of a stage of the run that nobody computed, or up to this cycle.
+Outlook left_of(const PlannedRun& run, const StageSpec& planned, double cycle = -1) {
+  RunRecord stage{.id = planned.key,
+                  .parent = planned.parent,
+                  .kind = std::string(name_of(planned.stage)),
+                  .resolved = planned.resolved,
+                  .grains = run.parameters.grains};
+  std::vector<SeenCheckpoint> seen;
+  if (cycle >= 0) {
+    stage.cycle = cycle;
+    stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
+    for (double c = 0; c <= cycle; ++c) {
+      seen.emplace_back().record.step = static_cast<std::uint64_t>(c * kStepsPerCycle);
+    }
+  }
+  return outlook(stage, run.memberships, seen);
 }
 
 double bytes_of(const Store& store, const std::string& run) {
@@ -35,33 +54,33 @@ double bytes_of(const Store& store, const std::string& run) {
 
 TEST(Cost, CountsParticleSteps) {
   const PlannedRun run = only_run(tiny_manifest());
-  EXPECT_EQ(stage_cost(run, run.last, 0).particle_steps, 2.0 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(stage_cost(run, run.last, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(stage_cost(run, run.last, 7).particle_steps, 0);
-  EXPECT_EQ(stage_cost(run, run.last, 7).bytes, 0);
-  EXPECT_GT(stage_cost(run, run.prepare, 0).particle_steps, 0);
+  EXPECT_EQ(left_of(run, run.last).particle_steps, 2.0 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(left_of(run, run.last, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(left_of(run, run.last, 7).particle_steps, 0);
+  EXPECT_EQ(left_of(run, run.last, 7).bytes, 0);
+  EXPECT_GT(left_of(run, run.prepare).particle_steps, 0);
 }
 
 TEST(Cost, CountsCheckpoints) {
   const PlannedRun run = only_run(tiny_manifest());
-  const double both = stage_cost(run, run.last, 0).bytes;  // cycles 0, 1, 2
-  const double file = both - stage_cost(run, run.last, 1).bytes * 2;
+  const double both = left_of(run, run.last).bytes;  // cycles 0, 1, 2
+  const double file = both - left_of(run, run.last, 1).bytes * 2;
   EXPECT_GT(file, 0);
-  EXPECT_NEAR(stage_cost(run, run.last, 1).bytes, file, 1e-6 * file);
+  EXPECT_NEAR(left_of(run, run.last, 1).bytes, file, 1e-6 * file);
   const PlannedRun loops = only_run(tiny_manifest("", "checkpoints: {phases: [0.25, 0.5]}\n"));
   const PlannedRun rare = only_run(tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
-  EXPECT_NEAR(stage_cost(rare, rare.last, 0).bytes, 2 * file, 1e-6 * file);
-  EXPECT_NEAR(stage_cost(loops, loops.last, 0).bytes, 7 * file, 1e-6 * file);
-  EXPECT_NEAR(stage_cost(loops, loops.last, 1).bytes, 3 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(rare, rare.last).bytes, 2 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(loops, loops.last).bytes, 7 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(loops, loops.last, 1).bytes, 3 * file, 1e-6 * file);
 }
 
 TEST(Cost, OfStiffeningCountsTheRemainingSpringConstants) {
   const PlannedRun run = only_run(tiny_manifest("  protocol: stiffen\n"));
-  const StageCost all = stage_cost(run, run.last, 0);
+  const Outlook all = left_of(run, run.last);
   EXPECT_GT(all.particle_steps, 0);
-  EXPECT_NEAR(stage_cost(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
-  EXPECT_NEAR(stage_cost(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
-  EXPECT_EQ(stage_cost(run, run.last, 9).particle_steps, 0);
+  EXPECT_NEAR(left_of(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
+  EXPECT_NEAR(left_of(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
+  EXPECT_EQ(left_of(run, run.last, 9).particle_steps, 0);
 }
 
 /// Texts of values of a number: both ends of its range, and many inside.
@@ -102,7 +121,7 @@ void expect_bounded(const std::string& text) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
       }
       for (const StageSpec* stage : {&run.prepare, &run.last}) {
-        const StageCost cost = stage_cost(run, *stage, 0);
+        const Outlook cost = left_of(run, *stage);
         EXPECT_TRUE(cost.particle_steps >= 0 && cost.particle_steps < 1e25) << cost.particle_steps;
         EXPECT_TRUE(cost.bytes >= 0 && cost.bytes < 1e20) << cost.bytes;
         const std::string time = format_duration(cost.particle_steps / 1e3);
@@ -153,7 +172,7 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
     compute(store_, text);
     const PlannedRun run = only_run(text);
     for (const StageSpec* stage : {&run.prepare, &run.last}) {
-      const StageCost expected = stage_cost(run, *stage, 0);
+      const Outlook expected = left_of(run, *stage);
       const double bytes = bytes_of(store_, stage->key);
       const double steps = store_.run(stage->key).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
@@ -171,12 +190,12 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
   compute(store_, text);
   const PlannedRun run = only_run(text);
   const double steps = store_.run(run.prepare.key).particle_steps;
-  const double expected = stage_cost(run, run.prepare, 0).particle_steps;
+  const double expected = left_of(run, run.prepare).particle_steps;
   std::printf("%.4g particle-steps, expected %.4g\n", steps, expected);
   EXPECT_NEAR(expected / steps, 1, 0.3);
   const PlannedRun undamped = only_run(tiny_manifest("  drag_kg_per_s: 0\n"));
   const Parameters& parameters = undamped.parameters;
-  EXPECT_EQ(stage_cost(undamped, undamped.prepare, 0).particle_steps,
+  EXPECT_EQ(left_of(undamped, undamped.prepare).particle_steps,
             static_cast<double>(parameters.grains) *
                 std::ceil(parameters.settle_time_limit_s / parameters.settle_time_step_s));
 }
@@ -187,28 +206,35 @@ TEST(Cost, UsesTheRateMeasuredInTheStore) {
   run.wall_seconds = 10;
   RunRecord other = run;
   other.particle_steps = 1e8;
-  const Rate rate = Rates({run, other}).of(EngineKind::shearcell, 600);
+  const Rate rate = Rates({run, other}).of(run);
   EXPECT_TRUE(rate.measured);
   EXPECT_EQ(rate.particle_steps_per_second, 2e7);
+}
+
+RunRecord stage_of(EngineKind engine, double grains) {
+  RunRecord stage;
+  stage.resolved = {{"parameters", {{"engine", name_of(engine)}}}};
+  stage.grains = static_cast<std::uint64_t>(grains);
+  return stage;
 }
 
 TEST(Cost, AssumesRatesThatFallWithTheNumberOfGrains) {
   for (const EngineKind engine : {EngineKind::shearcell, EngineKind::lammps}) {
     double before = 1e9;
     for (const double grains : {5200.0, 2e4, 1e5}) {
-      const Rate rate = Rates({}).of(engine, grains);
+      const Rate rate = Rates({}).of(stage_of(engine, grains));
       EXPECT_FALSE(rate.measured);
       EXPECT_LT(rate.particle_steps_per_second, before);
       before = rate.particle_steps_per_second;
     }
     const auto at = [engine](double n) {
-      return Rates({}).of(engine, n).particle_steps_per_second;
+      return Rates({}).of(stage_of(engine, n)).particle_steps_per_second;
     };
     EXPECT_EQ(at(100), at(5200));
     EXPECT_EQ(at(1e7), at(1e8));
   }
   const auto lammps = [](double n) {
-    return Rates({}).of(EngineKind::lammps, n).particle_steps_per_second;
+    return Rates({}).of(stage_of(EngineKind::lammps, n)).particle_steps_per_second;
   };
   EXPECT_EQ(lammps(5200), 6.6e6);
   EXPECT_NEAR(lammps(1e5), 3.0e6, 1);

@@ -77,14 +77,10 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   EXPECT_TRUE(has(newest.notes[0], "2 runs of another version"));
   EXPECT_TRUE(has(newest.notes[0], "fluid=cell, fluid=still"));
 
-  const CollectedRuns all = collect_runs(store_, kS2, {.all_versions = true});
-  EXPECT_EQ(distinct_runs(all).size(), 6U) << "older runs are variants of their own";
-
   compute(store_, text);
   EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {})).size(), 2U) << "run again, the newest";
   compute(store_, "# a comment\n" + text);
-  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.all_versions = true})).size(), 6U)
-      << "no run comes twice";
+  EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {})).size(), 2U) << "no run comes twice";
 }
 
 // Bootstraps draw from the runs in their order, so it is part of what a figure's bytes depend on.
@@ -93,7 +89,7 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1, .variants = {"fluid=still"}});
   compute(store_, text, {.cycles = 1});
   std::string order;
-  for (const auto& [run, membership, newest] : newest_runs(select_runs(store_, {}), false).runs)
+  for (const auto& [run, membership] : newest_runs(select_runs(store_, {})).runs)
     order += membership.variant + std::to_string(membership.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
@@ -104,7 +100,7 @@ TEST_F(DrawFigure, EditingAManifestForOneScaleKeepsTheRunsOfOtherScales) {
   compute(store_, tiny_manifest("  pressure_Pa: 700\n", scales), {.scale = "short"});
   EXPECT_EQ(collect_runs(store_, kS2, {}).scale, "short");
   EXPECT_EQ(distinct_runs(collect_runs(store_, kS2, {.scales = {"long"}})).size(), 2U);
-  EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 3U) << "in a table";
+  EXPECT_EQ(newest_runs(select_runs(store_, {})).runs.size(), 3U) << "in a table";
 }
 
 TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
@@ -128,7 +124,7 @@ TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   ASSERT_EQ(collected.notes.size(), 2U);
   EXPECT_TRUE(has(collected.notes[0], "is left out"));
   EXPECT_TRUE(has(collected.notes[1], "left out: 1 run without a checkpoint yet"));
-  EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 2U) << "in a table";
+  EXPECT_EQ(newest_runs(select_runs(store_, {})).runs.size(), 2U) << "in a table";
 }
 
 TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
@@ -199,8 +195,7 @@ TEST_F(DrawFigure, AGroupedFigureDoesNotPoolVersions) {
   }
   const WantedFigure onset{*find_figure("S5a"), "tiny"};
   EXPECT_NO_THROW(draw("newest", onset));
-  expect_refused<UsageError>([&] { draw("every", onset, RunSelection{.all_versions = true}); },
-                             {"leave out --all-versions"});
+  EXPECT_EQ(distinct_runs(collect_runs(store_, onset, {})).size(), 2U);
 }
 
 TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {

@@ -97,7 +97,7 @@ TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   std::printf("stopped at cycle %g\n", stopped_at);
   ASSERT_GT(stopped_at, 0);
   ASSERT_LT(stopped_at, 1);
-  const std::vector<StageJob> left = unfinished(store_, {});
+  const std::vector<StageJob> left = stages_to_resume(store_, {});
   ASSERT_EQ(left.size(), 2U) << "the packing before it, and the run";
   EXPECT_EQ(resume(store_).completed, 1U);
   EXPECT_EQ(cycles_of(store_, jobs[1].id), (std::vector<double>{0, stopped_at, 2, 4, 5}));

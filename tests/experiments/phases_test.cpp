@@ -10,8 +10,8 @@
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/runner/asks.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/replay.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
@@ -50,9 +50,8 @@ class Phases : public DrawingTest {
 
   // Cycle from which `plan` and `submit` say that the run of the store is left to compute.
   std::optional<double> left_of(const std::string& text) const {
-    const PlannedRun run = expand(parse_manifest(text, "t")).runs.at(0);
-    const RunRecord known = store_.run(run.last.key);
-    return cycle_to_continue(run, run.last, &known, &store_);
+    const Outlook look = look_at(expand(parse_manifest(text, "t")), &store_).at(1).look;
+    return look.done ? std::nullopt : std::optional(look.from);
   }
 
   Store plain_{folder_.path() / "plain", Access::create};
@@ -74,7 +73,7 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
   EXPECT_EQ(compute(store_, manifest(kPhases)).completed, 0U);
   EXPECT_EQ(store_.head().hash, head.hash) << "nothing was left to do";
   store_.rebuild();
-  EXPECT_EQ(missing_checkpoints(store_, sheared(store_)), std::vector<std::uint64_t>());
+  EXPECT_EQ(look_at(store_, sheared(store_)).missing, std::vector<std::uint64_t>());
   EXPECT_TRUE(store_.verify().ok());
 
   // Whole cycles only, as a figure of the supplement takes them.
@@ -84,7 +83,7 @@ TEST_F(Phases, AreCheckpointsOfTheSameRun) {
 
   store_.prune(store_.prunable({.runs = {}, .keep_every = 1}));
   EXPECT_LT(store_.checkpoints(sheared(store_).id).size(), 7U);
-  EXPECT_TRUE(missing_checkpoints(store_, sheared(store_)).empty()) << "pruned ones were made";
+  EXPECT_TRUE(look_at(store_, sheared(store_)).missing.empty()) << "pruned ones were made";
 }
 
 // An event of a manifest without phases has the same bytes as before there were any.
@@ -98,9 +97,12 @@ TEST_F(Phases, AreRecordedWithTheMembershipThatAsksForThem) {
       EXPECT_EQ(place.contains("checkpoint_phases"), store == &store_);
     }
   }
-  EXPECT_TRUE(asks_of(plain_, sheared(plain_).id).at(0).phases.empty());
-  EXPECT_EQ(asks_of(store_, sheared(store_).id).at(0).phases, (std::vector<double>{0.25, 0.7}));
-  EXPECT_TRUE(asks_of(store_, sheared(store_).parent).at(0).phases.empty());
+  const auto phases = [](const RunRecord& stage) {
+    return stage.memberships.at(0).checkpoint_phases;
+  };
+  EXPECT_TRUE(phases(sheared(plain_)).empty());
+  EXPECT_EQ(phases(sheared(store_)), (std::vector<double>{0.25, 0.7}));
+  EXPECT_TRUE(phases(store_.run(sheared(store_).parent)).empty());
 }
 
 TEST_F(Phases, OfACompletedRunAreComputedByReplay) {
@@ -112,10 +114,10 @@ TEST_F(Phases, OfACompletedRunAreComputedByReplay) {
   declared(store_, manifest(kPhases));
   EXPECT_EQ(left_of(manifest(kPhases)), 0);
   EXPECT_EQ(left_of(manifest("")), 0) << "`run` makes what any experiment asked for";
-  EXPECT_EQ(unfinished(store_, {}).size(), 2U) << "the packing before it, and the run";
+  EXPECT_EQ(stages_to_resume(store_, {}).size(), 2U) << "the packing before it, and the run";
   EXPECT_EQ(compute(store_, manifest(kPhases)).completed, 1U);
   EXPECT_FALSE(left_of(manifest(kPhases)));
-  EXPECT_TRUE(unfinished(store_, {}).empty());
+  EXPECT_TRUE(stages_to_resume(store_, {}).empty());
   EXPECT_EQ(files(store_, false), files(plain_, false));
   EXPECT_EQ(sheared(store_).state_hash, before.state_hash);
   EXPECT_EQ(sheared(store_).state, RunState::completed);
@@ -183,7 +185,8 @@ TEST_F(Phases, OfAForgedRecordAreRejected) {
   forged.membership.experiment = "forged";
   forged.membership.checkpoint_phases.assign(1001, 0.5);
   plain_.declare_run(forged);
-  EXPECT_THROW(missing_checkpoints(plain_, run), StoreDamaged);
+  EXPECT_THROW(is_done(plain_, plain_.run(run.id)), StoreDamaged);
+  EXPECT_THROW(plan_stage(plain_, plain_.run(run.id)), StoreDamaged);
 }
 
 // The area of the loop of the interior stress is not the work of the walls, as the layers at the

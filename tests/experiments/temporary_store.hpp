@@ -70,7 +70,7 @@ inline CampaignResult compute(Store& store, const std::string& text,
 }
 
 inline CampaignResult resume(Store& store, std::size_t workers = 2) {
-  const std::vector<StageJob> jobs = unfinished(store, {});
+  const std::vector<StageJob> jobs = stages_to_resume(store, {});
   Progress progress(jobs.size(), true);
   return run_campaign(store, jobs, workers, progress);
 }

@@ -7,8 +7,8 @@
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/cost.hpp"
+#include "experiments/runner/look.hpp"
 #include "experiments/runner/replay.hpp"
-#include "experiments/runner/run_end.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -17,28 +17,39 @@
 namespace shearcell::test {
 namespace {
 
-RunAsk ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt) {
-  return {cycles, until};
+Membership ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt,
+               std::uint64_t every = 1) {
+  Membership made{.checkpoint_every = every, .target_cycles = cycles};
+  if (until) made.until = to_json(*until);
+  return made;
 }
 
 // Checkpoints at cycles 0, 2, 4, ... with these percentages.
-std::vector<MeasuredCycle> measured(std::initializer_list<double> percentages) {
-  std::vector<MeasuredCycle> list;
+std::vector<SeenCheckpoint> measured(std::initializer_list<double> percentages) {
+  std::vector<SeenCheckpoint> list;
   for (const double percent : percentages) {
-    MeasuredCycle& next = list.emplace_back();
-    next.cycle = 2 * static_cast<double>(list.size() - 1);
-    next.measures.crystalline_percent = percent;
+    SeenCheckpoint& next = list.emplace_back();
+    next.record.cycle = 2 * static_cast<double>(list.size() - 1);
+    next.measures.emplace().crystalline_percent = percent;
   }
   return list;
 }
 
-TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
+// Why a running stage with these checkpoints ends at the last one.
+nlohmann::json ended(std::span<const Membership> asks, std::span<const SeenCheckpoint> seen) {
+  RunRecord stage;
+  stage.state = RunState::running;
+  stage.cycle = seen.back().record.cycle;
+  return outlook(stage, asks, seen).ended;
+}
+
+TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
   const Until ten{StopMeasure::crystalline_percent, 10, 0};
   const Until later{StopMeasure::crystalline_percent, 10, 3};
   const Until twenty{StopMeasure::crystalline_percent, 20, 0};
   struct Case {
-    std::vector<RunAsk> asks;
-    std::vector<MeasuredCycle> measured;
+    std::vector<Membership> asks;
+    std::vector<SeenCheckpoint> measured;
     double reached;  // cycle; -1: the run continues
   };
   const std::vector<Case> cases = {
@@ -47,10 +58,10 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
       {{ask(50, ten)}, measured({1, 12, 3}), 2},        // reached once is reached
       {{ask(50, later)}, measured({1, 10, 11}), -1},    // cycle 4 of 5
       {{ask(50, later)}, measured({1, 10, 11, 9}), 2},  // the first checkpoint at or after 5
-      {{{50, ten, 4}}, measured({1, 10}), -1},          // it has no checkpoint at cycle 2
-      {{{50, ten, 4}}, measured({1, 10, 10}), 4},
-      {{{50, later, 4}}, measured({1, 1, 10, 10}), -1},  // cycle 6 of 7, its next is 8
-      {{{50, later, 4}}, measured({1, 1, 10, 10, 10}), 4},
+      {{ask(50, ten, 4)}, measured({1, 10}), -1},       // it has no checkpoint at cycle 2
+      {{ask(50, ten, 4)}, measured({1, 10, 10}), 4},
+      {{ask(50, later, 4)}, measured({1, 1, 10, 10}), -1},  // cycle 6 of 7, its next is 8
+      {{ask(50, later, 4)}, measured({1, 1, 10, 10, 10}), 4},
       {{ask(50, ten), ask(50, twenty)}, measured({1, 10}), -1},
       {{ask(50, ten), ask(50, twenty)}, measured({1, 10, 20}), 4},
       {{ask(50, ten), ask(4)}, measured({1, 10}), -1},  // another wants four cycles
@@ -60,18 +71,17 @@ TEST(RunEnd, IsTheLongestThatAnyExperimentAsksFor) {
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(&c - cases.data());
-    const double now = 2 * static_cast<double>(c.measured.size()) - 2;
-    const auto why = ended_early(c.asks, c.measured, now);
-    ASSERT_EQ(why.has_value(), c.reached >= 0);
-    EXPECT_EQ(why ? why->at("reached_at_cycle").get<double>() : -1, c.reached);
+    const nlohmann::json why = ended(c.asks, c.measured);
+    ASSERT_EQ(!why.is_null(), c.reached >= 0);
+    EXPECT_EQ(why.is_null() ? -1 : why.at("reached_at_cycle").get<double>(), c.reached);
   }
 }
 
-TEST(RunEnd, IsDescribed) {
-  const auto why = ended_early(std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})},
-                               measured({1, 10, 20}), 4);
-  ASSERT_TRUE(why);
-  EXPECT_EQ(describe_end(*why), "crystalline_percent >= 10 at cycle 2 and 2 more cycles");
+TEST(OutlookOfUntil, IsDescribed) {
+  const nlohmann::json why = ended(
+      std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})}, measured({1, 10, 20}));
+  ASSERT_FALSE(why.is_null());
+  EXPECT_EQ(describe_end(why), "crystalline_percent >= 10 at cycle 2 and 2 more cycles");
   EXPECT_EQ(describe_end(nullptr), "");
 }
 
@@ -122,6 +132,10 @@ class UntilTest : public StoreTest {
     EXPECT_TRUE(store.verify().ok());
   }
 
+  std::optional<double> expected(std::uint64_t extra_cycles) const {
+    return expected_end(store_.runs(), to_json(Until{StopMeasure::phi, value_, extra_cycles}));
+  }
+
   static inline TemporaryFolder* whole_folder_ = nullptr;
   static inline std::vector<CheckpointRecord>* whole_ = nullptr;
   static inline double value_ = 0;
@@ -132,12 +146,12 @@ TEST_F(UntilTest, EndsTheRunWithItsReasonAndKeepsTheMeasures) {
   EXPECT_EQ(compute(store_, manifest(until())).completed, 2U);
   expect_end(store_, end_);
   const RunRecord run = sheared(store_);
-  const nlohmann::json why = end_of(store_, run);
+  const nlohmann::json why = end_of(run);
   EXPECT_EQ(why.at("measure"), "phi");
   EXPECT_EQ(why.at("reached_at_cycle"), static_cast<double>(end_ - 1));
   EXPECT_EQ(why.at("extra_cycles"), 1U);
-  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 1}), static_cast<double>(end_));
-  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 2}), std::nullopt);
+  EXPECT_EQ(expected(1), static_cast<double>(end_));
+  EXPECT_EQ(expected(2), std::nullopt);
 
   // Once it is reached, nothing more is measured.
   DerivedCache cache(store_.folder());
@@ -167,7 +181,7 @@ TEST_F(UntilTest, RunsAreExtendedWithoutUntilOrWithALaterOne) {
   expect_end(store_, end_ + 1);
   EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
   expect_end(store_, 6);
-  EXPECT_TRUE(end_of(store_, sheared(store_)).is_null());
+  EXPECT_TRUE(end_of(sheared(store_)).is_null());
 }
 
 TEST_F(UntilTest, RunsAreExtendedFromCycleZero) {
@@ -182,18 +196,17 @@ TEST_F(UntilTest, ARunHasWorkLeftForAPlanWithALaterOne) {
   const auto plan_of = [](const std::string& text) {
     return expand(parse_manifest(text, "tiny.yaml"), {});
   };
+  const auto look = [&](const Plan& plan) { return look_at(plan, &store_).at(1).look; };
   const Plan early = plan_of(manifest(until(0))), late = plan_of(renamed(manifest(until(1)), "b"));
   for (const auto& plans : {std::vector{early, late}, std::vector{late, early}}) {
-    const PlannedRun run = joined(plans).runs.front();
-    const RunRecord known = sheared(store_);
-    EXPECT_EQ(cycle_to_continue(run, run.last, &known, &store_), known.cycle);
+    EXPECT_FALSE(look(joined(plans)).done);
+    EXPECT_EQ(look(joined(plans)).from, sheared(store_).cycle);
   }
-  const RunRecord known = sheared(store_);
-  EXPECT_EQ(cycle_to_continue(early.runs[0], early.runs[0].last, &known, &store_), std::nullopt);
+  EXPECT_TRUE(look(early).done);
   const Plan seldom =
       plan_of(renamed(manifest(until(0)), "c") + "checkpoints: {every_cycles: 5}\n");
-  EXPECT_EQ(cycle_to_continue(seldom.runs[0], seldom.runs[0].last, &known, &store_), known.cycle)
-      << "it may end at cycle 5 only";
+  EXPECT_FALSE(look(seldom).done) << "it may end at cycle 5 only";
+  EXPECT_EQ(look(seldom).from, sheared(store_).cycle);
 }
 
 TEST_F(UntilTest, TheLongestOfTwoExperimentsCounts) {
@@ -209,11 +222,11 @@ TEST_F(UntilTest, TheReasonIsThatOfTheLongestOfTwoExperiments) {
   const RunRecord run = sheared(store_);
   EXPECT_EQ(run.cycle, 5);
   EXPECT_EQ(run.state, RunState::completed);
-  const nlohmann::json why = end_of(store_, run);
+  const nlohmann::json why = end_of(run);
   EXPECT_EQ(why.at("cycles_asked"), 5);
   EXPECT_TRUE(describe_end(why).starts_with("an experiment asks for 5 cycles; phi >= "));
-  EXPECT_EQ(expected_end(store_, {StopMeasure::phi, value_, 0}), std::nullopt);
-  EXPECT_FALSE(recorded_end(store_, run.id).contains("cycles_asked"));
+  EXPECT_EQ(expected(0), std::nullopt);
+  EXPECT_FALSE(run.ends.back().contains("cycles_asked"));
 }
 
 TEST_F(UntilTest, TheReasonIsNotAnEarlierUntil) {
@@ -221,7 +234,7 @@ TEST_F(UntilTest, TheReasonIsNotAnEarlierUntil) {
   compute(store_, renamed(tiny_manifest("  cycles: 5\n", "until: {phi: 0.99}\n"), "twin"));
   const RunRecord run = sheared(store_);
   EXPECT_EQ(run.cycle, 5);
-  EXPECT_TRUE(has(describe_end(end_of(store_, run)), "an experiment asks for 5 cycles"));
+  EXPECT_TRUE(has(describe_end(end_of(run)), "an experiment asks for 5 cycles"));
 }
 
 // Its figures and tables are the same whether or not another experiment continues its runs.
@@ -263,26 +276,12 @@ TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
   compute(store_, renamed(manifest(""), "twin"));
   const RunRecord run = sheared(store_);
   const auto end = [&](std::size_t extra) {
-    RunAsk ask = asks_of(store_, run.id).front();
-    ask.target_cycles = 6;
-    ask.until = Until{StopMeasure::phi, value_, extra};
-    return end_for(store_, run, ask, {});
+    return end_for(store_, run, ask(6, Until{StopMeasure::phi, value_, extra}), {});
   };
   EXPECT_EQ(end(1), static_cast<double>(end_));
   prune_and_forget();
   EXPECT_EQ(end(1), static_cast<double>(end_)) << "as recorded";
   EXPECT_THROW(end(2), FilePruned) << "this was never recorded";
-}
-
-TEST_F(UntilTest, EndsRunsOfAnOlderVersionInFiguresToo) {
-  compute(store_, manifest(until()));
-  compute(store_, renamed(manifest(""), "twin"));
-  compute(store_, tiny_manifest("  drag_kg_per_s: 2.0e-3\n"));
-  const auto runs = collect_runs(store_, {*find_figure("S2"), "tiny"}, {.all_versions = true}).runs;
-  ASSERT_EQ(runs.size(), 2U);
-  EXPECT_TRUE(has(runs[1].membership.variant, ",manifest="));
-  EXPECT_EQ(runs[1].run.cycle, 6);
-  EXPECT_EQ(runs[1].checkpoints.back().cycle, static_cast<double>(end_));
 }
 
 TEST_F(UntilTest, MeasuresOverTwoCheckpointsKeepTheCadenceOfTheirExperiment) {

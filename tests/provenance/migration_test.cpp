@@ -67,9 +67,46 @@ TEST_F(MigrationTest, AWriterMigratesAndChangesNoEvent) {
 }
 
 TEST_F(MigrationTest, RebuildGivesTheOldTables) {
-  const auto before = projection_rows(database());
+  const auto rows = [](const sqlite::Database& of, const std::string& columns) {
+    sqlite::Statement query(of, "SELECT " + columns + " ORDER BY 1");
+    return query.all([](const sqlite::Statement& row) { return row.cells(); });
+  };
+  const std::vector<std::string> old_columns = {
+      "id, ordinal, parent, kind, resolved, state, grains, target_cycles, attempts, cycle, step, "
+      "state_hash, wall_seconds, particle_steps, error, updated_at FROM runs",
+      "run, experiment, scale, variant, seed, manifest, labels, target_cycles, checkpoint_every, "
+      "ordinal FROM memberships",
+      "* FROM checkpoints", "* FROM figures"};
+  std::vector<TableRows> before;
+  for (const std::string& columns : old_columns) before.push_back(rows(database(), columns));
+  // In memory, by the migration and by `rebuild`.
+  const auto read = projection_rows(open_database(path_ / "store.sqlite", Access::read));
+  { const Store migrated(path_, Access::write); }
+  EXPECT_EQ(projection_rows(database()), read);
   Store(path_, Access::write).rebuild();
-  EXPECT_EQ(projection_rows(database()), before);
+  EXPECT_EQ(projection_rows(database()), read);
+  for (std::size_t k = 0; k < old_columns.size(); ++k) {
+    EXPECT_EQ(rows(database(), old_columns[k]), before[k]) << old_columns[k];
+  }
+}
+
+TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
+  for (const Access access : {Access::read, Access::write}) {
+    const Store store(path_, access);
+    for (const RunRecord& run : store.runs()) {
+      const auto ends = store.events("run/" + run.id, "RunCompleted");
+      ASSERT_EQ(run.ends.size(), ends.size());
+      for (std::size_t k = 0; k < ends.size(); ++k) {
+        EXPECT_EQ(run.ends[k], ends[k].body().at("summary").at("ended"));
+      }
+      ASSERT_EQ(run.memberships.size(), 1u);
+      const Membership& ask = run.memberships[0];
+      EXPECT_TRUE(ask.until.is_null());
+      EXPECT_TRUE(ask.checkpoint_phases.empty());
+      EXPECT_TRUE(ask.newest);
+      EXPECT_EQ(store.events("manifest/" + ask.manifest).size(), 1u);
+    }
+  }
 }
 
 TEST_F(MigrationTest, AMigratedStoreCanBeContinued) {

@@ -282,8 +282,7 @@ class Package(unittest.TestCase):
         for select, table in (({}, whole), ({"state": "completed"}, whole), ({"state": ["failed", "completed"]}, whole),
                               ({"experiment": "drag"}, store.table(experiment="drag")),
                               ({"fluid": iter(["cell"])}, store.table(fluid="cell")),
-                              ({"amplitude_rad": 0.05, "seed": 1}, store.table(amplitude_rad=0.05)),
-                              ({"all_versions": True}, store.table(all_versions=True))):
+                              ({"amplitude_rad": 0.05, "seed": 1}, store.table(amplitude_rad=0.05))):
             frame = store.measure(cycle_and_place, **select)
             same_tables(frame[list(table)], table)
             self.assertEqual(list(frame["own_cycle"]), list(frame["cycle"]))

@@ -63,32 +63,33 @@ class Store:
         done = subprocess.run([self.program, "--version"], capture_output=True, check=True)
         return done.stdout.decode().splitlines()[0]
 
-    def runs(self, *, all_versions: bool = False, **select: Any) -> list["Run"]:
-        """Runs in the order of their declaration, without the packings that they start from; a run
-        of several experiments comes once for each.
+    def runs(self, **select: Any) -> list["Run"]:
+        """The runs of each manifest as it stands, in the order of their declaration, without the packings
+        that they start from; a run of several experiments comes once for each.
 
         Args:
-            all_versions: those of older versions of a manifest too, as `shearcell table` has them.
             select: experiment, scale, variant, seed, state or a swept parameter, such as
                 amplitude_rad=0.05, each a value or a list of values. The program compares them,
                 as with `--variant amplitude_rad=0.05`: numbers must be equal.
         """
+        return [run for run in self._recorded(select) if run.facts["newest"]]
+
+    def _recorded(self, select: Mapping[str, Any]) -> list["Run"]:
+        """The same with the runs of older versions of manifests."""
         listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
         return [Run(self, {**facts, **place})
-                for facts in listed if facts["kind"] != "prepare"
-                for place in facts["places"] if all_versions or place["newest"]]
+                for facts in listed if facts["kind"] != "prepare" for place in facts["places"]]
 
     def run(self, prefix: str) -> "Run":
         """The run whose id begins with `prefix`. A run that several experiments share is that of the one which
         declared it last; `runs(experiment=...)` gives it as another's. Raises KeyError if it is none
         or several."""
-        found = {run.id: run for run in self.runs(all_versions=True) if run.id.startswith(prefix)}
+        found = {run.id: run for run in self._recorded({}) if run.id.startswith(prefix)}
         if len(found) != 1:
             raise KeyError(f"{len(found)} runs begin with {prefix!r}")
         return next(iter(found.values()))
 
-    def table(self, per: str = "checkpoint", curve: str = "", *, all_versions: bool = False,
-              **select: Any) -> "pandas.DataFrame":
+    def table(self, per: str = "checkpoint", curve: str = "", **select: Any) -> "pandas.DataFrame":
         """`shearcell table`: a row for each checkpoint, or for each run (per="run"), or for each
         value of a curve at each checkpoint (curve="pair_correlation"); needs pandas.
 
@@ -98,7 +99,6 @@ class Store:
         Args:
             per: "checkpoint" or "run".
             curve: name of a curve, or "".
-            all_versions: runs of older versions of a manifest too, with a column `manifest`.
             select: experiment, scale, variant, seed or a swept parameter, as for runs().
         """
         import pandas
@@ -106,8 +106,7 @@ class Store:
         if curve and per != "checkpoint":
             raise ValueError("a curve has a row for each value at each checkpoint; leave out `per`")
         rows = ("--curve", curve) if curve else ("--per", per)
-        more = ("--all-versions",) if all_versions else ()
-        asked = ("table", *rows, *more, *_filters(select))
+        asked = ("table", *rows, *_filters(select))
         found = json.loads(self.call(*asked, "--json"))["rows"]
         if not found:
             return pandas.DataFrame(columns=self.call(*asked).splitlines()[0].split(","))
@@ -116,7 +115,7 @@ class Store:
         return table.astype(dict.fromkeys(empty, float))
 
     def measure(self, function: Measure, *, key: str | None = None, fresh: bool = False,
-                all_versions: bool = False, **select: Any) -> "pandas.DataFrame":
+                **select: Any) -> "pandas.DataFrame":
         """A measure of your own: the rows and columns of table(), and what the function returns
         for each checkpoint; needs pandas.
 
@@ -135,7 +134,6 @@ class Store:
             function: from a Checkpoint to a number, or to a mapping of names to numbers.
             key: name of the measure: letters, digits and _ . + = -
             fresh: computes every stored checkpoint again.
-            all_versions: of runs of older versions of a manifest too.
             select: experiment, scale, variant, seed, state or a swept parameter, as for runs().
         """
         import pandas
@@ -148,10 +146,9 @@ class Store:
                           stacklevel=2)
         kept = _Kept(self, key)
         select = {what: _texts(values) for what, values in select.items()}
-        table = self.table(all_versions=all_versions,
-                           **{what: value for what, value in select.items() if what != "state"})
+        table = self.table(**{what: value for what, value in select.items() if what != "state"})
         runs: dict[tuple[str, str, str], list[Run]] = {}
-        for run in self.runs(all_versions=True, **select):
+        for run in self._recorded(select):
             runs.setdefault((run.experiment, run.scale, run.id), []).append(run)
         places = list(zip(table["experiment"], table["scale"], table["run"]))
         if "state" in select:
