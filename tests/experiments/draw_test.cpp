@@ -106,7 +106,7 @@ TEST_F(DrawFigure, EditingAManifestForOneScaleKeepsTheRunsOfOtherScales) {
 TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
   compute(store_, tiny_manifest("", kBothFluids), {.cycles = 1});
   compute(store_, tiny_manifest("  pressure_Pa: 700\n"), {.cycles = 1});
-  const NewestRuns cells = newest_runs(select_runs(store_, {.variants = {"fluid=cell"}}), false);
+  const NewestRuns cells = newest_runs(select_runs(store_, {.variants = {"fluid=cell"}}));
   EXPECT_TRUE(cells.runs.empty());
   ASSERT_EQ(cells.notes.size(), 1U);
   EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of another version"));

@@ -36,7 +36,7 @@ TEST_F(OwnFigures, ShowEveryVariantOfARun) {
                             between("some", "gravity_m_per_s2: 9.81, pressure_at: moving_wall")),
           {.cycles = 1});
   EXPECT_EQ(runs_of_kind(store_, "shear").size(), 9U);
-  EXPECT_EQ(newest_runs(select_runs(store_, {}), false).runs.size(), 12U) << "in a table";
+  EXPECT_EQ(newest_runs(select_runs(store_, {})).runs.size(), 12U) << "in a table";
   EXPECT_EQ(collect_runs(store_, {*find_figure("table1"), ""}, {}).runs.size(), 9U);
   draw("own", "both");
   const std::string csv = contents("own").at("both.csv");

@@ -19,7 +19,9 @@ namespace {
 
 Membership ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt,
                std::uint64_t every = 1) {
-  Membership made{.checkpoint_every = every, .target_cycles = cycles};
+  Membership made;
+  made.checkpoint_every = every;
+  made.target_cycles = cycles;
   if (until) made.until = to_json(*until);
   return made;
 }
