@@ -30,11 +30,12 @@ struct ManifestRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  RunDeclaration run;  ///< without its id and its membership's target_cycles
+  RunRecord run;  ///< without its id, and as nobody began it
+  Membership membership;
   static void fields(auto& e, auto field) {
     field("parent", e.run.parent), field("kind", e.run.kind), field("resolved", e.run.resolved);
-    field("grains", e.run.grains), field("target_cycles", e.run.target_cycles);
-    field("membership", e.run.membership);
+    field("grains", e.run.grains), field("target_cycles", e.membership.target_cycles);
+    field("membership", e.membership);
   }
 };
 

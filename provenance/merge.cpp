@@ -123,13 +123,12 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 
 /// Whether the event adds a place in an experiment, or raises its target.
 bool declares_news(const Database& into, const Event& event) {
-  const RunDeclaration declared = std::get<events::RunDeclared>(events::decode(event)).run;
-  const Membership& m = declared.membership;
+  const Membership m = std::get<events::RunDeclared>(events::decode(event)).membership;
   Statement same(into,
                  "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
                  "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
                  run_of(event).value(), m.experiment, m.scale, m.variant, m.seed, m.manifest);
-  return !same.step() || same.u64(0) < declared.target_cycles;
+  return !same.step() || same.u64(0) < m.target_cycles;
 }
 
 using Stream = std::vector<const Event*>;  // in the order of the log

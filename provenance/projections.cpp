@@ -122,27 +122,27 @@ class Projector {
       : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
   void operator()(const events::RunDeclared& e) const {
-    const RunDeclaration& d = e.run;
-    const Membership& m = d.membership;
-    require_cycles(d.target_cycles, m.checkpoint_every);
+    const RunRecord& d = e.run;
+    const Membership& m = e.membership;
+    require_cycles(m.target_cycles, m.checkpoint_every);
     if (has_run(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
           "(target_cycles < ?2 OR cycle < ?2)",
-          id_, d.target_cycles);
+          id_, m.target_cycles);
       run("UPDATE runs SET target_cycles = max(target_cycles, ?2) WHERE id = ?1", id_,
-          d.target_cycles);
+          m.target_cycles);
     } else {
       run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
           "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?)",
-          id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, d.target_cycles,
+          id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
           event_.recorded_at);
     }
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
-        "target_cycles = max(target_cycles, excluded.target_cycles), "
+        "target_cycles = max(target_cycles, excludem.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
         "checkpoint_phases = excluded.checkpoint_phases",
-        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), d.target_cycles,
+        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), m.target_cycles,
         m.checkpoint_every, event_.seq, m.until.dump(), json(m.checkpoint_phases).dump());
     if (d.kind != "prepare") show_newest(m.experiment, m.scale, m.manifest);
   }

@@ -23,7 +23,7 @@ struct Membership {
   std::uint64_t seed = 0;
   std::string manifest;                        ///< SHA-256 of the manifest's text
   std::uint64_t checkpoint_every = 1;          ///< requested cycles between checkpoints
-  std::uint64_t target_cycles = 0;             ///< requested length of the run; set by the store
+  std::uint64_t target_cycles = 0;             ///< requested length of the run
   nlohmann::json until = nullptr;              ///< measure that may end the run earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
   /// Whether its manifest is the version registered last of those that declared a run at the scale;
@@ -51,17 +51,6 @@ inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
 
-/// One stage of a run, from the expansion of a manifest.
-struct RunDeclaration {
-  std::string id;      ///< 64 hex digits
-  std::string parent;  ///< id of the stage whose last state is the initial state, or ""
-  std::string kind;    ///< "prepare", "shear", ...
-  nlohmann::json resolved = nlohmann::json::object();  ///< every parameter, in canonical form
-  std::uint64_t grains = 0;
-  std::uint64_t target_cycles = 0;
-  Membership membership;
-};
-
 /// Which checkpoints are listed: recorded ones; also pruned ones; also rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
@@ -78,12 +67,12 @@ inline bool has_ended(RunState state) {
   return state == RunState::completed || state == RunState::failed;
 }
 
-/// A stage of a run as its events describe it.
+/// A stage as a manifest states it or as its events describe it.
 struct RunRecord {
-  std::string id;
-  std::string parent;  ///< "" when there is none
-  std::string kind;
-  nlohmann::json resolved;
+  std::string id;                                      ///< 64 hex digits
+  std::string parent;                                  ///< "" when there is none
+  std::string kind;                                    ///< "prepare", "shear", ...
+  nlohmann::json resolved = nlohmann::json::object();  ///< every parameter, in canonical form
   /// `declared`: not started, or completed and then given a longer target. `running`: started and
   /// not ended; after a kill this remains until the run is resumed.
   RunState state = RunState::declared;
@@ -101,7 +90,7 @@ struct RunRecord {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// Whether two declarations or records with one id describe the same computation.
+/// Whether two stages with one id describe the same computation.
 bool same_computation(const auto& a, const auto& b) {
   return a.parent == b.parent && a.kind == b.kind && a.resolved == b.resolved &&
          a.grains == b.grains;

@@ -84,11 +84,10 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-bool adds_something(const RunRecord& known, const RunDeclaration& declared) {
-  const Membership& m = declared.membership;
+bool adds_something(const RunRecord& known, const Membership& m) {
   return std::ranges::none_of(known.memberships, [&](const Membership& old) {
     return place_of(old) == place_of(m) && old.checkpoint_every == m.checkpoint_every &&
-           old.target_cycles >= declared.target_cycles;
+           old.target_cycles >= m.target_cycles;
   });
 }
 
@@ -206,7 +205,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   return sha256;
 }
 
-void Store::declare_run(const RunDeclaration& declared) {
+void Store::declare_run(const RunRecord& declared) {
   must_write();
   if (!is_sha256_hex(declared.id)) {
     throw std::invalid_argument(fmt::format("'{}' is not a run id", declared.id));
@@ -222,8 +221,10 @@ void Store::declare_run(const RunDeclaration& declared) {
     throw std::invalid_argument(
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
-  if (known && !adds_something(*known, declared)) return;
-  append(run_stream(declared.id), encode(events::RunDeclared{declared}), lock);
+  for (const Membership& m : declared.memberships) {
+    if (known && !adds_something(*known, m)) continue;
+    append(run_stream(declared.id), encode(events::RunDeclared{declared, m}), lock);
+  }
   lock.commit();
 }
 

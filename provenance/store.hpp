@@ -94,10 +94,10 @@ class Store {
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Records nothing when the run is known with this membership and at least this target. A longer
-  /// target makes a completed run `declared` again. Throws std::invalid_argument when the id is not
+  /// Records each membership of the run that is new or has a larger target. A longer target makes a
+  /// completed run `declared` again. Throws std::invalid_argument when the id is not
   /// a SHA-256, belongs to other parameters, or the parent was never declared.
-  void declare_run(const RunDeclaration& declaration);
+  void declare_run(const RunRecord& run);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` it continues from this
   /// checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when the run or

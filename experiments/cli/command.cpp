@@ -194,7 +194,7 @@ Known known_to(const Context& context) {
 void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Known& known,
                            Context& context) {
   std::set<std::string> planned;
-  for (const PlannedRun& run : plan.runs) planned.insert(run.last.key);
+  for (const PlannedRun& run : plan.runs) planned.insert(run.last.id);
   for (auto version = known.manifests.rbegin(); version != known.manifests.rend(); ++version) {
     if (version->experiment != plan.experiment) continue;
     std::size_t runs = 0, left_out = 0;

@@ -122,7 +122,7 @@ std::vector<const Variant*> variants_with(const nlohmann::json& where,
 }
 
 bool are_the_same_run(const Parameters& a, const Parameters& b) {
-  return last_stage(a, 1, prepare_stage(a, 1)).key == last_stage(b, 1, prepare_stage(b, 1)).key;
+  return last_stage(a, 1, prepare_stage(a, 1)).id == last_stage(b, 1, prepare_stage(b, 1)).id;
 }
 
 /// A swept key over which curves of these parameters' values would average; or "". Other names

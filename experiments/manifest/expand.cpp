@@ -183,7 +183,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.target_cycles = target_cycles(run.parameters);
   run.prepare = prepare_stage(run.parameters, seed);
   run.last = last_stage(run.parameters, seed, run.prepare);
-  if (run.last.stage == Stage::shear && scale.until->until) {
+  if (run.last.kind == name_of(Stage::shear) && scale.until->until) {
     run.until = to_json(*scale.until->until);
   }
   run.memberships = {run};
@@ -259,7 +259,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     }
     for (const std::uint64_t seed : chosen_seeds) {
       const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
-      const std::string& same = variant_of.emplace(run.last.key, run.variant).first->second;
+      const std::string& same = variant_of.emplace(run.last.id, run.variant).first->second;
       if (same == run.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
                                           manifest.file, same, run.variant));
@@ -295,7 +295,7 @@ Plan joined(std::span<const Plan> plans) {
       scales.push_back(scale_name(plan.scale));
     }
     for (const PlannedRun& run : plan.runs) {
-      const auto [place, fresh] = places.try_emplace(run.last.key, all.runs.size());
+      const auto [place, fresh] = places.try_emplace(run.last.id, all.runs.size());
       if (fresh) {
         all.runs.push_back(run);
         continue;

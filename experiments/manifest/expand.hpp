@@ -30,8 +30,8 @@ struct ExpandOptions {
 /// Its scale is empty when the manifest has none, and its variant "base" when nothing is swept.
 struct PlannedRun : Membership {
   std::string name;  ///< of the variant, for people (variants.hpp)
-  StageSpec prepare;
-  StageSpec last;  ///< shear or stiffening of the packing
+  RunRecord prepare;
+  RunRecord last;  ///< shear or stiffening of the packing
   Parameters parameters;
   std::vector<Membership> memberships;  ///< of each of the joined plans; its own first
 };

@@ -31,8 +31,8 @@ json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
-StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
-                     const std::string& parent) {
+RunRecord stage_of(Stage stage, const Parameters& given, std::uint64_t seed,
+                   const std::string& parent) {
   const Parameters parameters = without_ineffective(given);
   json values = json::object();
   for (const Field& field : schema()) {
@@ -44,8 +44,13 @@ StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
   }
   json resolved = {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
   if (!parent.empty()) resolved["parent"] = parent;
-  std::string key = stage_key(resolved);
-  return {stage, std::move(key), parent, std::move(resolved)};
+  RunRecord made;
+  made.id = stage_key(resolved);
+  made.parent = parent;
+  made.kind = name_of(stage);
+  made.resolved = std::move(resolved);
+  made.grains = parameters.grains;
+  return made;
 }
 
 void append_canonical(const json& value, std::string& text) {
@@ -146,12 +151,12 @@ json recorded_parameters(const json& resolved) {
 
 }  // namespace
 
-StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  return stage_spec(Stage::prepare, parameters, seed, "");
+RunRecord prepare_stage(const Parameters& parameters, std::uint64_t seed) {
+  return stage_of(Stage::prepare, parameters, seed, "");
 }
 
-StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent) {
-  return stage_spec(stage_after_settling(parameters.protocol), parameters, seed, parent.key);
+RunRecord last_stage(const Parameters& parameters, std::uint64_t seed, const RunRecord& parent) {
+  return stage_of(stage_after_settling(parameters.protocol), parameters, seed, parent.id);
 }
 
 std::string stage_key(const json& resolved) {

@@ -8,16 +8,9 @@
 #include <string>
 
 #include "experiments/manifest/parameters.hpp"
+#include "provenance/records.hpp"
 
 namespace shearcell {
-
-/// One link in a run's chain. Equal keys mean equal trajectories, so a stage is computed once.
-struct StageSpec {
-  Stage stage = Stage::prepare;
-  std::string key;          ///< 64 hex digits
-  std::string parent;       ///< key of the stage that it continues; empty for `prepare`
-  nlohmann::json resolved;  ///< exactly what `key` is the hash of; `read_stage` reads it back
-};
 
 /// A stage, as read from its `resolved` record. Parameters that do not affect it, and lengths, have
 /// their defaults; the protocol of a stiffening is `stiffen`.
@@ -28,11 +21,13 @@ struct StageRecord {
   Parameters parameters;
 };
 
-/// The preparation: fill and settle.
-StageSpec prepare_stage(const Parameters& parameters, std::uint64_t seed);
+/// The preparation: fill and settle. A stage that nobody asks for yet; its id is the hash of
+/// `resolved`, which `read_stage` reads back. Equal ids mean equal trajectories, so a stage is
+/// computed once.
+RunRecord prepare_stage(const Parameters& parameters, std::uint64_t seed);
 
 /// Shear or stiffening, by the protocol, of the packing that `parent` prepares.
-StageSpec last_stage(const Parameters& parameters, std::uint64_t seed, const StageSpec& parent);
+RunRecord last_stage(const Parameters& parameters, std::uint64_t seed, const RunRecord& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
 /// check a recorded run against its id.

@@ -331,9 +331,9 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   PackingNames packings;
   for (const PlannedRun& run : plan.runs) packings.add(run, run.prepare.resolved);
   for (const PlannedRun& run : plan.runs) {
-    for (const StageSpec* stage : {&run.prepare, &run.last}) {
-      const bool prepare = stage->stage == Stage::prepare;
-      const bool first = known.insert(stage->key).second;
+    for (RunRecord stage : {run.prepare, run.last}) {
+      const bool prepare = stage.kind == name_of(Stage::prepare);
+      const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
       Membership membership = run;
       if (prepare) {
@@ -344,11 +344,10 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
                       .manifest = run.manifest,
                       .checkpoint_every = run.checkpoint_every};
       }
-      const std::string kind(name_of(stage->stage));
-      const std::string name = prepare ? packings.of(run, stage->resolved) : run.name;
-      if (first) jobs.push_back({stage->key, stage->parent, job_name(membership, name)});
-      store.declare_run({stage->key, stage->parent, kind, stage->resolved, run.parameters.grains,
-                         membership.target_cycles, std::move(membership)});
+      const std::string name = prepare ? packings.of(run, stage.resolved) : run.name;
+      if (first) jobs.push_back({stage.id, stage.parent, job_name(membership, name)});
+      stage.memberships = {std::move(membership)};
+      store.declare_run(stage);
     }
   }
   tell_apart(jobs);

@@ -104,19 +104,15 @@ std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
   std::vector<PlannedStage> stages;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
-    for (const StageSpec* planned : {&run.prepare, &run.last}) {
-      if (!seen.insert(planned->key).second) continue;
-      PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run});
-      if (const auto found = known.find(planned->key); found != known.end()) {
+    for (const RunRecord* planned : {&run.prepare, &run.last}) {
+      if (!seen.insert(planned->id).second) continue;
+      PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
+      if (const auto found = known.find(planned->id); found != known.end()) {
         one.stage = std::move(found->second);
+        one.stage.resolved = planned->resolved;  // that of the store may be damaged
         one.asks = one.stage.memberships;
         one.checkpoints = seen_checkpoints(*store, one.stage.id);
       }
-      one.stage.id = planned->key;
-      one.stage.parent = planned->parent;
-      one.stage.kind = name_of(planned->stage);
-      one.stage.resolved = planned->resolved;
-      one.stage.grains = run.parameters.grains;
       if (planned == &run.last) std::ranges::copy(run.memberships, std::back_inserter(one.asks));
       one.look = outlook(one.stage, one.asks, one.checkpoints);
     }

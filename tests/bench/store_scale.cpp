@@ -47,9 +47,9 @@ std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
   const std::string manifest = store.register_manifest("bench: 1\n", "bench.yaml", {});
   std::vector<double> took;
   for (int r = 0; r < runs; ++r) {
-    RunDeclaration run = test::sample_run(r);
-    run.target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
-    run.membership.manifest = manifest;
+    RunRecord run = test::sample_run(r);
+    run.memberships[0].target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
+    run.memberships[0].manifest = manifest;
     store.declare_run(run);
     store.start_run(run.id, {{"host", "bench"}});
     for (int c = 0; c < checkpoints; ++c) {
@@ -57,7 +57,7 @@ std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
       const Checkpoint checkpoint = test::sample_checkpoint(run.id, step);
       took.push_back(seconds([&] { store.record_checkpoint(run.id, checkpoint, {1, 1}); }));
     }
-    store.complete_run(run.id, {}, run.target_cycles);
+    store.complete_run(run.id, {}, run.memberships[0].target_cycles);
   }
   return took;
 }

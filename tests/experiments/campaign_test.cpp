@@ -155,8 +155,8 @@ TEST_F(CampaignTest, ARecordThatCannotBeReadStopsOnlyItsRun) {
   declared(store_, tiny_manifest());
   RunRecord run = sheared(store_);
   run.resolved["parameters"]["of_a_newer_version"] = 1;
-  store_.declare_run({stage_key(run.resolved), run.parent, run.kind, run.resolved, run.grains,
-                      run.target_cycles, run.memberships.front()});
+  run.id = stage_key(run.resolved);
+  store_.declare_run(run);
   const CampaignResult result = resume(store_);
   EXPECT_EQ(result.completed, 2U);
   EXPECT_EQ(result.blocked, 1U);

@@ -117,8 +117,8 @@ TEST_F(Commands, MergeRejectsConflicts) {
     const RunRecord sheared = runs_of_kind(store, "shear").at(0);
     Checkpoint wrong = other.load_checkpoint(other.checkpoints(sheared.id).at(2));
     wrong.state.position(0, 0) += 1e-9;
-    RunDeclaration longer = declaration_of(sheared);
-    longer.target_cycles = 2;
+    RunRecord longer = declaration_of(sheared);
+    longer.memberships[0].target_cycles = 2;
     store.declare_run(longer);
     store.start_run(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
     store.record_checkpoint(sheared.id, wrong);

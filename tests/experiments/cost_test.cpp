@@ -26,18 +26,15 @@ PlannedRun only_run(const std::string& text) {
 }
 
 /// What is left of a stage of the run that nobody computed, or up to this cycle.
-Outlook left_of(const PlannedRun& run, const StageSpec& planned, double cycle = -1) {
-  RunRecord stage{.id = planned.key,
-                  .parent = planned.parent,
-                  .kind = std::string(name_of(planned.stage)),
-                  .resolved = planned.resolved,
-                  .grains = run.parameters.grains};
+Outlook left_of(const PlannedRun& run, const RunRecord& planned, double cycle = -1) {
+  RunRecord stage = planned;
   std::vector<SeenCheckpoint> seen;
   if (cycle >= 0) {
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
-    for (double c = 0; c <= cycle; ++c) {
-      seen.emplace_back().record.step = static_cast<std::uint64_t>(c * kStepsPerCycle);
+    seen.emplace_back();
+    for (const std::uint64_t step : asked_steps(stage, run, 0, cycle)) {
+      seen.emplace_back().record.step = step;
     }
   }
   return outlook(stage, run.memberships, seen);
@@ -120,7 +117,7 @@ void expect_bounded(const std::string& text) {
       for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
       }
-      for (const StageSpec* stage : {&run.prepare, &run.last}) {
+      for (const RunRecord* stage : {&run.prepare, &run.last}) {
         const Outlook cost = left_of(run, *stage);
         EXPECT_TRUE(cost.particle_steps >= 0 && cost.particle_steps < 1e25) << cost.particle_steps;
         EXPECT_TRUE(cost.bytes >= 0 && cost.bytes < 1e20) << cost.bytes;
@@ -171,10 +168,10 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
     compute(store_, text);
     const PlannedRun run = only_run(text);
-    for (const StageSpec* stage : {&run.prepare, &run.last}) {
+    for (const RunRecord* stage : {&run.prepare, &run.last}) {
       const Outlook expected = left_of(run, *stage);
-      const double bytes = bytes_of(store_, stage->key);
-      const double steps = store_.run(stage->key).particle_steps;
+      const double bytes = bytes_of(store_, stage->id);
+      const double steps = store_.run(stage->id).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
                   std::string(name_of(stage->stage)).c_str(), bytes, expected.bytes, steps,
                   expected.particle_steps);
@@ -189,7 +186,7 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
       tiny_manifest("  drag_kg_per_s: 1.28e-4\n  settle_time_step_s: 4.4e-5\n");
   compute(store_, text);
   const PlannedRun run = only_run(text);
-  const double steps = store_.run(run.prepare.key).particle_steps;
+  const double steps = store_.run(run.prepare.id).particle_steps;
   const double expected = left_of(run, run.prepare).particle_steps;
   std::printf("%.4g particle-steps, expected %.4g\n", steps, expected);
   EXPECT_NEAR(expected / steps, 1, 0.3);

@@ -116,7 +116,7 @@ TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
 // Another version of the program may resolve one manifest to other runs.
 TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   compute(store_, tiny_manifest("", kBothFluids));
-  RunDeclaration again = declaration_of(sheared(store_));
+  RunRecord again = declaration_of(sheared(store_));
   again.id = std::string(64, 'a');
   store_.declare_run(again);
   const CollectedRuns collected = collect_runs(store_, kS2, {});
@@ -203,11 +203,11 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));
   EXPECT_TRUE(collect_runs(store_, kS2, {}).notes.empty()) << "made in the second run";
   const RunRecord ours = sheared(store_);
-  RunDeclaration other = declaration_of(ours);
+  RunRecord other = declaration_of(ours);
   other.id = std::string(64, 'b');
   other.resolved["parameters"]["engine"] = "lammps";
-  other.membership = ours.memberships.back();
-  other.membership.variant = "engine=lammps";
+  other.memberships = {ours.memberships.back()};
+  other.memberships[0].variant = "engine=lammps";
   store_.declare_run(other);
   store_.start_run(other.id, {});
   for (const CheckpointRecord& record : store_.checkpoints(ours.id)) {

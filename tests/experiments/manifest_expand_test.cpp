@@ -50,13 +50,13 @@ TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
   EXPECT_EQ(runs[1].seed, 2U);
   EXPECT_EQ(runs[2].swept, (nlohmann::json{{"fluid", "cell"}}));
   EXPECT_EQ(runs[2].parameters.fluid, Fluid::cell);
-  EXPECT_EQ(runs[0].prepare.key, runs[2].prepare.key);
-  EXPECT_EQ(runs[1].prepare.key, runs[3].prepare.key);
-  EXPECT_NE(runs[0].prepare.key, runs[1].prepare.key);
+  EXPECT_EQ(runs[0].prepare.id, runs[2].prepare.id);
+  EXPECT_EQ(runs[1].prepare.id, runs[3].prepare.id);
+  EXPECT_NE(runs[0].prepare.id, runs[1].prepare.id);
   std::set<std::string> shear;
   for (const PlannedRun& run : runs) {
-    EXPECT_EQ(run.last.parent, run.prepare.key);
-    shear.insert(run.last.key);
+    EXPECT_EQ(run.last.parent, run.prepare.id);
+    shear.insert(run.last.id);
   }
   EXPECT_EQ(shear.size(), 4U);
 }
@@ -137,8 +137,8 @@ TEST(Expand, AZipHasALengthForEachVariant) {
   EXPECT_EQ(plan.runs[0].target_cycles, 300U);
   EXPECT_EQ(plan.runs[1].target_cycles, 20U);
   EXPECT_EQ(plan.runs[1].swept, (nlohmann::json{{"amplitude_rad", 0.1}}));
-  EXPECT_EQ(plan.runs[1].last.key,
-            expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].last.key);
+  EXPECT_EQ(plan.runs[1].last.id,
+            expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].last.id);
   for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs)
     EXPECT_EQ(run.target_cycles, 7U);
 }
@@ -338,7 +338,7 @@ TEST(Expand, UntilIsReadAndOverriddenAndDoesNotChangeIds) {
   EXPECT_EQ(one.ends_early, (Until{StopMeasure::crystalline_percent, 10, 15}));
   EXPECT_EQ(at(manifest, "two").runs[0].ends_early, (Until{StopMeasure::phi, 0.65, 0}));
   EXPECT_EQ(at(manifest, "none").runs[0].ends_early, std::nullopt);
-  EXPECT_EQ(one.last.key, at(parse(text), "one").runs[0].last.key);
+  EXPECT_EQ(one.last.id, at(parse(text), "one").runs[0].last.id);
   EXPECT_EQ(until_from_json(to_json(*one.ends_early)), *one.ends_early);
   for (const char* bad : {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
                           "{\"phi\":1,\"extra_cycles\":-1}"}) {

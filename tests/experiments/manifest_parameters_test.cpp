@@ -172,7 +172,7 @@ TEST(TimeStep, FollowsTheStiffnessIfAuto) {
   };
   const std::string autos = "steps_per_cycle: auto, settle_time_step_s: auto";
   // Table I's own numbers, and so the ids of runs that state them.
-  EXPECT_EQ(runs_of(autos).front().last.key, runs_of("cycles: 200").front().last.key);
+  EXPECT_EQ(runs_of(autos).front().last.id, runs_of("cycles: 200").front().last.id);
   const auto swept =
       runs_of(autos, "sweep: {grid: {stiffness_N_per_m: [654, 2616, 65400], period_s: [2, 4]}}");
   ASSERT_EQ(swept.size(), 6U);

@@ -147,7 +147,7 @@ PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 400) {
   std::set<std::string> ids;
   for (const PlannedRun& run : plan.runs) {
     found.push_back(described(run));
-    ids.insert(run.last.key);
+    ids.insert(run.last.id);
   }
   std::sort(expected.begin(), expected.end());
   std::sort(found.begin(), found.end());
@@ -159,7 +159,7 @@ PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 300) {
   const auto ids = [](const Written& written) {
     std::multiset<std::string> found;
     for (const PlannedRun& run : expand(parse_manifest(written.text(), "any.yaml")).runs) {
-      found.insert(fmt::format("{} {} {}", run.seed, run.prepare.key, run.last.key));
+      found.insert(fmt::format("{} {} {}", run.seed, run.prepare.id, run.last.id));
     }
     return found;
   };
@@ -270,7 +270,7 @@ PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 500) {
   const auto ids = [](const std::string& text) {
     const Plan plan = expand(parse_manifest(text, "any.yaml"));
     RC_ASSERT(plan.runs.size() == 1U);
-    return plan.runs[0].prepare.key + plan.runs[0].last.key;
+    return plan.runs[0].prepare.id + plan.runs[0].last.id;
   };
   const std::string sweep =
       in_sweep.empty() ? "" : fmt::format("sweep: {{grid: {{{}}}}}\n", fmt::join(in_sweep, ", "));
@@ -310,8 +310,8 @@ bool has_effect(const Field& field, const Parameters& before, const Parameters& 
 
 PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
   const Parameters before = any_parameters();
-  const StageSpec prepare = prepare_stage(before, 1);
-  const StageSpec last = last_stage(before, 1, prepare);
+  const RunRecord prepare = prepare_stage(before, 1);
+  const RunRecord last = last_stage(before, 1, prepare);
   for (const Field& field : schema()) {
     const json value = get_value(field, before);
     json other = any_value(field);
@@ -322,13 +322,13 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
     if (other == value) continue;
     Parameters after = before;
     set_value(field, other, after);
-    const StageSpec other_prepare = prepare_stage(after, 1);
+    const RunRecord other_prepare = prepare_stage(after, 1);
     const bool settling = field.identity.stage == Stage::prepare &&
                           field.identity.distinguishes_runs() &&
                           (field.name != "pressure_at" || depends_on_pressure_at(before));
     RC_LOG() << field.name << " " << value << " " << other << "\n";
-    RC_ASSERT((other_prepare.key != prepare.key) == settling);
-    RC_ASSERT((last_stage(after, 1, other_prepare).key != last.key) ==
+    RC_ASSERT((other_prepare.id != prepare.id) == settling);
+    RC_ASSERT((last_stage(after, 1, other_prepare).id != last.id) ==
               (settling || has_effect(field, before, after)));
   }
 }
@@ -336,18 +336,19 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
 PROPERTY(Identity, OfARecordReadBackIsTheSame, 300) {
   const Parameters parameters = any_parameters();
   const auto seed = *rc::gen::inRange<std::uint64_t>(1, 1ULL << 53);
-  const StageSpec prepare = prepare_stage(parameters, seed);
-  const StageSpec last = last_stage(parameters, seed, prepare);
-  for (const StageSpec& stage : {prepare, last}) {
+  const RunRecord prepare = prepare_stage(parameters, seed);
+  const RunRecord last = last_stage(parameters, seed, prepare);
+  for (const RunRecord& stage : {prepare, last}) {
     for (const std::string& text : {stage.resolved.dump(), canonical_json(stage.resolved)}) {
       const json stored = json::parse(text);
       const StageRecord record = read_stage(stored);
-      RC_ASSERT(stage_key(stored) == stage.key);
+      RC_ASSERT(stage_key(stored) == stage.id);
       RC_ASSERT(record.seed == seed);
-      RC_ASSERT(record.stage == stage.stage && record.parent == stage.parent);
-      const StageSpec again = prepare_stage(record.parameters, seed);
-      RC_ASSERT((stage.stage == Stage::prepare ? again : last_stage(record.parameters, seed, again))
-                    .key == stage.key);
+      RC_ASSERT(name_of(record.stage) == stage.kind && record.parent == stage.parent);
+      const RunRecord again = prepare_stage(record.parameters, seed);
+      RC_ASSERT(
+          (record.stage == Stage::prepare ? again : last_stage(record.parameters, seed, again))
+              .id == stage.id);
     }
   }
 }

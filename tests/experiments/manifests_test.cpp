@@ -28,7 +28,7 @@ Plan plan(const std::string& experiment, const std::string& scale) {
 
 std::set<std::string> last_stages(const Plan& plan) {
   std::set<std::string> keys;
-  for (const PlannedRun& run : plan.runs) keys.insert(run.last.key);
+  for (const PlannedRun& run : plan.runs) keys.insert(run.last.id);
   return keys;
 }
 
@@ -88,7 +88,7 @@ TEST(Manifests, OfPublishedResultsExpand) {
 // Still fluid, bottom wall moving, continuous shear, A = 0.0833, time step of Table I, first seed.
 TEST(Manifests, ShareTheirCommonRun) {
   for (const std::string& scale : kScales) {
-    const std::string base = plan("drag", scale).runs.front().last.key;
+    const std::string base = plan("drag", scale).runs.front().last.id;
     for (const char* experiment :
          {"timestep", "relaxation", "moving_wall", "critical_size", "onset_amplitude", "walls"}) {
       EXPECT_TRUE(last_stages(plan(experiment, scale)).contains(base)) << experiment << scale;
@@ -98,7 +98,7 @@ TEST(Manifests, ShareTheirCommonRun) {
   }
   // At its own desk scale, N = 2000, the choices share no run.
   for (const char* scale : {"smoke", "paper"}) {
-    EXPECT_TRUE(last_stages(plan("choices", scale)).contains(plan("drag", scale).runs[0].last.key));
+    EXPECT_TRUE(last_stages(plan("choices", scale)).contains(plan("drag", scale).runs[0].last.id));
   }
   // With gravity, S6 has two of the amplitudes of C.
   const std::set<std::string> amplitudes = last_stages(plan("critical_size", "paper"));

@@ -181,9 +181,9 @@ TEST_F(Phases, DoNotEndARun) {
 TEST_F(Phases, OfAForgedRecordAreRejected) {
   compute(plain_, manifest(""));
   const RunRecord run = sheared(plain_);
-  RunDeclaration forged = declaration_of(run);
-  forged.membership.experiment = "forged";
-  forged.membership.checkpoint_phases.assign(1001, 0.5);
+  RunRecord forged = declaration_of(run);
+  forged.memberships[0].experiment = "forged";
+  forged.memberships[0].checkpoint_phases.assign(1001, 0.5);
   plain_.declare_run(forged);
   EXPECT_THROW(is_done(plain_, plain_.run(run.id)), StoreDamaged);
   EXPECT_THROW(plan_stage(plain_, plain_.run(run.id)), StoreDamaged);

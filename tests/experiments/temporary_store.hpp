@@ -105,14 +105,10 @@ inline RunRecord sheared(const Store& store) {
 }
 
 /// Declares the run again for its first experiment.
-inline RunDeclaration declaration_of(const RunRecord& run) {
-  return {run.id,
-          run.parent,
-          run.kind,
-          run.resolved,
-          run.grains,
-          run.target_cycles,
-          run.memberships.front()};
+inline RunRecord declaration_of(RunRecord run) {
+  run.memberships.resize(1);
+  run.memberships[0].target_cycles = run.target_cycles;
+  return run;
 }
 
 inline std::size_t count_events(const Store& store, const std::string& type,

@@ -46,8 +46,8 @@ fs::path make_store(const fs::path& folder) {
   Store store(folder, Access::create);
   const std::string manifest =
       store.register_manifest(kManifest, "a.yaml", {{"experiment", "a"}, {"figures", {"S2"}}});
-  RunDeclaration prepare = test::sample_run(0), shear = test::sample_run(1);
-  prepare.membership.manifest = shear.membership.manifest = manifest;
+  RunRecord prepare = test::sample_run(0), shear = test::sample_run(1);
+  prepare.memberships[0].manifest = shear.memberships[0].manifest = manifest;
   prepare.kind = "prepare";
   shear.parent = prepare.id;
   store.declare_run(prepare);

@@ -54,7 +54,7 @@ void check_plan(const Plan& plan) {
   for (const PlannedRun& run : plan.runs) {
     require(places.emplace(run.variant, run.seed).second, "no run is planned twice");
     require(read_stage(run.last.resolved).seed == run.seed, "a record reads back as its run");
-    require(stage_key(run.last.resolved) == run.last.key, "a run is named after its record");
+    require(stage_key(run.last.resolved) == run.last.id, "a run is named after its record");
   }
 }
 

@@ -33,11 +33,11 @@ Checkpoint sample(const std::string& id, std::uint64_t step) {
 }
 
 void declare(Store& store, const Act& act) {
-  RunDeclaration d = test::sample_run(act.run, act.amount);
+  RunRecord d = test::sample_run(act.run, act.amount);
   d.grains = 4;  // as sample() has
   if (act.run > 0) d.parent = run_id(0);
-  if (act.amount % 3 == 0) d.membership.experiment = "another";
-  d.membership.checkpoint_every = 1 + act.amount % 2;
+  if (act.amount % 3 == 0) d.memberships[0].experiment = "another";
+  d.memberships[0].checkpoint_every = 1 + act.amount % 2;
   store.declare_run(d);
 }
 

@@ -33,7 +33,7 @@ struct SampleHistory {
 
   explicit SampleHistory(Store& store) {
     store.register_manifest("manifest", "/home/somebody/../m.yaml", {{"experiment", "drag"}});
-    RunDeclaration first = sample_run(1, 0), second = sample_run(2, 3);
+    RunRecord first = sample_run(1, 0), second = sample_run(2, 3);
     first.kind = "prepare";
     first.resolved = {{"stage", "prepare"}, {"seed", 7}, {"parameters", {{"mass_kg", 2e-5}}}};
     second.parent = first.id;

@@ -58,7 +58,7 @@ TEST_F(Lineage, ARejectedCheckpointIsMarkedUntilItIsRecomputed) {
     return run.find(history_.rejected)->record.state == CheckpointState::rejected;
   };
   EXPECT_TRUE(rejected());
-  RunDeclaration longer = sample_run(2, 9);
+  RunRecord longer = sample_run(2, 9);
   const RunRecord known = store_.run(history_.sheared);
   longer.parent = known.parent;
   longer.resolved = known.resolved;

@@ -111,9 +111,9 @@ TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
 
 TEST_F(MigrationTest, AMigratedStoreCanBeContinued) {
   Store store(path_, Access::write);
-  const RunRecord run = store.run(kSheared);
-  store.declare_run(
-      {run.id, run.parent, run.kind, run.resolved, run.grains, 3, run.memberships.at(0)});
+  RunRecord run = store.run(kSheared);
+  run.memberships.at(0).target_cycles = 3;
+  store.declare_run(run);
   store.start_run(run.id, {}, store.checkpoints(run.id).back().sha256);
   EXPECT_EQ(store.events("run/" + run.id).back().schema, 2u);
   store.complete_run(run.id, {}, 3);

@@ -15,7 +15,7 @@ class PruneTest : public ::testing::Test {
   /// Run 0 with cycles 0 to 6 has completed; run 1, which began from cycle 3 of it, has failed.
   PruneTest() {
     for (int i = 0; i < 2; ++i) {
-      RunDeclaration declaration = sample_run(i, 6);
+      RunRecord declaration = sample_run(i, 6);
       if (i == 1) declaration.parent = run_id(0);
       store_.declare_run(declaration);
     }

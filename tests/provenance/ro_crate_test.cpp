@@ -98,9 +98,9 @@ TEST_F(Crate, AnActionHasNoLaterManifestAndNoConstantOfTheRecord) {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));  // times are kept in milliseconds
   store_.register_manifest("later", "later.yaml", {{"experiment", "drag"}});
   const RunRecord run = store_.run(history_.sheared);
-  RunDeclaration again = sample_run(2, 3);
+  RunRecord again = sample_run(2, 3);
   again.parent = run.parent, again.resolved = run.resolved;
-  again.membership.manifest = sha256_hex("later");
+  again.memberships[0].manifest = sha256_hex("later");
   store_.declare_run(again);
   const CrateFacts facts = crate_facts(store_, history_.sheared, "", {"mass_kg"});
   EXPECT_EQ(facts.manifests.size(), 2U);

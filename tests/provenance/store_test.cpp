@@ -69,7 +69,7 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   EXPECT_EQ(run.attempts, 1u);
   EXPECT_EQ(run.resolved, sample_run(1).resolved);
   ASSERT_EQ(run.memberships.size(), 1u);
-  EXPECT_EQ(run.memberships[0].seed, sample_run(1).membership.seed);
+  EXPECT_EQ(run.memberships[0].seed, sample_run(1).memberships[0].seed);
   EXPECT_EQ(run.memberships[0].target_cycles, 5u);
   EXPECT_EQ(types("run/" + id_), (std::vector<std::string>{"RunDeclared", "RunStarted",
                                                            "CheckpointRecorded", "RunCompleted"}));
@@ -102,13 +102,13 @@ TEST_F(StoreTest, KeepsAManifestOnce) {
 }
 
 TEST_F(StoreTest, RecordsADeclarationOnlyIfItIsNew) {
-  RunDeclaration d = sample_run(1);
+  RunRecord d = sample_run(1);
   store_.declare_run(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.target_cycles = 3;  // less than what is declared
+  d.memberships[0].target_cycles = 3;  // less than what is declared
   store_.declare_run(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.membership.experiment = "other";
+  d.memberships[0].experiment = "other";
   store_.declare_run(d);
   EXPECT_EQ(store_.run(id_).memberships.size(), 2u);
   EXPECT_EQ(store_.run(id_).memberships[1].target_cycles, 3u);
@@ -117,7 +117,7 @@ TEST_F(StoreTest, RecordsADeclarationOnlyIfItIsNew) {
   EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
   d.id = "run 1";
   EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
-  RunDeclaration orphan = sample_run(2);
+  RunRecord orphan = sample_run(2);
   orphan.parent = run_id(99);
   EXPECT_THROW(store_.declare_run(orphan), std::invalid_argument);
 }
@@ -148,8 +148,8 @@ TEST_F(StoreTest, ReportsWhyARunStopped) {
 
 TEST_F(StoreTest, ANewMembershipDoesNotStopARunner) {
   store_.start_run(id_, {});
-  RunDeclaration shared = sample_run(1);
-  shared.membership.experiment = "other";
+  RunRecord shared = sample_run(1);
+  shared.memberships[0].experiment = "other";
   open().declare_run(shared);
   store_.record_checkpoint(id_, sample_checkpoint(id_));
   store_.complete_run(id_);

@@ -26,7 +26,7 @@ class VerifyTest : public ::testing::Test {
     store.register_manifest("a: 1\n", "a.yaml", {{"experiment", "a"}});
     for (int i = 0; i < 2; ++i) {
       const std::string id = run_id(i);
-      RunDeclaration declaration = sample_run(i);
+      RunRecord declaration = sample_run(i);
       if (i == 1) declaration.parent = run_id(0);
       store.declare_run(declaration);
       store.start_run(id, {{"cpu", "test"}});

@@ -210,19 +210,19 @@ TEST_F(ReportOf, NeedsAnExperiment) {
 // Such a store is never written by this program, and may be handed to it.
 TEST_F(ReportOf, ShowsMarkupAsText) {
   const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a()'>\"&<!--";
-  RunDeclaration run;
-  run.membership.manifest = store_.register_manifest(
+  RunRecord run;
+  run.memberships.emplace_back().target_cycles = 1;
+  run.memberships[0].manifest = store_.register_manifest(
       "# " + evil + "\n", evil + ".yaml",
       {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
   run.id = std::string(64, 'a');
   run.kind = evil;
   run.resolved = {{evil, evil}};
   run.grains = 10;
-  run.target_cycles = 1;
-  run.membership.experiment = evil;
-  run.membership.scale = evil;
-  run.membership.variant = evil;
-  run.membership.swept = {{evil, evil}};
+  run.memberships[0].experiment = evil;
+  run.memberships[0].scale = evil;
+  run.memberships[0].variant = evil;
+  run.memberships[0].swept = {{evil, evil}};
   store_.declare_run(run);
   store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
   store_.fail_run(run.id, evil);
