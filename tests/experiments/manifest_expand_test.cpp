@@ -335,11 +335,11 @@ TEST(Expand, UntilIsReadAndOverriddenAndDoesNotChangeIds) {
       "  none: {until: none}\n";
   const Manifest manifest = parse(text + "until: {crystalline_percent: 10, extra_cycles: 15}\n");
   const PlannedRun one = at(manifest, "one").runs[0];
-  EXPECT_EQ(one.ends_early, (Until{StopMeasure::crystalline_percent, 10, 15}));
-  EXPECT_EQ(at(manifest, "two").runs[0].ends_early, (Until{StopMeasure::phi, 0.65, 0}));
-  EXPECT_EQ(at(manifest, "none").runs[0].ends_early, std::nullopt);
+  EXPECT_EQ(until_from_json(one.until), (Until{StopMeasure::crystalline_percent, 10, 15}));
+  EXPECT_EQ(until_from_json(at(manifest, "two").runs[0].until), (Until{StopMeasure::phi, 0.65, 0}));
+  EXPECT_TRUE(at(manifest, "none").runs[0].until.is_null());
   EXPECT_EQ(one.last.id, at(parse(text), "one").runs[0].last.id);
-  EXPECT_EQ(until_from_json(to_json(*one.ends_early)), *one.ends_early);
+  EXPECT_EQ(to_json(until_from_json(one.until)), one.until);
   for (const char* bad : {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
                           "{\"phi\":1,\"extra_cycles\":-1}"}) {
     EXPECT_THROW(until_from_json(nlohmann::json::parse(bad)), std::runtime_error) << bad;
