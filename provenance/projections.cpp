@@ -139,7 +139,7 @@ class Projector {
           event_.recorded_at);
     }
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
-        "target_cycles = max(target_cycles, excludem.target_cycles), "
+        "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
         "checkpoint_phases = excluded.checkpoint_phases",
         id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), m.target_cycles,

@@ -322,7 +322,10 @@ TEST(Proposed, UsesTheRateOfEachStagesEngine) {
     return made.seconds(made.shares.at(0));
   };
   const auto shear = [](EngineKind engine) {
-    return 2.0 * kStepsPerCycle * kGrains / Rates({}).of(engine, kGrains).particle_steps_per_second;
+    RunRecord stage;
+    stage.resolved = {{"parameters", {{"engine", name_of(engine)}}}};
+    stage.grains = kGrains;
+    return 2.0 * kStepsPerCycle * kGrains / Rates({}).of(stage).particle_steps_per_second;
   };
   EXPECT_NEAR(seconds("lammps") - seconds("shearcell"),
               shear(EngineKind::lammps) - shear(EngineKind::shearcell), 1e-6)

@@ -173,7 +173,7 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
       const double bytes = bytes_of(store_, stage->id);
       const double steps = store_.run(stage->id).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
-                  std::string(name_of(stage->stage)).c_str(), bytes, expected.bytes, steps,
+                  stage->kind.c_str(), bytes, expected.bytes, steps,
                   expected.particle_steps);
       EXPECT_NEAR(expected.bytes / bytes, 1, 0.3);
       EXPECT_NEAR(expected.particle_steps / steps, 1, 0.4);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `plan`, `status` and `submit` say is left is what `run` and `resume` then record, for asks
 // at random on shared stages, and after kills. The events of the log are the oracle.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
