@@ -153,7 +153,7 @@ std::string reference(const CLI::App& program) {
 void add_manual(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand(
       "manual", "Print the reference of manifest keys, measures and commands, in Markdown");
-  command->add_flag("--markdown", std::string("As without it"));
+  command->add_flag("--markdown")->description("As without it");
   command->footer("Example:\n  shearcell manual > reference.md");
   command->callback([&app] { fmt::print("{}", reference(app)); });
 }
