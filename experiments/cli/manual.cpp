@@ -10,7 +10,7 @@
 #include "analysis/onset.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/manifest/read_parts.hpp"
+#include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell::cli {
@@ -48,14 +48,9 @@ std::string cell(const std::string& text) {
 }
 
 std::string manifest_reference() {
-  std::string text =
-      "## Manifest keys\n\n"
-      "At the top level ([format and examples](manifest/README.md#format)):\n\n"
-      "| key | example | meaning |\n|---|---|---|\n";
-  for (const ManifestKey& key : manifest_keys()) {
-    text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.meaning);
-  }
-  return text + R"(
+  return "## Manifest keys\n\n"
+         "At the top level ([format and examples](manifest/README.md#format)):\n\n" +
+         manifest_markdown() + R"(
 ## Parameters
 
 Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those of the
