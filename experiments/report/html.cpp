@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <kainjow/mustache.hpp>
 #include <map>
+#include <stdexcept>
 
 namespace shearcell {
 namespace {
@@ -27,6 +29,24 @@ std::string escaped(const std::string& text, const Escapes& escapes) {
     result += escape == escapes.end() ? std::string_view(&c, 1) : escape->second;
   }
   return result;
+}
+
+kainjow::mustache::data template_value(const nlohmann::json& value) {
+  using kainjow::mustache::data;
+  if (value.is_object()) {
+    data object;
+    for (const auto& [key, member] : value.items()) object[key] = template_value(member);
+    return object;
+  }
+  if (value.is_array()) {
+    data list(data::type::list);
+    for (const nlohmann::json& item : value) list << template_value(item);
+    return list;
+  }
+  if (value.is_number()) return value.dump();
+  if (value.is_boolean()) return value.get<bool>();
+  const auto* text = value.get_ptr<const std::string*>();
+  return text == nullptr || text->empty() ? data(false) : data(*text);
 }
 
 }  // namespace
@@ -82,6 +102,14 @@ std::string scroll_box(std::string_view label, const std::string& html,
   return fmt::format(
       "<div class=\"{}\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">{}</div>\n", css_class,
       escape_html(label), html);
+}
+
+std::string filled(const std::string& page, const nlohmann::json& values) {
+  kainjow::mustache::mustache parsed(page);
+  parsed.set_custom_escape([](const std::string& text) { return escape_html(text); });
+  std::string html = parsed.render(template_value(values));
+  if (!parsed.is_valid()) throw std::logic_error("page.html: " + parsed.error_message());
+  return html;
 }
 
 std::string script_json(const nlohmann::json& value) {

@@ -33,6 +33,12 @@ std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
 std::string scroll_box(std::string_view label, const std::string& html,
                        std::string_view css_class = "scroll");
 
+/// The Mustache template `page` with these values. Tags in double braces are escaped by
+/// escape_html(), those in triple braces are markup. A section is shown for true, a number, a text
+/// that is not empty, an object, and for each item of an array. A name that the innermost object
+/// lacks is looked up in the objects around it. Throws std::logic_error for a malformed template.
+std::string filled(const std::string& page, const nlohmann::json& values);
+
 /// JSON for a <script> element. It contains no '<', '>' or '&', so that no text can end the element
 /// or begin a comment.
 std::string script_json(const nlohmann::json& value);

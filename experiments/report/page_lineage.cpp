@@ -31,6 +31,11 @@ std::string made_by(const json& host) {
                      text_at(host, "host"), text_at(host, "cpu"), text_at(host, "simd"));
 }
 
+/// A link to the part of the page about a stage.
+std::string run_link(const std::string& id) {
+  return fmt::format("<a class=\"id\" href=\"#run-{0}\">{0}</a>", brief(id));
+}
+
 std::string makers_html(const ReportFigure& figure) {
   std::set<std::string> makers;
   for (const auto& [id, stage] : figure.lineage.runs) {
@@ -160,11 +165,6 @@ std::string run_html(const RunLineage& stage) {
 
 std::string brief(const std::string& id) {
   return escape_html(id.substr(0, 12));
-}
-
-std::string run_link(const std::string& id, std::size_t digits) {
-  return fmt::format("<a class=\"id\" href=\"#run-{}\">{}</a>", brief(id),
-                     escape_html(id.substr(0, digits)));
 }
 
 std::string lineage_html(const ReportData& data, const ReportFigure& figure) {

@@ -66,13 +66,14 @@ export function runChecks({open, expect, shots}) {
       const {table} = await openTable(page);
       const body = table.locator("tbody").nth(1);
       await body.locator('td:has(.state)').click();
-      const plots = body.locator(".trace svg.canvas");
+      const plots = body.locator(".trace .canvas");
+      await plots.nth(1).locator(".xtick").first().waitFor({state: "attached"});
       expect(await plots.count() === 2, "traces: not two plots");
-      const labels = await body.locator(".trace .label").allTextContents();
+      const labels = await body.locator(".trace").locator(".xtitle, .ytitle").allTextContents();
       for (const label of ["volume fraction ϕ", "percentage crystalline  [%]", "shear cycle n"]) {
         expect(labels.includes(label), `traces: labels ${labels}`);
       }
-      expect(await body.locator(".trace .symbol").count() > 3, "traces: no points");
+      expect(await body.locator(".trace .point").count() > 3, "traces: no points");
       await body.scrollIntoViewIfNeeded();
       await page.screenshot({path: join(shots, "trace.png")});
       await table.locator('th[data-key="phi"]').getByRole("button").click();
@@ -96,18 +97,19 @@ export function runChecks({open, expect, shots}) {
       const page = await open("compare", {viewport: {width: 1400, height: 900}});
       const section = page.locator("#compare");
       await section.scrollIntoViewIfNeeded();
-      await section.locator(".side svg.canvas").first().waitFor();
-      expect(await section.locator(".side svg.canvas").count() === 4, "compare: not four plots");
-      const ticks = (side, plot) => section.locator(".side").nth(side).locator("svg.canvas").nth(plot)
-        .locator(".axes text").allTextContents();
+      await section.locator(".xtick").first().waitFor({state: "attached"});
+      expect(await section.locator(".panels .canvas").count() === 2, "compare: not two plots");
+      const [left, right] = await section.locator(".side select").evaluateAll((all) =>
+        all.map((select) => select.selectedOptions[0].textContent));
       for (const plot of [0, 1]) {
-        expect((await ticks(0, plot)).join() === (await ticks(1, plot)).join(),
-          `compare: plots ${plot} have different axes`);
+        const names = await section.locator(".panels .canvas").nth(plot).locator(".legendtext").allTextContents();
+        expect(names.length > 2 && names.every((name) => /seed \d+$/.test(name)) &&
+          [left, right].every((one) => names.some((name) => name.startsWith(`${one}, seed`))),
+        `compare: plot ${plot} has the curves ${names} of ${left} and ${right}`);
       }
-      const boxes = await section.locator(".side").evaluateAll((sides) =>
-        sides.map((side) => side.getBoundingClientRect()).map(({left, right, top}) => ({left, right, top})));
-      expect(boxes[0].top === boxes[1].top && boxes[0].right <= boxes[1].left,
-        "compare: they are not side by side");
+      const looks = await section.locator(".panels .canvas").first().locator(".legendpoints path").evaluateAll((all) =>
+        all.map((mark) => mark.style.fill + mark.style.stroke + mark.getAttribute("d")));
+      expect(new Set(looks).size === looks.length, `compare: two curves look alike: ${looks}`);
       await section.locator(".comparison > div").last().scrollIntoViewIfNeeded();
       await section.locator(".pane canvas").nth(1).waitFor();
       await page.waitForTimeout(300);
@@ -123,10 +125,10 @@ export function runChecks({open, expect, shots}) {
       await page.waitForTimeout(250);
       expect(!turned.equals(await pictures.nth(1).screenshot()), "compare: one is not coloured");
       await section.screenshot({path: join(shots, "compare.png")});
-      const left = section.locator(".side").nth(0);
-      const facts = await left.locator(".small").textContent();
-      await left.locator("select").selectOption({index: 2});
-      expect(await left.locator(".small").textContent() !== facts, "compare: the choice is not followed");
+      const side = section.locator(".side").nth(0);
+      const facts = await side.locator(".small").textContent();
+      await side.locator("select").selectOption({index: 2});
+      expect(await side.locator(".small").textContent() !== facts, "compare: the choice is not followed");
     },
 
     async workflow() {
