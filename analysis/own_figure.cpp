@@ -248,7 +248,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     table.chart.series[k].band = of_curve != nullptr;
     if (of_curve == nullptr) table.chart.series[k].runs = 0;  // those at each x are others
   }
-  if (plot.traces) table.chart.series = std::move(traces);
+  if (plot.show == Show::traces) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
     if (curves.size() == 1) series.title = {};
   }
@@ -284,7 +284,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
       curves_by(grouped ? groups : given, {}, [](const FigureRun&) { return nullptr; }, {});
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   const MeasureColumn column = scalar_column(plot.y);
-  if (plot.traces) return traces(plot, curves, column.quantity, x);
+  if (plot.show == Show::traces) return traces(plot, curves, column.quantity, x);
   if (plot.x == "cycle") return against_cycle(plot.name, curves, {&column, 1}, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, column, {});
   return against_measure(plot, curves);
@@ -316,10 +316,11 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
                   FigureTable table = draw(plot, runs, names);
                   table.chart.x = x_axis(plot, runs);
                   table.chart.y = axis_of(plot.y);
-                  table.chart.x.log = plot.log_x;
-                  table.chart.y.log = plot.log_y;
-                  if (plot.log_x) table.chart.x.low = {};
-                  if (plot.log_y) table.chart.y.low = {};
+                  table.chart.x.log = plot.log == LogAxes::x || plot.log == LogAxes::xy;
+                  table.chart.y.log = plot.log == LogAxes::y || plot.log == LogAxes::xy;
+                  for (Axis* axis : {&table.chart.x, &table.chart.y}) {
+                    if (axis->log) axis->low = {};
+                  }
                   return FigureResult{{std::move(table)}, {}};
                 }};
   if (measured != nullptr) figure.needs.emplace_back(measured->derived);

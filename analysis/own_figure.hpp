@@ -12,17 +12,34 @@
 #include <string_view>
 #include <vector>
 
+#include "core/named.hpp"
+
 namespace shearcell {
 
 struct Figure;
+
+/// What a plot draws: the mean over runs with its error, or every run.
+enum class Show : std::uint8_t { mean, traces };
+template <>
+inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "traces");
+
+/// Logarithmic axes of a plot.
+enum class LogAxes : std::uint8_t { none, x, y, xy };
+template <>
+inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
+
+/// What a claim says of the first variant: it has the same value, or a higher one.
+enum class Relation : std::uint8_t { same, higher };
+template <>
+inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher");
 
 struct PlotSpec {
   std::string name;
   std::string y;            ///< a scalar, curve (analysis/measures.hpp) or run measure (onset.hpp)
   std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter; unused by curves
   std::string by = {};      ///< a curve for each value of it; "": for each variant
-  bool traces = false;      ///< every run's curve, not their mean with its error
-  bool log_x = false, log_y = false;
+  Show show = Show::mean;
+  LogAxes log = LogAxes::none;
   /// Of curves, or with a parameter as x; default: the last one that all runs have.
   std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces only.
@@ -34,11 +51,12 @@ struct PlotSpec {
 
 struct ClaimSpec {
   std::string name;
-  std::string compare;                    ///< a scalar measure or a run measure
-  std::uint64_t first = 0, last = 0;      ///< its mean over these cycles; 0 of a run measure
+  std::string compare;  ///< a scalar measure or a run measure
+  /// The measure's mean over these cycles, first to last; nothing for a run measure.
+  std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::array<nlohmann::json, 2> between;  ///< parameters and their values, of one variant each
   double margin = 0;                      ///< of onset_size_cycle, of log2 of the ratio
-  bool higher = false;                    ///< for the first, instead of the same
+  Relation is = Relation::same;
 
   bool operator==(const ClaimSpec&) const = default;
 };
@@ -63,9 +81,13 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
+/// Why the sides of a claim cannot be compared, a sentence each. `variants`: how many variants have
+/// the values of each side; `same`: whether both are the same runs.
+std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
+                                           const std::array<std::size_t, 2>& variants, bool same);
+
 /// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
-/// Its function throws UsageError if a side fits several variants, or if both sides are the same
-/// runs.
+/// Its function throws UsageError with the first of problems_of_sides().
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

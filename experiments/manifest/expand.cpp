@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -79,96 +80,6 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   if (value_at(scale, "engine") == engine) return;
   std::vector<SweepAxis>& grid = scale.sweep->grid;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
-}
-
-bool has_interior(const Parameters& p) {
-  return expected_interior_grains(p) >= 1;
-}
-
-// What is sound but unlikely to be meant.
-std::vector<std::string> warnings_of(const Parameters& p) {
-  std::vector<std::string> warnings;
-  if (!pressure_lifts_column(p)) {
-    warnings.push_back(fmt::format(
-        "the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = {}). Use "
-        "`pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity off, or choose a "
-        "lower cell (height_over_width).",
-        p.pressure_Pa, p.grains));
-  }
-  if (!has_interior(p)) {
-    warnings.push_back(
-        fmt::format("the cell of {} grains is too small for interior grains, at least 1.5 d from "
-                    "the walls: phi and other measures of these have no value. {}",
-                    p.grains, advise_more_grains(p, has_interior)));
-  }
-  if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
-    warnings.push_back(
-        fmt::format("grains will overlap by {:.2g} d on average; the run fails at "
-                    "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
-                    overlap, p.max_overlap_diameters));
-  }
-  if (p.drag_kg_per_s == 0) {
-    warnings.push_back(
-        fmt::format("without drag the grains do not come to rest, so settling fails at "
-                    "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
-                    p.settle_time_limit_s));
-  } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
-    const std::string when =
-        time < 1e6 ? fmt::format("only after about {:.2g} s", time) : "too late";
-    warnings.push_back(
-        fmt::format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-                    "settle_time_limit_s ({:g} s). Raise one of them.",
-                    p.drag_kg_per_s, when, p.settle_time_limit_s));
-  }
-  if (p.protocol != ProtocolKind::stiffen) {
-    if (auto advice = time_step_advice(shear_time_step(p), "steps_per_cycle")) {
-      warnings.push_back(*std::move(advice));
-    }
-  }
-  if (auto advice = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
-    warnings.push_back(*std::move(advice));
-  }
-  return warnings;
-}
-
-// Warns of each variant that the plan has; a warning of several variants is one.
-void warn_of_variants(const Manifest& manifest, const std::vector<Variant>& variants, Plan& plan) {
-  std::vector<std::string> warnings;
-  std::map<std::string, std::vector<std::string>> names;  // by warning
-  for (const Variant& variant : variants) {
-    for (std::string& warning : warnings_of(variant.parameters)) {
-      std::vector<std::string>& known = names[warning];
-      if (known.empty()) warnings.push_back(warning);
-      known.push_back(variant.name());
-    }
-  }
-  for (const std::string& warning : warnings) {
-    const std::vector<std::string>& of = names[warning];
-    plan.warnings.push_back(fmt::format("{}: variant{} {}: {}", manifest.file,
-                                        of.size() == 1 ? "" : "s", some_of(of, 8), warning));
-  }
-}
-
-// Warns of each stated key that has no effect on any variant.
-void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
-                         const std::vector<Variant>& variants, Plan& plan) {
-  std::map<std::string, Position> stated;
-  for (const auto& [key, setting] : scale.settings) stated[key] = setting.at;
-  for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
-    for (const SweepAxis& axis : *axes) stated[axis.key] = axis.at;
-  }
-  if (scale.until->until) stated["until"] = scale.until->at;
-  if (scale.checkpoints->every_cycles != 1) stated["checkpoints"] = scale.checkpoints->at;
-  for (const auto& [key, at] : stated) {
-    std::string why;
-    for (const Variant& variant : variants) {
-      why = without_effect(key, variant.parameters);
-      if (why.empty()) break;
-    }
-    if (why.empty()) continue;
-    const ManifestProblem problem{manifest.file, at, key, why, "", "Leave it out."};
-    plan.warnings.push_back(problem.text());
-  }
 }
 
 // `common`: the facts that all runs of the scale share.
@@ -274,11 +185,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   name_variants(manifest, plan);
-  warn_of_variants(manifest, chosen, plan);
   take_declared_lengths(common, options.known, variants);
-  std::ranges::move(figure_warnings(manifest, scale, variants, seeds.size()),
+  std::ranges::move(warnings_of(manifest, scale, variants, chosen, seeds.size()),
                     std::back_inserter(plan.warnings));
-  warn_of_ineffective(manifest, scale, variants, plan);
   return plan;
 }
 

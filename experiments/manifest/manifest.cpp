@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <fstream>
 #include <system_error>
+#include <tuple>
 
+#include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/manifest/variants.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
@@ -70,6 +71,22 @@ void refuse(std::string_view file, Position at, std::string key, std::string pro
             std::string got, std::string remedy) {
   throw ManifestError({{std::string(file), at, std::move(key), std::move(problem), std::move(got),
                         std::move(remedy)}});
+}
+
+void ProblemList::add(Position at, std::string key, std::string problem, std::string got,
+                      std::string remedy) {
+  ManifestProblem entry{
+      file_, at, std::move(key), std::move(problem), std::move(got), std::move(remedy)};
+  if (texts_.insert(entry.text()).second) problems_.push_back(std::move(entry));
+}
+
+void ProblemList::raise() {
+  if (problems_.empty()) return;
+  const auto place = [](const ManifestProblem& problem) {
+    return std::tuple(problem.at.line, problem.at.column);
+  };
+  std::ranges::stable_sort(problems_, {}, place);
+  throw ManifestError(std::move(problems_));
 }
 
 Manifest load_manifest(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,25 @@ class ManifestError : public UsageError {
 
  private:
   std::vector<ManifestProblem> problems_;
+};
+
+/// Collects the problems of a manifest, so that all are reported at once.
+class ProblemList {
+ public:
+  explicit ProblemList(std::string_view file) : file_(file) {}
+
+  /// Adds a problem, unless it was added before: many variants may share one.
+  void add(Position at, std::string key, std::string problem, std::string got, std::string remedy);
+
+  std::size_t size() const { return problems_.size(); }
+
+  /// Throws ManifestError, with the problems in the order of the text, if there are any.
+  void raise();
+
+ private:
+  std::string file_;
+  std::vector<ManifestProblem> problems_;
+  std::set<std::string> texts_;
 };
 
 /// Throws a ManifestError of this problem alone.
@@ -178,6 +198,9 @@ Manifest load_manifest(const std::filesystem::path& path);
 /// Reads a text and checks every variant of every scale; `file` is its name in messages. Throws
 /// ManifestError.
 Manifest parse_manifest(std::string_view text, std::string_view file);
+
+/// The table of the keys at the top level in experiments/REFERENCE.md.
+std::string manifest_markdown();
 
 /// The same without the checks of the variants: only keys, types and ranges. Throws ManifestError
 /// with all problems.

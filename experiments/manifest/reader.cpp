@@ -1,152 +1,746 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the keys at the top level of a manifest, and its scales.
-#include "experiments/manifest/read_parts.hpp"
-
+// Reads a manifest. `fields` describes the keys of each struct once: Reader reads and checks them,
+// and keys_markdown() documents them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <limits>
+#include <numeric>
+#include <set>
 #include <utility>
 
 #include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/limits.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
 
+using nlohmann::json;
 using std::string;
 using std::string_view;
+using Names = std::vector<string_view>;
 
-constexpr std::size_t kLongestQuestion = 2'000;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Range kCycles = {1, StoreLimits::cycles};
+// A double holds it exactly, so readers in any language can.
+constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
-void read_question(const Entry& in, Manifest& manifest) {
-  if (is_text(in.node, kLongestQuestion, true)) {
-    manifest.question = in.node.text;
-  } else {
-    in.reject_type("a plain text",
-                   fmt::format("It takes one text of at most {} bytes.", kLongestQuestion));
-  }
+template <class... More>
+Names joined(Names names, const More&... more) {
+  (names.insert(names.end(), more.begin(), more.end()), ...);
+  return names;
 }
 
-void read_figures(const Entry& in, Manifest& manifest) {
-  for (const Entry& item : read_list(in, "[S2]")) {
-    const string figure = read_name(item);
-    if (figure.empty()) continue;
-    if (std::ranges::find(manifest.figures, figure) != manifest.figures.end()) {
-      item.reject_value("names a figure twice", "Keep one of them.");
-    } else if (find_figure(figure) == nullptr) {
-      item.reject_value(with_nearest("names an unknown figure", figure, names_of(all_figures())),
-                        "`shearcell figures --help` lists them.");
-    }
-    manifest.figures.push_back(figure);
+// The parameters that distinguish runs. The record of a run does not hold the others.
+Names parameters() {
+  Names names;
+  for (const Field& field : schema()) {
+    if (field.identity.distinguishes_runs()) names.push_back(field.name);
   }
+  return names;
 }
 
-// Reads the parameters of `base` or of a scale; a scale may also have sections.
-void read_settings(const Entry& in, Scale& scale, bool with_sections) {
-  if (in.node.kind != Node::Kind::map) {
-    in.reject_type("a map of parameters", "Indent `key: value` lines under it.");
-    return;
+// `until` as it is written: one of the measures.
+struct UntilKeys {
+  std::optional<double> crystalline_percent, largest_crystallite, phi;
+  std::uint64_t extra_cycles = 0;
+
+  double of(StopMeasure measure) const {
+    const std::optional<double> values[] = {crystalline_percent, largest_crystallite, phi};
+    return values[static_cast<std::size_t>(measure)].value_or(0);
   }
-  std::vector<string_view> allowed = names_of(schema());
-  for (const ManifestKey& key : manifest_keys()) {
-    if (with_sections && key.read_in_scale != nullptr) allowed.push_back(key.name);
-  }
-  for (const Entry& entry : in.entries()) {
-    const string& name = entry.key.text;
-    if (std::ranges::find(allowed, name) == allowed.end()) {
-      entry.reject_unknown(allowed);
-    } else if (const Field* field = find_field(name); field == nullptr) {
-      std::ranges::find(manifest_keys(), name, &ManifestKey::name)->read_in_scale(entry, scale);
-    } else if (is_auto(*field, entry.node)) {
-      scale.settings[name] = {entry.node.text, entry.node.at};
-    } else if (auto read = read_parameter(*field, entry)) {
-      scale.settings[name] = {std::move(*read), entry.node.at};
-    }
-  }
+};
+
+void fields(UntilKeys& until, const auto& visit) {
+  visit(until.crystalline_percent,
+        {.name = "crystalline_percent", .unit = "%", .range = {0, 100, true}});
+  visit(until.largest_crystallite,
+        {.name = "largest_crystallite", .range = {1, 1e8}, .whole = true});
+  visit(until.phi, {.name = "phi", .range = {0, 1, true}});
+  visit(until.extra_cycles, {.name = "extra_cycles", .range = {0, StoreLimits::cycles}});
 }
 
-void read_scales(const Entry& in, Manifest& manifest) {
-  const string remedy = "It takes `NAME: {key: value}` entries, such as smoke, desk and paper.";
-  if (!in.is_map()) return in.reject_type("a map of scales", remedy);
-  const std::size_t count = in.node.entries.size();
-  if (count > ManifestLimits::scales) {
-    in.problems.add(in.node.at, in.path,
-                    fmt::format("has more than {} scales", ManifestLimits::scales),
-                    fmt::format("{} scales", count), "");
-    return;
-  }
-  for (const Entry& entry : in.entries()) {
-    if (!is_name(entry.key.text)) {
-      Entry{entry.key, entry.key, entry.path, in.problems}.reject_type("a name for a scale",
-                                                                       remedy);
-    }
-    Scale& scale = manifest.scales.emplace_back();
-    scale.name = entry.key.text;
-    scale.at = entry.key.at;
-    read_settings(entry, scale, true);
-  }
+void fields(Checkpoints& checkpoints, const auto& visit) {
+  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = kCycles});
+  visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
 }
 
-// A key that a scale may also have.
-template <auto Member, auto Read>
-constexpr ManifestKey part(string_view name, string_view example, string_view meaning) {
-  return {name, example, meaning,
-          [](const Entry& in, Manifest& manifest) { manifest.base.*Member = Read(in); },
-          [](const Entry& in, Scale& scale) { scale.*Member = Read(in); }};
+void fields(Sweep& sweep, const auto& visit) {
+  visit(sweep.grid, {.name = "grid"});
+  visit(sweep.zip, {.name = "zip"});
 }
 
-}  // namespace
+void fields(Scale& scale, const auto& visit) {
+  visit(scale.sweep,
+        {.name = "sweep",
+         .doc = "parameters that vary: `grid` takes every combination, keys of `zip` advance "
+                "together",
+         .example = "{grid: {fluid: [still, cell]}}"});
+  visit(scale.seeds,
+        {.name = "seeds", .doc = "seeds 1 to 6, or a list; default 1", .example = "6"});
+  visit(scale.checkpoints,
+        {.name = "checkpoints",
+         .doc = "cycles between checkpoints, default 1, and always one after the last cycle; "
+                "`phases` adds fractions of each cycle that follows one, pause included, default "
+                "none",
+         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
+         .wanted = "a map of settings"});
+  visit(scale.until,
+        {.name = "until",
+         .doc = "ends a run `extra_cycles` after the measure reaches the value; default: at "
+                "`cycles`",
+         .example = "{crystalline_percent: 10, extra_cycles: 15}"});
+}
 
-std::span<const ManifestKey> manifest_keys() {
-  static constexpr std::array<ManifestKey, 12> keys = {{
-      {"experiment", "drag", "required; its name: letters, digits, - and _",
-       [](const Entry& in, Manifest& manifest) {
-         manifest.experiment = read_name(in);
-         manifest.experiment_at = in.key.at;
-       }},
-      {"question", "Does the fluid matter?", "what the experiment is to find out, for people",
-       read_question},
-      {"figures", "[S2]", "figures of the supplement to draw", read_figures},
-      {"labels", "{\"fluid=still\": fluid at rest}",
-       "names of variants in drawings, captions, progress, `status` and `table`", read_labels},
-      {"plots", "[{name: compaction, y: phi, x: cycle}]", "figures of your own", read_plots},
-      {"claims",
-       "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: cell}], "
-       "margin: 0.001}]",
-       "claims of your own, decided like those of the supplement", read_claims},
-      {"base", "{grains: 7900}", "parameters of every run; others have their default",
-       [](const Entry& in, Manifest& manifest) {
-         manifest.base.at = in.key.at;
-         read_settings(in, manifest.base, false);
-       }},
-      part<&Scale::sweep, read_sweep>(
-          "sweep", "{grid: {fluid: [still, cell]}}",
-          "parameters that vary: `grid` takes every combination, keys of `zip` advance together"),
-      part<&Scale::seeds, read_seeds>("seeds", "6", "seeds 1 to 6, or a list; default 1"),
-      part<&Scale::checkpoints, read_checkpoints>(
-          "checkpoints", "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
-          "cycles between checkpoints, default 1, and always one after the last cycle; "
-          "`phases` adds fractions of each cycle that follows one, pause included, default none"),
-      part<&Scale::until, read_until>(
-          "until", "{crystalline_percent: 10, extra_cycles: 15}",
-          "ends a run `extra_cycles` after the measure reaches the value; default: at `cycles`"),
-      {"scales", "{smoke: {grains: 600, seeds: 2, cycles: 5}}",
-       "named sizes, which override the keys above; default `desk`", read_scales},
-  }};
+void fields(Placed<PlotSpec>& plot, const auto& visit) {
+  static const Names can_be_x = joined({"cycle"}, names_of(all_scalar_measures()), parameters());
+  static const Names can_be_y =
+      joined({}, names_of(all_scalar_measures()), names_of(all_curve_measures()),
+             names_of(all_run_measures()));
+  static const Names can_be_by = parameters();
+  visit(plot.name, {.name = "name", .required = true});
+  visit(plot.y, {.name = "y", .names = can_be_y, .required = true});
+  visit(plot.x, {.name = "x", .names = can_be_x});
+  visit(plot.by, {.name = "by", .names = can_be_by});
+  visit(plot.show, {.name = "show"});
+  visit(plot.log, {.name = "log"});
+  visit(plot.cycle, {.name = "at_cycle", .range = kCycles});
+  visit(plot.cycles, {.name = "cycles", .range = kCycles, .example = "[20, 21]"});
+}
+
+void fields(Placed<ClaimSpec>& claim, const auto& visit) {
+  static const Names can_be_compared =
+      joined({}, names_of(all_scalar_measures()), names_of(all_run_measures()));
+  visit(claim.name, {.name = "name", .required = true});
+  visit(claim.compare, {.name = "compare", .names = can_be_compared, .required = true});
+  visit(claim.between,
+        {.name = "between", .example = "[{fluid: still}, {fluid: cell}]", .required = true});
+  visit(claim.margin, {.name = "margin", .range = {0, kInfinity, true}, .required = true});
+  visit(claim.cycles, {.name = "at_cycle", .range = kCycles});
+  visit(claim.cycles, {.name = "cycles", .range = kCycles, .example = "[1, 15]"});
+  visit(claim.is, {.name = "is"});
+}
+
+void fields(Manifest& manifest, const auto& visit) {
+  visit(manifest.experiment, {.name = "experiment",
+                              .doc = "required; its name: letters, digits, - and _",
+                              .example = "drag"});
+  visit(manifest.question, {.name = "question",
+                            .doc = "what the experiment is to find out, for people",
+                            .example = "Does the fluid matter?",
+                            .longest = 2'000});
+  visit(manifest.figures,
+        {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
+  visit(manifest.labels,
+        {.name = "labels",
+         .doc = "names of variants in drawings, captions, progress, `status` and `table`",
+         .example = "{\"fluid=still\": fluid at rest}",
+         .wanted = "a map of names"});
+  visit(manifest.plots, {.name = "plots",
+                         .doc = "figures of your own",
+                         .example = "[{name: compaction, y: phi, x: cycle}]"});
+  visit(manifest.claims,
+        {.name = "claims",
+         .doc = "claims of your own, decided like those of the supplement",
+         .example = "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
+                    "cell}], margin: 0.001}]"});
+  visit(manifest.base.settings, {.name = "base",
+                                 .doc = "parameters of every run; others have their default",
+                                 .example = "{grains: 7900}"});
+  fields(manifest.base, visit);
+  visit(manifest.scales, {.name = "scales",
+                          .doc = "named sizes, which override the keys above; default `desk`",
+                          .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
+}
+
+template <class T>
+concept HasFields = requires(T& value) {
+  fields(value, [](auto&, const Field&) {});
+};
+
+template <HasFields T>
+std::vector<Field> keys_of() {
+  T empty;
+  std::vector<Field> keys;
+  fields(empty, [&]<class Member>(Member&, const Field& field) {
+    keys.push_back(with_type<Member>(field));
+  });
   return keys;
 }
 
-string read_name(const Entry& in) {
-  if (in.is_scalar() && is_name(in.node.text)) return in.node.text;
-  in.reject_type(
-      "a name",
-      fmt::format(
-          "It takes ASCII letters, digits, - and _, at most {} of them, and does not begin with -.",
-          kLongestName));
+// A node as messages quote it.
+string shown(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::null:
+      return "nothing";
+    case Node::Kind::list:
+      return node.items.empty() ? "an empty list" : "a list";
+    case Node::Kind::map:
+      return node.entries.empty() ? "an empty map" : "a map";
+    case Node::Kind::scalar:
+      break;
+  }
+  return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
+}
+
+// A value of the document while it is read.
+struct Entry {
+  const Node& key;   // for an item, the key of its list; for the document, the document
+  const Node& node;  // the value
+  string path;       // to the key, as in "scales.smoke.grains"
+  ProblemList& problems;
+
+  bool is_scalar() const { return node.kind == Node::Kind::scalar; }
+  bool is_list() const { return node.kind == Node::Kind::list; }
+  /// Whether it is a map with at least one key.
+  bool is_map() const { return node.kind == Node::Kind::map && !node.entries.empty(); }
+
+  std::vector<Entry> entries() const {
+    std::vector<Entry> all;
+    for (const auto& [name, value] : node.entries) {
+      const string last = printable(name.text);
+      all.push_back({name, value, path.empty() ? last : path + "." + last, problems});
+    }
+    return all;
+  }
+  std::vector<Entry> items() const {
+    std::vector<Entry> all;
+    for (const Node& item : node.items) all.push_back({key, item, path, problems});
+    return all;
+  }
+  /// The entry of a key of the map.
+  std::optional<Entry> find(string_view name) const {
+    for (Entry& entry : entries()) {
+      if (entry.key.text == name) return std::optional<Entry>(std::in_place, entry);
+    }
+    return std::nullopt;
+  }
+
+  /// Reports a problem with the value, and quotes it.
+  void reject_value(string problem, string remedy) const {
+    problems.add(node.at, path, std::move(problem), shown(node), std::move(remedy));
+  }
+  /// Reports that the value is not `wanted`, as in "a list".
+  void reject_type(string_view wanted, string remedy) const {
+    reject_value(fmt::format("is not {}", wanted), std::move(remedy));
+  }
+  /// Reports a problem at the value, or at the key, without a quotation.
+  void reject(string problem, string remedy) const {
+    problems.add(node.at, path, std::move(problem), "", std::move(remedy));
+  }
+  void reject_key(string problem, string remedy) const {
+    problems.add(key.at, path, std::move(problem), "", std::move(remedy));
+  }
+  /// Reports that the key is not one of those `allowed` in its map, with the nearest of them.
+  void reject_unknown(const Names& allowed) const;
+};
+
+void Entry::reject_unknown(const Names& allowed) const {
+  static const std::vector<Field> sections = keys_of<Manifest>();
+  if (key.text == "<<") return reject_key("merge keys are not read", "Write it out.");
+  if (path == printable(key.text) && find_field(key.text) != nullptr) {  // at the top level
+    return reject_key("is a parameter", "Move it under `base:`.");
+  }
+  if (find_named(sections, key.text) != nullptr) {
+    return reject_key("does not belong here", "Move it to the top level.");
+  }
+  const Suggestion near = suggest_name(key.text, allowed);
+  if (near.missing_unit) {
+    reject_key("is written without its unit", fmt::format("Write {}.", near.name));
+  } else if (!near.name.empty()) {
+    reject_key("is an unknown key", fmt::format("Did you mean {}?", near.name));
+  } else if (allowed.size() <= sections.size()) {
+    reject_key("is an unknown key", fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
+  } else {
+    reject_key("is an unknown key", "`shearcell manual --markdown` lists the keys.");
+  }
+}
+
+// "It takes [1, 15].", or what the key takes if it has no example.
+string remedy_of(const Field& about) {
+  return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
+                               : fmt::format("It takes `{}`.", about.example);
+}
+
+// The value of a number or choice; nothing after a problem with its type or range.
+std::optional<json> read_scalar(const Entry& in, const Field& about) {
+  if (!in.is_scalar()) {
+    in.reject_type("a single value", remedy_of(about));
+    return std::nullopt;
+  }
+  auto read = read_value(about, in.node.text, in.node.quoted);
+  if (const auto* wrong = std::get_if<ValueProblem>(&read)) {
+    in.reject_value(wrong->problem, wrong->remedy);
+    return std::nullopt;
+  }
+  return std::get<json>(std::move(read));
+}
+
+// Whether the node is the word `auto` and the parameter takes it.
+bool is_auto(const Field& field, const Node& node) {
+  return takes_auto(field.name) && node.kind == Node::Kind::scalar && !node.quoted &&
+         node.text == "auto";
+}
+
+// The items of a list; empty after a problem, as with an empty or too long list.
+std::vector<Entry> items_of(const Entry& in, string_view example) {
+  constexpr std::size_t most = ManifestLimits::values_per_list;
+  const std::size_t count = in.node.items.size();
+  if (!in.is_list()) {
+    in.reject_type("a list", fmt::format("It takes a list such as {}.", example));
+  } else if (count == 0) {
+    in.reject("is an empty list",
+              fmt::format("Remove the key, or write a list such as {}.", example));
+  } else if (count > most) {
+    in.problems.add(in.node.at, in.path, fmt::format("has more than {} values", most),
+                    fmt::format("{} values", count), "Shorten the list.");
+  } else {
+    return in.items();
+  }
   return {};
 }
+
+// Reads a parameter and its value into `where`.
+void read_where(const Entry& in, json& where) {
+  const Field* field = find_field(in.key.text);
+  if (field == nullptr) return in.reject_unknown(parameters());
+  if (!field->identity.distinguishes_runs()) {
+    return in.reject_key("does not distinguish runs", "Name a parameter that does.");
+  }
+  if (where.contains(in.key.text)) return in.reject_key("is stated twice", "State it once.");
+  if (auto read = read_scalar(in, *field)) where[in.key.text] = std::move(*read);
+}
+
+// Reads the key "fluid=still,amplitude_rad=0.05" as a map.
+json read_selector(const Entry& in) {
+  Node map{Node::Kind::map, in.key.at};
+  string_view rest = in.key.text;
+  while (!rest.empty()) {
+    const string_view part = trimmed(rest.substr(0, rest.find(',')));
+    rest.remove_prefix(std::min(rest.find(','), rest.size() - 1) + 1);
+    const std::size_t equal = part.find('=');
+    if (equal == part.npos) {
+      in.problems.add(in.key.at, in.path, "does not select variants", shown(in.key),
+                      "It takes `\"fluid=still\"`, or several joined by commas.");
+      break;
+    }
+    map.entries.push_back({{Node::Kind::scalar, in.key.at, string(part.substr(0, equal))},
+                           {Node::Kind::scalar, in.key.at, string(part.substr(equal + 1))}});
+  }
+  json where = json::object();
+  for (const Entry& entry : Entry{in.key, map, in.path, in.problems}.entries()) {
+    read_where(entry, where);
+  }
+  return where;
+}
+
+void check_grid(const Sweep& sweep, const Entry& in) {
+  for (const SweepAxis& axis : sweep.grid) {
+    const string path = fmt::format("{}.grid.{}", in.path, axis.key);
+    std::set<json> seen;
+    for (const Setting& setting : axis.values) {
+      if (seen.insert(setting.value).second) continue;
+      in.problems.add(setting.at, path, "repeats a value", setting.value.dump(),
+                      "Keep one of them.");
+    }
+    if (std::ranges::find(sweep.zip, axis.key, &SweepAxis::key) != sweep.zip.end()) {
+      in.problems.add(axis.at, path, "is in both grid and zip", "", "Keep one of them.");
+    }
+  }
+}
+
+void check_zip(const std::vector<SweepAxis>& zip, const Entry& in) {
+  if (zip.empty()) return;
+  const string path = in.path + ".zip";
+  const SweepAxis& first = zip.front();
+  if (zip.size() == 1 && is_length(first.key)) {
+    return in.problems.add(first.at, path + "." + first.key, "advances with no other key", "",
+                           "Set it in `base` or in a scale.");
+  }
+  const std::size_t rows = first.values.size();
+  for (const SweepAxis& axis : zip) {
+    if (axis.values.size() == rows) continue;
+    return in.problems.add(axis.at, path + "." + axis.key,
+                           fmt::format("differs in length from {}, which has {}", first.key, rows),
+                           counted(axis.values.size(), "value"),
+                           "The lists of a zip advance together; make them equally long.");
+  }
+  std::set<json> seen;
+  for (std::size_t row = 0; row < rows; ++row) {
+    json values = json::array();
+    for (const SweepAxis& axis : zip) {
+      if (!is_length(axis.key)) values.push_back(axis.values[row].value);
+    }
+    if (seen.insert(values).second) continue;
+    in.problems.add(first.values[row].at, path, "repeats a row of values", printable(values.dump()),
+                    "Keep one of them.");
+  }
+}
+
+// Reads a value into a member of its type. Problems are reported, and reading continues.
+struct Reader {
+  // Reads the value of one of the keys; false if it is none of them.
+  template <HasFields T>
+  static bool read_key(const Entry& entry, T& value) {
+    bool known = false;
+    fields(value, [&]<class Member>(Member& member, const Field& about) {
+      if (about.name != entry.key.text) return;
+      known = true;
+      read(entry, with_type<Member>(about), member);
+    });
+    return known;
+  }
+
+  static void read(const Entry& in, const Field& about, std::uint64_t& value) {
+    if (const auto read = read_scalar(in, about)) read->get_to(value);
+  }
+  static void read(const Entry& in, const Field& about, double& value) {
+    if (const auto read = read_scalar(in, about)) read->get_to(value);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  static void read(const Entry& in, const Field& about, Enum& value) {
+    if (const auto read = read_scalar(in, about)) {
+      value = value_of<Enum>(read->get_ref<const string&>()).value();
+    }
+  }
+  template <class T>
+  static void read(const Entry& in, const Field& about, std::optional<T>& value) {
+    read(in, with_type<T>(about), value.emplace());
+  }
+
+  // One of the names, a text, or a name.
+  static void read(const Entry& in, const Field& about, string& value) {
+    const bool scalar = in.is_scalar();
+    if (about.is_choice()) {
+      if (const auto read = read_scalar(in, about)) read->get_to(value);
+    } else if (about.longest > 0) {
+      if (scalar && in.node.text.size() <= about.longest) {
+        value = in.node.text;
+      } else {
+        in.reject_type("a plain text",
+                       fmt::format("It takes one text of at most {} bytes.", about.longest));
+      }
+    } else if (scalar && is_name(in.node.text)) {
+      value = in.node.text;
+    } else {
+      in.reject_type("a name",
+                     fmt::format("It takes ASCII letters, digits, - and _, at most {} of them, and "
+                                 "does not begin with -.",
+                                 kLongestName));
+    }
+  }
+
+  // A first and a last cycle.
+  static void read(const Entry& in, const Field& about, std::array<std::uint64_t, 2>& value) {
+    value = {1, 1};
+    if (about.example.empty()) {  // one cycle
+      read(in, {.range = about.range, .whole = true}, value[0]);
+      value[1] = value[0];
+      return;
+    }
+    const std::vector<Entry> ends = items_of(in, about.example);
+    if (ends.size() == 2) {
+      read(ends[0], {.range = about.range, .whole = true}, value[0]);
+      value[1] = value[0];
+      read(ends[1], {.range = about.range, .whole = true}, value[1]);
+    }
+    if (ends.size() != 2 || value[1] < value[0]) {
+      in.reject("is not a first and a last cycle", fmt::format("It takes `{}`.", about.example));
+    }
+  }
+
+  template <HasFields T>
+  static void read(const Entry& in, const Field& about, std::vector<T>& values) {
+    Field item = about;
+    item.example = about.example.substr(1, about.example.size() - 2);  // without the brackets
+    for (const Entry& each : items_of(in, about.example)) read(each, item, values.emplace_back());
+  }
+
+  // Phases of a cycle.
+  static void read(const Entry& in, const Field& about, std::vector<double>& phases) {
+    for (const Entry& item : items_of(in, about.example)) {
+      const auto read = read_scalar(item, {.range = {-kInfinity, kInfinity}});
+      if (!read) continue;
+      const auto phase = read->get<double>();
+      if (!(phase > 0 && phase < 1)) {
+        item.reject_value("is not within a cycle", "It takes fractions p of a cycle, 0 < p < 1.");
+      } else if (!phases.empty() && phase <= phases.back()) {
+        item.reject_value("is not greater than the phase before it",
+                          "List them in ascending order, each once.");
+      } else {
+        phases.push_back(phase);
+      }
+    }
+  }
+
+  static void read(const Entry& in, const Field& about, std::vector<string>& figures) {
+    for (const Entry& item : items_of(in, about.example)) {
+      string figure;
+      read(item, {}, figure);
+      if (figure.empty()) continue;
+      if (std::ranges::find(figures, figure) != figures.end()) {
+        item.reject_value("names a figure twice", "Keep one of them.");
+      } else if (find_figure(figure) == nullptr) {
+        item.reject_value(with_nearest("names an unknown figure", figure, names_of(all_figures())),
+                          "`shearcell figures --help` lists them.");
+      }
+      figures.push_back(figure);
+    }
+  }
+
+  static void read(const Entry& in, const Field& about, std::vector<VariantLabel>& labels) {
+    if (!in.is_map()) in.reject_type(about.wanted, remedy_of(about));
+    for (const Entry& entry : in.entries()) {
+      constexpr std::size_t longest = 60;  // [bytes]
+      const string& name = entry.node.text;
+      if (!entry.is_scalar() || name.empty() || name.size() > longest ||
+          name.find('\n') != name.npos) {
+        entry.reject_type("a name", fmt::format("It takes a text of at most {} bytes.", longest));
+      }
+      labels.push_back({read_selector(entry), name, entry.key.at});
+    }
+  }
+
+  // The two sides of a claim.
+  static void read(const Entry& in, const Field& about, std::array<json, 2>& between) {
+    const std::size_t problems_before = in.problems.size();
+    const std::vector<Entry> sides = items_of(in, about.example);
+    for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
+      between[k] = json::object();
+      for (const Entry& entry : sides[k].entries()) read_where(entry, between[k]);
+    }
+    const bool two = sides.size() == 2 && !between[0].empty() && !between[1].empty();
+    if (!two && in.problems.size() == problems_before) {
+      in.reject("does not name two variants", remedy_of(about));
+    }
+  }
+
+  // Parameters, and other keys as `read_other` reads them: it returns false for those that it does
+  // not know.
+  static void read_settings(const Entry& in, Settings& settings, const Names& others,
+                            const auto& read_other) {
+    if (in.node.kind != Node::Kind::map) {
+      return in.reject_type("a map of parameters", "Indent `key: value` lines under it.");
+    }
+    for (const Entry& entry : in.entries()) {
+      const Field* field = find_field(entry.key.text);
+      if (field == nullptr) {
+        if (!read_other(entry)) entry.reject_unknown(joined(names_of(schema()), others));
+      } else if (is_auto(*field, entry.node)) {
+        settings[entry.key.text] = {entry.node.text, entry.node.at};
+      } else if (auto value = read_scalar(entry, *field)) {
+        settings[entry.key.text] = {std::move(*value), entry.node.at};
+      }
+    }
+  }
+
+  static void read(const Entry& in, const Field&, Settings& settings) {
+    read_settings(in, settings, {}, [](const Entry&) { return false; });
+  }
+
+  static void read(const Entry& in, const Field&, std::vector<Scale>& scales) {
+    const string remedy = "It takes `NAME: {key: value}` entries, such as smoke, desk and paper.";
+    if (!in.is_map()) return in.reject_type("a map of scales", remedy);
+    const std::size_t count = in.node.entries.size();
+    if (count > ManifestLimits::scales) {
+      return in.problems.add(in.node.at, in.path,
+                             fmt::format("has more than {} scales", ManifestLimits::scales),
+                             fmt::format("{} scales", count), "");
+    }
+    for (const Entry& entry : in.entries()) {
+      if (!is_name(entry.key.text)) {
+        Entry{entry.key, entry.key, entry.path, in.problems}.reject_type("a name for a scale",
+                                                                         remedy);
+      }
+      Scale& scale = scales.emplace_back(Scale{.name = entry.key.text, .at = entry.key.at});
+      read_settings(entry, scale.settings, names_of(keys_of<Scale>()),
+                    [&](const Entry& part) { return read_key(part, scale); });
+    }
+  }
+
+  // The axes of `grid` or `zip`.
+  static void read(const Entry& in, const Field& about, std::vector<SweepAxis>& axes) {
+    if (!in.is_map()) in.reject_value("sweeps nothing", "It takes `{key: [values]}`.");
+    for (const Entry& entry : in.entries()) {
+      const Field* field = find_field(entry.key.text);
+      if (field == nullptr) {
+        entry.reject_unknown(names_of(schema()));
+        continue;
+      }
+      const bool length = is_length(field->name);
+      if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
+        entry.reject_key("cannot be swept, since another value does not make another run",
+                         length ? "Set it in `base` or in a scale, or zip it with a key that does."
+                                : "Set it in `base` or in a scale.");
+        continue;
+      }
+      SweepAxis& axis = axes.emplace_back(SweepAxis{entry.key.text, entry.key.at, {}});
+      for (const Entry& item : items_of(entry, "[1, 2]")) {
+        if (is_auto(*field, item.node)) {
+          item.reject("cannot be swept as `auto`",
+                      "Set it in `base` or in a scale; it then follows the variant.");
+        } else if (auto value = read_scalar(item, *field)) {
+          axis.values.push_back({std::move(*value), item.node.at});
+        }
+      }
+    }
+  }
+
+  static void read(const Entry& in, const Field&, Sweep& sweep) {
+    const string remedy = "It takes `grid: {key: [values]}` or `zip: {key: [values]}`.";
+    if (!in.is_map()) in.reject_value("sweeps nothing", remedy);
+    for (const Entry& entry : in.entries()) {
+      if (read_key(entry, sweep)) continue;
+      if (find_field(entry.key.text) != nullptr) {
+        entry.reject_key("must be under `grid` or `zip`", remedy);
+      } else {
+        entry.reject_unknown(names_of(keys_of<Sweep>()));
+      }
+    }
+    check_grid(sweep, in);
+    check_zip(sweep.zip, in);
+  }
+
+  static void read(const Entry& in, const Field&, Seeds& seeds) {
+    seeds = {.counted = !in.is_list(), .at = in.key.at};
+    if (seeds.counted) {
+      std::uint64_t count = 1;
+      read(in, {.range = {1, ManifestLimits::runs}, .whole = true}, count);
+      seeds.values.resize(count);
+      std::iota(seeds.values.begin(), seeds.values.end(), 1);
+      return;
+    }
+    seeds.values.clear();
+    for (const Entry& item : items_of(in, "[3, 5]")) {
+      std::uint64_t seed = 0;
+      read(item, {.range = {1, kLargestSeed}, .whole = true}, seed);
+      if (seed != 0 && std::ranges::count(seeds.values, seed) > 0) {
+        item.reject_value("repeats a seed", "Keep one of them.");
+      }
+      seeds.values.push_back(seed);
+    }
+  }
+
+  static void read(const Entry& in, const Field& about, StatedUntil& stated) {
+    stated = {{}, in.node.at};
+    if (in.is_scalar() && in.node.text == "none") return;
+    const string remedy = fmt::format("It takes `{}`, or `none`.", about.example);
+    if (!in.is_map()) return in.reject_type("a measure with its value", remedy);
+    UntilKeys keys;
+    read_keys(in, keys);
+    std::size_t known = 0;
+    for (const Entry& entry : in.entries()) {
+      known += find_named(keys_of<UntilKeys>(), entry.key.text) != nullptr ? 1 : 0;
+      const auto measure = value_of<StopMeasure>(entry.key.text);
+      if (!measure) continue;
+      if (stated.until) {
+        in.problems.add(entry.key.at, in.path, "names two measures", "", "Keep one of them.");
+      } else {
+        stated.until = Until{*measure, keys.of(*measure), keys.extra_cycles};
+      }
+    }
+    if (!stated.until && known == in.node.entries.size()) in.reject("names no measure", remedy);
+  }
+
+  // Any other map.
+  template <HasFields T>
+  static void read(const Entry& in, const Field& about, T& value) {
+    value.at = in.node.at;
+    if (!in.is_map()) {
+      return in.reject_type(about.wanted.empty() ? "a map" : about.wanted, remedy_of(about));
+    }
+    read_keys(in, value);
+    for (const Field& key : keys_of<T>()) {
+      if (!key.required || in.find(key.name)) continue;
+      return in.reject(fmt::format("lacks {}", key.name), remedy_of(about));
+    }
+    check(in, about, value);
+  }
+
+  template <HasFields T>
+  static void read_keys(const Entry& in, T& value) {
+    for (const Entry& entry : in.entries()) {
+      if (!read_key(entry, value)) entry.reject_unknown(names_of(keys_of<T>()));
+    }
+  }
+
+  static void check(const Entry& in, const Field&, Checkpoints& checkpoints) {
+    if (const auto phases = in.find("phases")) checkpoints.at = phases->node.at;
+  }
+
+  static void check(const Entry& in, const Field&, Placed<PlotSpec>& plot) {
+    const auto x = in.find("x"), cycles = in.find("cycles");
+    if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
+      x->reject_value(fmt::format("does not go with {}", curve->name),
+                      fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
+    }
+    if (x && plot.y == plot.x) x->reject_value("is also the y of this plot", "Name another one.");
+    const bool against_parameter = is_parameter(plot.x);
+    if (find_run_measure(plot.y) != nullptr && !against_parameter) {
+      in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
+    }
+    if (cycles && (plot.show != Show::traces || against_parameter)) {
+      cycles->reject("draws each run along its cycles",
+                     "It takes `show: traces`, and `cycle` or a measure as x.");
+    }
+    if (const Field* field = find_field(plot.x)) {
+      plot.x_symbol = field->symbol;
+      if (field->unit != "1") plot.x_unit = field->unit;
+      if (field->is_choice()) {
+        x->reject_value("is not a number", "Take `by` for a curve of each of its values.");
+      }
+    }
+  }
+
+  static void check(const Entry& in, const Field& about, const Placed<ClaimSpec>& claim) {
+    const auto at_cycle = in.find("at_cycle"), cycles = in.find("cycles");
+    if (at_cycle && cycles) cycles->reject("does not go with at_cycle", "State one of them.");
+    const bool of_run = find_run_measure(claim.compare) != nullptr;
+    if (of_run && (at_cycle || cycles)) {
+      (at_cycle ? at_cycle : cycles)
+          ->reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
+    } else if (!of_run && !at_cycle && !cycles) {
+      in.reject("lacks at_cycle or cycles", remedy_of(about));
+    }
+  }
+};
+
+// Names of plots and claims differ from each other and from those of the supplement's figures and
+// panels.
+void check_own_names(const Entry& document) {
+  std::set<string> taken;
+  for (const char* list : {"plots", "claims"}) {
+    const auto own = document.find(list);
+    for (const Entry& item : own ? own->items() : std::vector<Entry>()) {
+      const auto name = item.find("name");
+      if (!name || !is_name(name->node.text)) continue;
+      const string_view text = name->node.text;
+      const auto is_panel = [&](const Figure& figure) {
+        if (!text.starts_with(figure.name)) return false;
+        const string_view rest = text.substr(figure.name.size());
+        return rest.size() < 2 || rest.front() == '_';
+      };
+      if (std::ranges::any_of(all_figures(), is_panel)) {
+        name->reject_value("is the name of a figure of the supplement", "Choose another one.");
+      } else if (!taken.insert(name->node.text).second) {
+        name->reject_value("is the name of another plot or claim", "Choose another one.");
+      }
+    }
+  }
+}
+
+}  // namespace
 
 bool is_name(string_view text) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
@@ -166,15 +760,24 @@ Manifest read_manifest(string_view text, string_view file) {
     document.reject_type("a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  std::vector<Key> keys;
-  for (const ManifestKey& key : manifest_keys()) {
-    keys.push_back({key.name, [&](const Entry& in) { key.read(in, manifest); }});
-  }
-  if (!read_keys(document, keys).contains("experiment")) {
+  Reader::read_keys(document, manifest);
+  if (const auto experiment = document.find("experiment")) {
+    manifest.experiment_at = experiment->key.at;
+  } else {
     problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
   }
+  if (const auto base = document.find("base")) manifest.base.at = base->key.at;
+  check_own_names(document);
   problems.raise();
   return manifest;
+}
+
+string manifest_markdown() {
+  string text = "| key | example | meaning |\n|---|---|---|\n";
+  for (const Field& key : keys_of<Manifest>()) {
+    text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.doc);
+  }
+  return text;
 }
 
 }  // namespace shearcell

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of manifest parameters: name, unit, type, range, part in a run's identity, meaning.
-// Validation, suggestions, identity and experiments/REFERENCE.md use it.
+// What a manifest's keys take and mean, and the table of parameters with their part in a run's
+// identity. Reading, suggestions, identity and experiments/REFERENCE.md use it.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
+#include "core/named.hpp"
 #include "experiments/manifest/parameters.hpp"
 
 namespace shearcell {
@@ -31,13 +33,6 @@ struct Identity {
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }
 };
 
-/// A parameter that is an enumeration with names (core/named.hpp).
-struct ChoiceMember {
-  std::span<const std::string_view> names;
-  std::string_view (*get)(const Parameters&);
-  void (*set)(Parameters&, std::string_view);
-};
-
 /// The numbers that are allowed.
 struct Range {
   double min = 0;
@@ -49,21 +44,34 @@ struct Range {
   }
 };
 
+/// A key of a manifest: the values that it takes, and what it means.
 struct Field {
-  std::string_view name;
-  std::string_view symbol;  ///< as the supplement writes it; empty when it has none
-  std::string_view unit;    ///< "1" for a pure number, empty for a choice
-  std::variant<double Parameters::*, std::uint64_t Parameters::*, ChoiceMember> member;
-  Range range = {};  ///< of a number
-  Identity identity = {};
+  std::string_view name = {};
+  std::string_view symbol = {};  ///< as the supplement writes it; empty when it has none
+  std::string_view unit = {};    ///< of a number, "1" for a pure one
+  Range range = {};              ///< of a number
+  Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
+  std::span<const std::string_view> names = {};  ///< of a choice: the values
+  bool whole = false;                            ///< takes whole numbers alone
+  std::string_view example = {};                 ///< as YAML
+  std::string_view wanted = {};                  ///< "a map of settings"
+  bool required = false;
+  std::size_t longest = 0;  ///< of a free text [bytes]
+  /// One parameter as JSON, and back; null for other keys.
+  nlohmann::json (*get)(const Parameters&) = nullptr;
+  void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 
-  bool is_whole() const { return std::holds_alternative<std::uint64_t Parameters::*>(member); }
+  bool is_choice() const { return !names.empty(); }
 };
 
-/// A number that is read and checked like a parameter but is not one.
-Field real_number(std::string_view name, std::string_view unit, const Range& range);
-Field whole_number(std::string_view name, const Range& range);
+/// The same key with the kind of values that a member of type T holds.
+template <class T>
+constexpr Field with_type(Field field) {
+  if constexpr (std::is_enum_v<T>) field.names = kNames<T>;
+  if constexpr (std::is_integral_v<T>) field.whole = true;
+  return field;
+}
 
 /// Every parameter, in the order in which the reference lists them.
 std::span<const Field> schema();
@@ -92,8 +100,12 @@ std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::s
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
 
 /// One parameter as JSON, and back. `value` must have passed check_value.
-nlohmann::json get_value(const Field& field, const Parameters& parameters);
-void set_value(const Field& field, const nlohmann::json& value, Parameters& parameters);
+inline nlohmann::json get_value(const Field& field, const Parameters& parameters) {
+  return field.get(parameters);
+}
+inline void set_value(const Field& field, const nlohmann::json& value, Parameters& parameters) {
+  field.set(parameters, value);
+}
 
 /// Whether the record of a stage holds the parameter when it has that value.
 bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,

@@ -69,27 +69,4 @@ std::uint64_t variant_count(const Sweep& sweep);
 /// must be complete, outlive the result, and have at most ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
-/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters, as in
-/// "has an effect only under protocol paused"; "" if it has one.
-std::string without_effect(std::string_view key, const Parameters& parameters);
-
-/// Why LAMMPS cannot compute such a run; "" if it can, or if the engine is another one.
-std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
-
-/// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
-/// "Use more grains." if N is beyond the range of `grains`.
-std::string advise_more_grains(Parameters parameters, bool (*enough)(const Parameters&));
-
-/// A warning for each figure, plot and claim that `shearcell figures` would refuse, leave without
-/// data or not decide: a figure or plot that averages over a swept key, cycles beyond the end of
-/// the runs or without a checkpoint, `at_cycle` in a plot of every cycle, shear_strain at whole
-/// cycles alone, a side of `between` that is not one variant, sides that are the same runs, fewer
-/// than least_runs seeds. `variants`: those of the scale.
-std::vector<std::string> figure_warnings(const Manifest& manifest, const Scale& scale,
-                                         const std::vector<Variant>& variants, std::size_t seeds);
-
-/// Checks the number of runs, and time steps and geometry of every variant of every scale. The
-/// manifest must come from read_manifest(). Throws ManifestError.
-void check_variants(const Manifest& manifest);
-
 }  // namespace shearcell

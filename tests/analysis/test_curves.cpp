@@ -255,13 +255,13 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
                                "fluid=cell,0.001,1.6225,0.000577350269,3,2\n"))
       << to_csv(drag);
   EXPECT_EQ(drag.chart.series.size(), 2U) << "a curve for each fluid";
-  const FigureTable traces = table({.name = "own", .y = "phi", .traces = true});
+  const FigureTable traces = table({.name = "own", .y = "phi", .show = Show::traces});
   EXPECT_EQ(traces.chart.series.size(), 18U) << "every run";
   EXPECT_EQ(
       std::ranges::count_if(traces.chart.series, [](const Series& s) { return !s.title.empty(); }),
       6)
       << "each variant once in the key";
-  EXPECT_TRUE(table({.name = "own", .y = "phi", .log_y = true}).chart.y.log);
+  EXPECT_TRUE(table({.name = "own", .y = "phi", .log = LogAxes::y}).chart.y.log);
   EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
 }
 
@@ -362,7 +362,7 @@ TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
   const std::vector<FigureRun> runs = {rising_run("still", 1, 3, 0)};
   for (const char* y : {"phi", "pair_correlation"}) {
     const FigureTable table =
-        plot_figure({.name = "own", .y = y, .x = "amplitude_rad", .traces = true, .cycle = 99})
+        plot_figure({.name = "own", .y = y, .x = "amplitude_rad", .show = Show::traces, .cycle = 99})
             .make(runs)
             .tables.at(0);
     EXPECT_TRUE(table.rows.empty() && table.chart.series.empty()) << y;
@@ -371,7 +371,7 @@ TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
 
 TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   ClaimSpec claim{
-      .name = "own", .compare = "phi", .first = 1, .last = 2, .between = {}, .margin = 0.5};
+      .name = "own", .compare = "phi", .cycles = {{1, 2}}, .between = {}, .margin = 0.5};
   const nlohmann::json soft = {{"fluid", "still"}, {"drag_kg_per_s", 0.001}};
   const nlohmann::json hard = {{"fluid", "still"}, {"drag_kg_per_s", 0.004}};
   const auto verdict = [&] { return claim_figure(claim).make(two_parameters()).verdicts.at(0); };
@@ -379,7 +379,7 @@ TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   EXPECT_EQ(verdict().ruling, Ruling::differs) << "they are 3 apart";
   EXPECT_NEAR(verdict().estimate.value(), -3, 1e-9);
   claim.between = {hard, soft};
-  claim.higher = true;
+  claim.is = Relation::higher;
   EXPECT_EQ(verdict().ruling, Ruling::agrees);
   EXPECT_EQ(verdict().claim,
             "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for drag_kg_per_s=0.004, "

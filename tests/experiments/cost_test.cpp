@@ -68,9 +68,9 @@ TEST(Cost, OfStiffeningCountsTheRemainingSpringConstants) {
 std::vector<std::string> values_of(const Field& field) {
   std::vector<std::string> values;
   const auto add = [&](double value) {
-    if (field.is_whole()) value = std::round(value);
+    if (field.whole) value = std::round(value);
     if (!field.range.contains(value)) return;
-    values.push_back(field.is_whole() ? fmt::format("{:.0f}", value) : fmt::format("{}", value));
+    values.push_back(field.whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value));
   };
   add(field.range.min);
   add(field.range.max);
@@ -126,7 +126,7 @@ TEST(Cost, OfEveryAllowedValueIsFiniteOrRejected) {
                                            "gravity_m_per_s2: 0", "grains: 100"};
   std::size_t count = 0;
   for (const Field& field : schema()) {
-    if (std::holds_alternative<ChoiceMember>(field.member)) continue;
+    if (field.is_choice()) continue;
     for (const std::string& value : values_of(field)) {
       for (const std::string& other : others) {
         if (other.starts_with(std::string(field.name) + ":")) continue;

@@ -60,7 +60,7 @@ TEST(Conversion, StaysFiniteAtTheEndsOfTheRanges) {
     for (std::size_t k = 0; k < keys.size(); ++k) {
       const Field& field = *find_field(keys[k]);
       const double end = (ends >> k & 1U) != 0 ? field.range.max : field.range.min;
-      set_value(field, field.is_whole() ? json(static_cast<std::uint64_t>(end)) : json(end), p);
+      set_value(field, field.whole ? json(static_cast<std::uint64_t>(end)) : json(end), p);
     }
     const Scene scene = shear_scene(p);
     for (const double value : {scene.stiffness, scene.time_step, scene.pressure,

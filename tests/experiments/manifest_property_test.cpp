@@ -281,10 +281,10 @@ PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 500) {
 }
 
 json any_value(const Field& field) {
-  if (const auto* member = std::get_if<ChoiceMember>(&field.member)) {
-    return member->names[*rc::gen::inRange<std::size_t>(0, member->names.size())];
+  if (field.is_choice()) {
+    return field.names[*rc::gen::inRange<std::size_t>(0, field.names.size())];
   }
-  if (field.is_whole()) {
+  if (field.whole) {
     const auto low = static_cast<std::uint64_t>(field.range.min);
     return *rc::gen::inRange<std::uint64_t>(low, static_cast<std::uint64_t>(field.range.max) + 1);
   }

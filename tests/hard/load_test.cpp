@@ -184,7 +184,8 @@ Cases load_cases() {
   add(cases, "gravity-100g", "a grain of 100 times its weight on a wall", "overlap m g / k", [] {
     return all_of({heavy_grain(1), heavy_grain(100)});
   });
-  add(cases, "gravity-100g-stack", "twelve such grains stacked", overlap_stop, heavy_stack);
+  add(cases, "gravity-100g-stack", "twelve grains of 100 times their weight in a stack",
+      overlap_stop, heavy_stack);
   add(cases, "light-wall", "a moving wall of 0.01 m per d^2",
       "stopped: the time step over the limit of the wall", light_wall);
   return cases;

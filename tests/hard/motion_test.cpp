@@ -207,7 +207,7 @@ Cases motion_cases() {
       "as in the middle of the cell", seam);
   add(cases, "head-on-1", "two grains approach, each at one diameter per step",
       "stopped before the first step: the speed over its limit", [] { return head_on(1); });
-  add(cases, "head-on-0.02", "the same at 0.02 diameters per step", as_oracle,
+  add(cases, "head-on-0.02", "two grains approach, each at 0.02 diameters per step", as_oracle,
       [] { return head_on(0.02); });
   add(cases, "impact-row", "a grain hits a row of eight", as_oracle, flies_into_row);
   const std::string on_every_kernel = as_oracle + ", the same bits on every kernel";

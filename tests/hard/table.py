@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Prints the outcomes of the hard cases as a table in Markdown, from ctest's results: python3 table.py RESULTS.xml"""
+"""Prints the outcomes of the hard cases as a table in Markdown, from ctest's results: python3 table.py RESULTS.xml
+Cases that differ in their numbers alone share a row, which says what came of the last of them."""
 
 import re
 import sys
@@ -12,6 +13,15 @@ def in_order(case):
             for part, number in re.findall(r"((\d+(?:\.\d+)?(?:e[-+]?\d+)?)|[^\d]+)", case["case"])]
 
 
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
+
+
+def with_all_numbers(texts):
+    """["at 0.1 of 1", "at 0.3 of 1"] -> "at 0.1, 0.3 of 1"."""
+    numbers = iter(zip(*(NUMBER.findall(text) for text in texts)))
+    return NUMBER.sub(lambda _: ", ".join(dict.fromkeys(next(numbers))), texts[0])
+
+
 cases = []
 for test in xml.parse(sys.argv[1]).getroot().iter("testcase"):
     said = dict(line.split(": ", 1) for line in (test.findtext("system-out") or "").splitlines() if ": " in line)
@@ -22,9 +32,14 @@ for test in xml.parse(sys.argv[1]).getroot().iter("testcase"):
     case["case"] = case["case"] or test.get("name")
     cases.append({key: text.replace("|", r"\|") for key, text in case.items()} | {"right": failure is None})
 cases.sort(key=in_order)
+rows = {}
+for case in cases:
+    alike = case["expected"] if case["right"] else case["case"]
+    rows.setdefault((NUMBER.sub("#", case["computed"]), alike), []).append(case)
 print("<!-- outcomes -->")
 print(f"{sum(case['right'] for case in cases)} of {len(cases)} cases ended as expected.\n")
-print("| case | computed | expected | came |\n|---|---|---|---|")
-for case in cases:
-    print(f"| `{case['case']}` | {case['computed']} | {case['expected']} | {case['came']} |")
+print("| computed | cases | expected | came of the last case |\n|---|---|---|---|")
+for row in rows.values():
+    computed = with_all_numbers([case["computed"] for case in row])
+    print(f"| {computed} | {len(row)} | {row[-1]['expected']} | {row[-1]['came']} |")
 print("<!-- end -->")

@@ -286,7 +286,8 @@ Cases vibration_cases() {
   const std::string expected = "unstable from 2/omega_max on, within 5 %";
   add(cases, "limit-pair", "two grains between two walls, dt bisected", expected,
       [] { return pair(0); });
-  add(cases, "limit-pair-drag", "the same with the drag of Table I and with 1e4 times that",
+  add(cases, "limit-pair-drag",
+      "two grains between two walls with the drag of Table I and with 1e4 times that, dt bisected",
       expected, [] {
         return all_of({pair(64), pair(64e4)});
       });

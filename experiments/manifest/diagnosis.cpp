@@ -1,0 +1,583 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "analysis/figure.hpp"
+#include "analysis/onset.hpp"
+#include "analysis/own_figure.hpp"
+#include "analysis/statistics.hpp"
+#include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
+#include "protocols/settle.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+using fmt::format;
+using nlohmann::json;
+using std::string;
+using std::string_view;
+
+bool is_wide_enough(const Parameters& p) {
+  return cell_width(geometry(p)) >= kShallowestCell;
+}
+
+bool has_interior(const Parameters& p) {
+  return expected_interior_grains(p) >= 1;
+}
+
+/// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
+/// "Use more grains." if N is beyond the range of `grains`.
+string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
+  const auto fits = [&](std::uint64_t grains) {
+    p.grains = grains;
+    return enough(p);
+  };
+  const Range& range = find_field("grains")->range;
+  std::uint64_t few = p.grains, many = 2 * few;
+  for (; !fits(many) && range.contains(static_cast<double>(many)); many *= 2) few = many;
+  while (many - few > 1) {
+    const std::uint64_t middle = few + (many - few) / 2;
+    (fits(middle) ? many : few) = middle;
+  }
+  return range.contains(static_cast<double>(many)) ? format("Use at least {} grains.", many)
+                                                   : "Use more grains.";
+}
+
+// Checks one variant at one scale. The scale is complete (whole_scale()).
+struct VariantCheck {
+  const Manifest& manifest;
+  const Scale& scale;
+  const Variant& variant;
+  ProblemList& problems;
+  const Parameters& p = variant.parameters;
+
+  void run() {
+    if (!autos_are_in_range()) return;
+    check_time_steps();
+    check_cell();
+    if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
+      report("engine", why, "Leave `engine` out, or use a protocol that shears.");
+    }
+    if (!scale.checkpoints->phases.empty()) check_phases();
+  }
+
+  // The value of a parameter and where it is stated; null if it is a default.
+  const Setting* find(string_view key) const {
+    for (const auto& [name, setting] : variant.swept) {
+      if (name == key) return setting;
+    }
+    const auto found = scale.settings.find(key);
+    return found == scale.settings.end() ? nullptr : &found->second;
+  }
+
+  // `cause`: a key to blame if this one is a default.
+  void report(string_view key, string problem, string remedy, string_view cause = "") {
+    const Setting* stated = find(key);
+    const json value = stated != nullptr ? stated->value : find_field(key)->get(p);
+    const string text = value == "auto" ? "auto" : value.dump();
+    const Setting* blamed = stated == nullptr ? find(cause) : stated;
+    problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), std::move(problem),
+                 stated != nullptr ? text : "the default " + text, std::move(remedy));
+  }
+
+  // The last of the keys that is stated; "" if none is.
+  string_view last_stated(std::initializer_list<string_view> keys) const {
+    string_view last;
+    for (const string_view key : keys) last = find(key) != nullptr ? key : last;
+    return last;
+  }
+
+  // Whether the values that `auto` resolved to are in range.
+  bool autos_are_in_range() {
+    bool sound = true;
+    for (const auto& [key, setting] : scale.settings) {
+      if (!is_auto(setting)) continue;
+      const Field& field = *find_field(key);
+      const json value = field.get(p);
+      if (!check_value(field, value)) continue;
+      report(key, format("comes to {}, which is out of range", value_text(value)),
+             format("State {}, or change stiffness_N_per_m, mass_kg or period_s.",
+                    expected_values(field)));
+      sound = false;
+    }
+    return sound;
+  }
+
+  void check_time_steps() {
+    const double limit = stability_limit_s(p);
+    const double step = shear_time_step_s(p), settle_step = p.settle_time_step_s;
+    const string over = format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", limit);
+    if (p.protocol != ProtocolKind::stiffen && step >= limit) {
+      const double enough = std::floor(p.period_s / limit) + 1;
+      report("steps_per_cycle",
+             format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over),
+             find_field("steps_per_cycle")->range.contains(enough)
+                 ? format("Use at least {:.0f} steps per cycle, or `auto`.", enough)
+                 : "Lower period_s or stiffness_N_per_m.",
+             last_stated({"mass_kg", "stiffness_N_per_m", "period_s"}));
+    }
+    if (settle_step >= limit) {
+      report("settle_time_step_s", format("the time step {:.4g} s {}", settle_step, over),
+             format("Use less than {:.4g} s, or `auto`.", limit),
+             last_stated({"mass_kg", "stiffness_N_per_m"}));
+    }
+    const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
+    if (seconds / settle_step > kMostSteps) {
+      report("settle_time_step_s",
+             format("settling takes up to {:.3g} time steps, more than {:g}", seconds / settle_step,
+                    kMostSteps),
+             format("Use at least {:.3g} s, or lower settle_time_limit_s.",
+                    1.001 * seconds / kMostSteps));
+    }
+    if (const double pause = pause_time_steps(p);
+        p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
+      const string_view key = last_stated({"steps_per_cycle", "period_s", "pause_s"});
+      report(key.empty() ? "pause_s" : key, format("the pause takes {:.3g} time steps", pause),
+             format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",
+                    kMostPauseSteps));
+    }
+  }
+
+  void check_cell() {
+    const Geometry shape = geometry(p);
+    if (!is_wide_enough(p)) {
+      report("grains",
+             format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
+                    cell_width(shape), kShallowestCell),
+             advise_more_grains(p, is_wide_enough));
+    }
+    if (too_large(shape)) {
+      report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
+                 ? "fill_packing_fraction"
+                 : "nominal_packing_fraction",
+             format("the cell for the loose grains is {:.3g} d wide and {:.3g} d high with {:.2g} "
+                    "wall grains, too large for {} grains",
+                    cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
+             "Raise it.");
+    }
+    if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
+    const bool loose_stated = find("fill_packing_fraction") != nullptr;
+    report(
+        loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
+        "the grains are placed at random more densely than they are to settle",
+        loose_stated
+            ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
+            : format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
+  }
+
+  void check_phases() {
+    const auto refuse = [&](string problem, string remedy) {
+      problems.add(scale.checkpoints->at, "checkpoints.phases", std::move(problem), "",
+                   std::move(remedy));
+    };
+    const Drive motion = drive(p);
+    const std::vector<double>& phases = scale.checkpoints->phases;
+    if (p.protocol == ProtocolKind::stiffen) {
+      refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
+    } else if (string why = unfit_for_lammps(p, *scale.checkpoints); !why.empty()) {
+      refuse(std::move(why), "Leave them out, or the engine.");
+    } else if (steps_at(phases, motion).size() != phases.size()) {
+      refuse(format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
+                    cycle_steps(motion)),
+             "Use fewer of them, or more steps_per_cycle.");
+    }
+  }
+};
+
+/// Each label must name a variant of some scale and show something; names of variants of one scale
+/// must look different.
+void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
+                  ProblemList& problems) {
+  const auto reject = [&](const VariantLabel& label, string problem, string got, string remedy) {
+    problems.add(label.at, "labels", std::move(problem), std::move(got), std::move(remedy));
+  };
+  for (const VariantLabel& label : manifest.labels) {
+    if (!as_seen(label.name).empty()) continue;
+    reject(label, "gives a variant a name with nothing to see",
+           format("\"{}\"", printable(label.name)), "Write a name.");
+  }
+  std::set<const VariantLabel*> used;
+  for (const Scale& scale : scales) {
+    std::vector<json> variants;
+    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept_values());
+    const auto names = variant_names(variants, manifest.labels);
+    // By what a reader sees: the name, and its label or null.
+    std::map<string, std::pair<string, const VariantLabel*>> named;
+    for (const json& variant : variants) {
+      const string& name = names.at(variant);
+      const VariantLabel* label = nullptr;
+      for (const VariantLabel& one : manifest.labels) {
+        if (!selects(one, variant)) continue;
+        used.insert(&one);
+        label = &one;
+      }
+      const auto [earlier, first] = named.try_emplace(as_seen(name), name, label);
+      const auto& [other, label_of_other] = earlier->second;
+      if (label == nullptr) label = label_of_other;
+      if (first || label == nullptr) continue;
+      return reject(*label,
+                    other == name
+                        ? format("gives two variants the same name, '{}'", printable(name))
+                        : format("gives two variants names that look the same, '{}' and '{}'",
+                                 printable(other), printable(name)),
+                    printable(label->name), "Give each its own.");
+    }
+  }
+  for (const VariantLabel& label : manifest.labels) {
+    if (used.contains(&label)) continue;
+    reject(label, "names no variant of any scale", words_of(label.where),
+           "A label states swept keys and one of their values, as `\"fluid=still\"`.");
+  }
+}
+
+/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters, as in
+/// "has an effect only under protocol paused"; "" if it has one.
+string without_effect(string_view key, const Parameters& p) {
+  const Field* field = find_field(key);
+  const Identity identity = field == nullptr ? Identity{} : field->identity;
+  if (p.protocol == ProtocolKind::stiffen) {
+    const bool of_shear =
+        identity.stage == Stage::shear || key == "cycles" || key == "until" || key == "checkpoints";
+    if (of_shear && key != "protocol") return "has no effect under protocol stiffen";
+  } else if (identity.stage == Stage::stiffen || key == "stiffness_decades") {
+    return "has an effect only under protocol stiffen";
+  }
+  if (identity.under && identity.under != p.protocol) {
+    return format("has an effect only under protocol {}", name_of(*identity.under));
+  }
+  if (key.starts_with("wall_grain_") && p.walls == WallTexture::smooth) {
+    return "has an effect only with rough walls";
+  }
+  if (key == "pressure_at" && !depends_on_pressure_at(p)) {
+    return "has an effect only with gravity and a moving bottom wall";
+  }
+  return "";
+}
+
+// Warns of each stated key that has no effect on any variant.
+void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
+                         std::span<const Variant> variants, std::vector<string>& warnings) {
+  std::map<string, Position> stated;
+  for (const auto& [key, setting] : scale.settings) stated[key] = setting.at;
+  for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
+    for (const SweepAxis& axis : *axes) stated[axis.key] = axis.at;
+  }
+  if (scale.until->until) stated["until"] = scale.until->at;
+  if (scale.checkpoints->every_cycles != 1) stated["checkpoints"] = scale.checkpoints->at;
+  for (const auto& [key, at] : stated) {
+    string why;
+    for (const Variant& variant : variants) {
+      why = without_effect(key, variant.parameters);
+      if (why.empty()) break;
+    }
+    if (why.empty()) continue;
+    warnings.push_back(ManifestProblem{manifest.file, at, key, why, "", "Leave it out."}.text());
+  }
+}
+
+// What is sound but unlikely to be meant.
+std::vector<string> advice_on(const Parameters& p) {
+  std::vector<string> advice;
+  if (!pressure_lifts_column(p)) {
+    advice.push_back(
+        format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
+               "{}). Use `pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity "
+               "off, or choose a lower cell (height_over_width).",
+               p.pressure_Pa, p.grains));
+  }
+  if (!has_interior(p)) {
+    advice.push_back(
+        format("the cell of {} grains is too small for interior grains, at least 1.5 d from the "
+               "walls: phi and other measures of these have no value. {}",
+               p.grains, advise_more_grains(p, has_interior)));
+  }
+  if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
+    advice.push_back(
+        format("grains will overlap by {:.2g} d on average; the run fails at max_overlap_diameters "
+               "({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
+               overlap, p.max_overlap_diameters));
+  }
+  if (p.drag_kg_per_s == 0) {
+    advice.push_back(
+        format("without drag the grains do not come to rest, so settling fails at "
+               "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
+               p.settle_time_limit_s));
+  } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
+    advice.push_back(
+        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
+               "settle_time_limit_s ({:g} s). Raise one of them.",
+               p.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
+               p.settle_time_limit_s));
+  }
+  if (p.protocol != ProtocolKind::stiffen) {
+    if (auto step = time_step_advice(shear_time_step(p), "steps_per_cycle"))
+      advice.push_back(*step);
+  }
+  if (auto step = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
+    advice.push_back(*step);
+  }
+  return advice;
+}
+
+// Advice on several variants is one warning.
+void warn_of_parameters(const Manifest& manifest, std::span<const Variant> variants,
+                        std::vector<string>& warnings) {
+  std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
+  for (const Variant& variant : variants) {
+    for (const string& one : advice_on(variant.parameters)) {
+      auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
+      if (known == advice.end()) known = advice.insert(known, {one, {}});
+      known->second.push_back(variant.name());
+    }
+  }
+  for (const auto& [one, of] : advice) {
+    warnings.push_back(format("{}: variant{} {}: {}", manifest.file, of.size() == 1 ? "" : "s",
+                              some_of(of, 8), one));
+  }
+}
+
+std::uint64_t length_of(const Variant& variant) {
+  return target_cycles(variant.parameters);
+}
+
+std::uint64_t cycles_back(string_view measure) {
+  const ScalarMeasure* found = find_measure(measure);
+  return found == nullptr ? 0 : found->cycles_back();
+}
+
+/// "a checkpoint at cycle 3 with another one 1 cycle before it".
+string words_of_checkpoint(const string& where, std::uint64_t back) {
+  return format("a checkpoint{}{}", where,
+                back == 0 ? "" : format(" with another one {} before it", counted(back, "cycle")));
+}
+
+// Whether runs of the variant have a checkpoint at the cycle, and one so many cycles before.
+bool has_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t cycle,
+                    std::uint64_t back) {
+  const bool stiffens = variant.parameters.protocol == ProtocolKind::stiffen;
+  const std::uint64_t every = stiffens ? 1 : scale.checkpoints->every_cycles;
+  const std::uint64_t last = length_of(variant);
+  const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
+  return cycle >= back && has(cycle) && has(cycle - back);
+}
+
+// The same of any cycle from `first` to `end`. Whether a multiple of the cadence has the earlier
+// checkpoint depends on `back` alone, so the first multiple and the last cycle decide.
+bool has_any_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t first,
+                        std::uint64_t end, std::uint64_t back) {
+  const std::uint64_t begin = std::max(first, back), every = scale.checkpoints->every_cycles;
+  const std::uint64_t last = length_of(variant);
+  for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
+    if (begin <= cycle && cycle <= end && has_checkpoint(variant, scale, cycle, back)) return true;
+  }
+  return false;
+}
+
+/// A swept key over which curves of these parameters' values would average; or "". Other names
+/// than those of parameters are ignored.
+string averaged_over(const std::vector<string>& keys, std::span<const Variant> variants) {
+  std::vector<std::pair<std::vector<json>, json>> values;
+  for (const Variant& variant : variants) {
+    std::vector<json> curve;
+    for (const string& key : keys) {
+      if (const Field* field = find_field(key)) curve.push_back(field->get(variant.parameters));
+    }
+    values.emplace_back(std::move(curve), variant.swept_values());
+  }
+  return averaged_key(values);
+}
+
+/// Why no run has a value that the plot draws; "" if one may have.
+string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant> variants) {
+  const auto [shortest, longest] = std::ranges::minmax(variants, {}, length_of);
+  std::array<std::uint64_t, 2> cycles = {0, length_of(longest)};
+  string where;
+  if (plot.cycles) {
+    cycles = *plot.cycles;
+    where = format(" in cycles {} to {}", cycles[0], cycles[1]);
+  } else if (!draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+    if (!plot.cycle && scale.until->until) return "";  // not known where the runs end
+    cycles.fill(plot.cycle.value_or(length_of(shortest)));
+    where = format(" at cycle {}", cycles[0]);
+  }
+  if (cycles[1] > length_of(longest)) {
+    return format("it asks for cycle {}, and the runs have {}.", cycles[1], length_of(longest));
+  }
+  for (const string& measure : {plot.y, plot.x}) {
+    const std::uint64_t back = cycles_back(measure);
+    const bool any = std::ranges::any_of(variants, [&](const Variant& variant) {
+      return has_any_checkpoint(variant, scale, cycles[0], cycles[1], back);
+    });
+    if (any) continue;
+    return format(
+        "no run has {}, so {} has no value. Ask for more checkpoints (`every_cycles`) or cycles.",
+        words_of_checkpoint(where, back), measure);
+  }
+  return "";
+}
+
+/// Why runs of the variant have no value for the claim; "" if they may have.
+string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& variant) {
+  if (!claim.cycles) return "";
+  const auto [first, last] = *claim.cycles;
+  const std::uint64_t back = cycles_back(claim.compare);
+  if (last > length_of(variant)) {
+    return format("it asks for cycle {}, and the runs have {}.", last, length_of(variant));
+  }
+  // If one of them lacks a checkpoint, so does one of the first two or the last.
+  for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
+    if (has_checkpoint(variant, scale, cycle, back)) continue;
+    return format(
+        "it needs {}, which the runs do not have. Ask for more checkpoints (`every_cycles`).",
+        words_of_checkpoint(format(" at cycle {}", cycle), back));
+  }
+  return "";
+}
+
+std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
+                                std::span<const Variant> variants, std::size_t) {
+  std::vector<string> found;
+  const string key = plot.by.empty() ? "" : averaged_over({plot.by, plot.x}, variants);
+  if (!key.empty()) {
+    found.push_back(format(
+        "it would average over the values of {}. Leave out `by` for a curve of each variant.",
+        key));
+  }
+  const bool phases = !scale.checkpoints->phases.empty();
+  if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
+    found.push_back(format("shear_strain is 0 at whole cycles. State {}.",
+                           plot.cycles ? "`phases` of `checkpoints`"
+                           : phases    ? "`cycles`"
+                                       : "`cycles`, and `phases` of `checkpoints`"));
+  }
+  if (plot.cycle && find_run_measure(plot.y) != nullptr) {
+    found.push_back(
+        format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
+  } else if (plot.cycle && draws_every_cycle(plot)) {
+    found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
+  }
+  found.push_back(lack_of(plot, scale, variants));
+  return found;
+}
+
+std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
+                                std::span<const Variant> variants, std::size_t seeds) {
+  std::array<std::vector<const Variant*>, 2> sides;
+  for (const Variant& variant : variants) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const bool fits = std::ranges::all_of(claim.between[k].items(), [&](const auto& item) {
+        return find_field(item.key())->get(variant.parameters) == item.value();
+      });
+      if (fits) sides[k].push_back(&variant);
+    }
+  }
+  const auto run_of = [](const Variant& variant) {
+    return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).key;
+  };
+  const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
+  std::vector<string> found =
+      problems_of_sides(claim, {sides[0].size(), sides[1].size()},
+                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0]));
+  sides[0].insert(sides[0].end(), sides[1].begin(), sides[1].end());
+  for (const Variant* side : sides[0]) {
+    found.push_back(lack_of(claim, scale, *side));
+    if (!found.back().empty()) break;
+  }
+  if (seeds < least_runs) {
+    found.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
+  }
+  return found;
+}
+
+void warn_of_figures(const Manifest& manifest, const Scale& scale,
+                     std::span<const Variant> variants, std::size_t seeds,
+                     std::vector<string>& warnings) {
+  for (const string& name : manifest.figures) {
+    const Figure& figure = *find_figure(name);
+    if (figure.form != FigureForm::groups) continue;
+    const string key = averaged_over(figure.keys, variants);
+    if (key.empty()) continue;
+    warnings.push_back(
+        format("{}: figure {} would average over the values of {}. Give each an experiment of its "
+               "own, or state a plot (`plots`).",
+               manifest.file, name, key));
+  }
+  const auto warn_of = [&](const char* kind, const auto& specs) {
+    for (const auto& own : specs) {
+      for (const string& problem : problems_of(own, scale, variants, seeds)) {
+        if (problem.empty()) continue;
+        warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
+                                  kind, own.name, problem));
+      }
+    }
+  };
+  warn_of("plot", manifest.plots);
+  warn_of("claim", manifest.claims);
+}
+
+}  // namespace
+
+string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
+  if (p.engine != EngineKind::lammps) return "";
+  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
+  return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
+}
+
+void check_variants(const Manifest& manifest) {
+  const std::vector<Scale> scales = whole_scales(manifest);
+  ProblemList problems(manifest.file);
+  std::uint64_t runs = 0;
+  for (std::size_t s = 0; s < scales.size(); ++s) {
+    const Scale& scale = scales[s];
+    const string path = scale.name.empty() ? "" : "scales." + scale.name;
+    // What the scale itself states; a swept key of `base` is the sweep's default.
+    for (const auto& [key, setting] : path.empty() ? Settings() : manifest.scales[s].settings) {
+      if (find_axis(*scale.sweep, key) == nullptr) continue;
+      problems.add(setting.at, path + "." + key, "has no effect, since the sweep sets this key",
+                   setting.value.dump(), "Give the scale a sweep of its own instead.");
+    }
+    const std::uint64_t variants = variant_count(*scale.sweep);
+    const std::uint64_t seeds = scale.seeds->values.size();
+    if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
+      problems.add(scale.at, path.empty() ? "sweep" : path,
+                   format("the manifest expands to more than {} runs", ManifestLimits::runs), "",
+                   "Sweep fewer values or use fewer seeds.");
+      problems.raise();
+    }
+    runs += variants * seeds;
+  }
+  if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
+  for (const Scale& scale : scales) {
+    for (const Variant& variant : variants_of(scale)) {
+      VariantCheck{manifest, scale, variant, problems}.run();
+    }
+  }
+  problems.raise();
+}
+
+std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
+                                std::span<const Variant> all, std::span<const Variant> planned,
+                                std::size_t seeds) {
+  std::vector<string> warnings;
+  warn_of_parameters(manifest, planned, warnings);
+  warn_of_figures(manifest, scale, all, seeds, warnings);
+  warn_of_ineffective(manifest, scale, all, warnings);
+  return warnings;
+}
+
+}  // namespace shearcell
