@@ -72,38 +72,6 @@ std::string text_html(const Text& text) {
   return html;
 }
 
-std::string card_label(std::string_view head) {
-  return head.empty()
-             ? ""
-             : fmt::format("<span class=\"card-label\" aria-hidden=\"true\">{}</span>", head);
-}
-
-std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
-                       std::string_view css_class) {
-  const auto add = [&](std::string& html, const HtmlRow& row, const char* tag) {
-    html += "<tr>";
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const bool number = head[k].starts_with('#');
-      const std::string_view name = std::string_view(head[k]).substr(number ? 1 : 0);
-      html += fmt::format("<{0}{1}>{2}</{0}>", tag, number ? " class=\"number\"" : "",
-                          &row == &head ? std::string(name) : card_label(name) + row[k]);
-    }
-    html += "</tr>\n";
-  };
-  std::string html = fmt::format("<table class=\"cards {}\"><thead>", css_class);
-  add(html, head, "th");
-  html += "</thead><tbody>\n";
-  for (const HtmlRow& row : rows) add(html, row, "td");
-  return html + "</tbody></table>";
-}
-
-std::string scroll_box(std::string_view label, const std::string& html,
-                       std::string_view css_class) {
-  return fmt::format(
-      "<div class=\"{}\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">{}</div>\n", css_class,
-      escape_html(label), html);
-}
-
 std::string filled(const std::string& page, const nlohmann::json& values) {
   kainjow::mustache::mustache parsed(page);
   parsed.set_custom_escape([](const std::string& text) { return escape_html(text); });

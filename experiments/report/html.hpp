@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Escapes foreign text for HTML and JSON; writes HTML tables.
+// Escapes foreign text for HTML and JSON; fills a template.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +18,6 @@ namespace shearcell {
 std::string escape_html(std::string_view text);
 
 std::string text_html(const Text& text);
-
-/// The heading (markup) of a cell's column. The style sheet shows it on narrow pages, where each
-/// row becomes a card.
-std::string card_label(std::string_view head);
-
-/// Cells hold markup, in which foreign text must be escaped. A heading that begins with '#' makes a
-/// right-aligned column of numbers.
-using HtmlRow = std::vector<std::string>;
-std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
-                       std::string_view css_class = "");
-
-/// Wraps markup into a box that scrolls.
-std::string scroll_box(std::string_view label, const std::string& html,
-                       std::string_view css_class = "scroll");
 
 /// The Mustache template `page` with these values. Tags in double braces are escaped by
 /// escape_html(), those in triple braces are markup. A section is shown for true, a number, a text

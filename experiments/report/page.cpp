@@ -7,13 +7,16 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
+#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/report/html.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
 
 // The template and the front end (web_assets.S).
@@ -38,6 +41,16 @@ std::string script_hash(std::string_view script) {
   unsigned char digest[SHA256_DIGEST_LENGTH];
   SHA256(reinterpret_cast<const unsigned char*>(script.data()), script.size(), digest);
   return "sha256-" + base64(std::as_bytes(std::span(digest)));
+}
+
+/// The beginning of an id, by which the page links to it.
+std::string brief(const std::string& id) {
+  return id.substr(0, 12);
+}
+
+/// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release; HOST, CPU, 4 cores, AVX-512".
+std::string text_of(const Maker& maker) {
+  return fmt::format("{}; {}, {}", maker.program, maker.host, maker.machine);
 }
 
 /// A ruling with a mark that needs no colour.
@@ -90,6 +103,106 @@ json panel_json(const ReportData& data, const ReportPanel& panel) {
           {"csv", panel.csv}};
 }
 
+std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
+  std::vector<double> cycles;
+  for (const std::string& sha256 : input.checkpoints) {
+    if (const CheckpointHistory* known = run.find(sha256)) cycles.push_back(known->record.cycle);
+  }
+  return cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front(), cycles.back());
+}
+
+/// Where a figure comes from.
+json lineage_json(const ReportFigure& figure) {
+  const FigureLineage& lineage = figure.lineage;
+  const FigureSummary& summary = figure.summary;
+  std::set<std::string> makers;
+  for (const auto& [id, stage] : lineage.runs) {
+    for (const Attempt& attempt : stage.attempts) makers.insert(text_of(maker_of(attempt.host)));
+  }
+  json outputs = json::array(), inputs = json::array(), manifests = json::array();
+  for (const ReportPanel& panel : figure.panels) {
+    const std::string file = panel.name + ".csv", sha256 = sha256_hex(panel.csv);
+    std::string found;
+    if (figure.recorded) {
+      const json recorded = member_of(figure.recorded->provenance, "outputs");
+      found = text_at(recorded, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
+    }
+    outputs.push_back({{"file", file}, {"sha256", sha256}, {"found", found}});
+  }
+  for (const ManifestText& manifest : lineage.manifests) {
+    manifests.push_back(
+        {{"brief", brief(manifest.sha256)}, {"path", manifest.path}, {"sha256", manifest.sha256}});
+  }
+  for (const FigureInput& input : lineage.inputs) {
+    std::set<int> lines;
+    for (const ManifestLine& line : input.lines) lines.insert(line.line);
+    inputs.push_back({{"brief", brief(input.run)},
+                      {"experiment", input.experiment},
+                      {"variant", input.variant},
+                      {"seed", input.seed},
+                      {"checkpoints", input.checkpoints.size()},
+                      {"cycles", span_of_cycles(input, lineage.runs.at(input.run))},
+                      {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
+  }
+  const std::string command = "shearcell figures " + summary.name;
+  return {{"scale", scale_name(lineage.scale)},
+          {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", summary.runs,
+                                 summary.checkpoints, short_text(lineage.analysis_version))},
+          {"makers", makers},
+          {"manifests", manifests},
+          {"outputs", outputs},
+          {"recorded", figure.recorded ? fmt::format("event {} of {}", figure.recorded->seq,
+                                                     figure.recorded->recorded_at)
+                                       : ""},
+          {"command",
+           summary.experiment.empty() ? command : command + " --experiment " + summary.experiment},
+          {"record", lineage.record.name},
+          {"inputs", inputs}};
+}
+
+/// A stage with its attempts and checkpoints.
+json stage_json(const RunLineage& stage) {
+  const RunRecord& run = stage.run;
+  json members = json::array(), attempts = json::array();
+  for (const Membership& member : run.memberships) {
+    members.push_back(
+        {{"manifest", brief(member.manifest)},
+         {"text", fmt::format("{} at scale {}, {}, seed {}", member.experiment,
+                              scale_name(member.scale), member.variant, member.seed)}});
+  }
+  for (const Attempt& attempt : stage.attempts) {
+    const Maker maker = maker_of(attempt.host);
+    attempts.push_back({{"what", fmt::format("Attempt {}, {}, {}: ", attempts.size() + 1,
+                                             attempt.started_at, name_of(attempt.outcome))},
+                        {"from_run", brief(attempt.from_run)},
+                        {"from_checkpoint", brief(attempt.from_checkpoint)},
+                        {"maker", text_of(maker)},
+                        {"flags", maker.flags},
+                        {"why", attempt.why}});
+  }
+  std::string checkpoints;
+  for (const CheckpointHistory& c : stage.checkpoints) {
+    checkpoints += fmt::format("cycle {:<8g} {}{}{}\n", c.record.cycle, c.record.sha256,
+                               c.kept() ? "" : " ", c.kept() ? "" : name_of(c.record.state));
+  }
+  json parameters = run.resolved;
+  if (parameters.contains("parameters")) {
+    parameters["parameters"] = effective_parameters(run.resolved);
+  }
+  return {{"id", run.id},
+          {"brief", brief(run.id)},
+          {"kind", run.kind},
+          {"grains", run.grains},
+          {"error", run.error},
+          {"state", name_of(run.state)},
+          {"members", members},
+          {"parent", brief(run.parent)},
+          {"attempts", attempts},
+          {"parameters", parameters.dump()},
+          {"checkpoints", checkpoints},
+          {"count", stage.checkpoints.size()}};
+}
+
 json figure_json(const ReportData& data, const ReportFigure& figure) {
   const FigureSummary& summary = figure.summary;
   json panels = json::array(), claims = json::array(), warnings = json::array();
@@ -111,7 +224,7 @@ json figure_json(const ReportData& data, const ReportFigure& figure) {
           {"panels", panels},
           {"claims", claims},
           {"warnings", warnings},
-          {"lineage", lineage_html(data, figure)}};
+          {"lineage", lineage_json(figure)}};
 }
 
 struct Count {
@@ -153,7 +266,7 @@ json workflow(const ReportData& data, const ReportExperiment& experiment) {
   }
   json manifest = step("Manifest", {});
   manifest["none"] = false;
-  manifest["manifest"] = {{"brief", experiment.manifest.sha256.substr(0, 12)},
+  manifest["manifest"] = {{"brief", brief(experiment.manifest.sha256)},
                           {"path", experiment.manifest_path}};
   json figures = step("Figures", {{"done", "✓", "made", experiment.figures.size()},
                                   {"failed", "✗", "cannot be made", experiment.unmade.size()}});
@@ -220,7 +333,7 @@ json cell_json(const ReportData& data, const TableColumn& column, const json& va
   json cell = {{"known", !value.is_null()}, {"value", text},  {"run", false},
                {"packed", false},           {"state", false}, {"text", ""}};
   if (column.name == "run") {
-    cell["brief"] = text.substr(0, 12);
+    cell["brief"] = brief(text);
     cell["run"] = text.substr(0, 8);
     cell["packed"] = std::ranges::any_of(data.packings.runs,
                                          [&](const json& run) { return run.at("id") == value; });
@@ -270,7 +383,7 @@ json experiment_json(const ReportData& data, const ReportExperiment& experiment)
           {"question", manifest.question.empty() ? manifest.experiment : manifest.question},
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
-          {"stages", experiment.runs.size()},
+          {"stage_count", experiment.runs.size()},
           {"steps", workflow(data, experiment)},
           {"figures", std::move(figures)},
           {"unmade", experiment.unmade},
@@ -338,11 +451,17 @@ std::string report_page(const ReportData& data) {
   const std::string counts =
       fmt::format("{}, {}, {}", counted(data.experiments.size(), "experiment"),
                   counted(data.figures.size(), "figure"), counted(data.runs.size(), "stage"));
+  json stages = json::array(), manifests = json::array();
+  for (const auto& [id, stage] : data.runs) stages.push_back(stage_json(stage));
+  for (const auto& [sha256, manifest] : data.manifests) {
+    manifests.push_back(
+        {{"brief", brief(sha256)}, {"path", manifest.path}, {"text", manifest.text}});
+  }
   json facts = {{"store", data.store},
                 {"counts", counts},
                 {"event", data.head.seq},
                 {"log_head", data.head.hash},
-                {"log_brief", data.head.hash.substr(0, 12)},
+                {"log_brief", brief(data.head.hash)},
                 {"version", data.program.value("version", "")},
                 {"commit", data.program.value("commit", "")},
                 {"interactive", data.interactive},
@@ -350,7 +469,8 @@ std::string report_page(const ReportData& data) {
                 {"no_front_end", !has_front_end()},
                 {"parts", parts_of(data)},
                 {"packings", packings},
-                {"stages_html", runs_html(data)},
+                {"stages", stages},
+                {"manifests", manifests},
                 {"style", std::string(shearcell_style, shearcell_style_end)}};
   if (data.interactive) {
     facts["script_hash"] = script_hash(front_end_script());

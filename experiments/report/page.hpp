@@ -13,13 +13,4 @@ namespace shearcell {
 /// from a store or a file are escaped.
 std::string report_page(const ReportData& data);
 
-/// The lineage of a figure, collapsed.
-std::string lineage_html(const ReportData& data, const ReportFigure& figure);
-
-/// Every run with its attempts, builds and checkpoints, and the manifests.
-std::string runs_html(const ReportData& data);
-
-/// The beginning of an id. It is cut before it is escaped, since an escape must stay whole.
-std::string brief(const std::string& id);
-
 }  // namespace shearcell

@@ -69,7 +69,7 @@ struct ReportData {
   Head head;
   nlohmann::json program;  ///< build of this program
   std::vector<ReportExperiment> experiments;
-  std::vector<ReportFigure> figures;       ///< of `experiments`, and of all experiments together
+  std::vector<ReportFigure> figures;  ///< of `experiments`, and of all experiments together
   RunLineages runs;
   std::map<std::string, ManifestText> manifests;
   Packings packings;

@@ -46,9 +46,9 @@ export const chartsOfRun = (run, others) => overCycles(() => [
   {run, style: styleOf(0, 0), title: `seed ${run.seed}`}
 ]);
 
-// Every seed of some variants: a colour for each variant, a marker for each seed.
-export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(({name, runs}, v) =>
-  runs.map((run, k) => ({run, style: styleOf(v, k), title: `${name}, seed ${run.seed}`}))));
+// Every seed of one or two variants: a colour for each variant, a marker for each seed.
+export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(({runs}, v) =>
+  runs.map((run, k) => ({run, style: styleOf(v, k), title: `${["first", "second"][v]}, seed ${run.seed}`}))));
 
 // One measure against another: over the checkpoints of each run where they have both, else at the ends
 // of the runs. `rows`: {run, value(key)}. A colour for each variant, another marker from the ninth on.

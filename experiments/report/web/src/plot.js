@@ -38,7 +38,12 @@ function valuesAt(chart, one, [x, y, xError, yError]) {
     `${line(chart.x, x - one.shift, xError)}<br>${line(chart.y, y, yError)}`;
 }
 
-function tracesOf(chart, dark) {
+// Entries of the legend are broken at spaces to fit the width.
+const lettersIn = (width) => Math.max(12, Math.floor((width - 65) / 7));
+const broken = (label, letters) =>
+  markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){${letters - 12},${letters}}) `, "g"), "$1<br>");
+
+function tracesOf(chart, width, dark) {
   return chart.series.flatMap((one, index) => {
     const color = dark ? onDark(one.colour) : one.colour;
     const [x, y, xError, yError] = [0, 1, 2, 3].map((k) => one.points.map((point) => point[k]));
@@ -47,7 +52,7 @@ function tracesOf(chart, dark) {
       ({array, color, thickness: 1, width: 3, visible: !hidden && array.some((error) => error)});
     const modes = [one.line && "lines", one.point > 0 && "markers"].filter(Boolean);
     const shown = {
-      type: "scatter", x, y, mode: modes.join("+") || "none", name: markup(one.title), legendgroup,
+      type: "scatter", x, y, mode: modes.join("+") || "none", name: broken(one.title, lettersIn(width)), legendgroup,
       showlegend: one.title.length > 0, cliponaxis: one.line,
       line: {color, width: one.thin ? 0.7 : 1.4, dash: one.dashed ? "5px,4px" : "solid"},
       marker: {
@@ -83,9 +88,10 @@ function axisOf(axis, values, color) {
 
 function layoutOf(chart, width, color) {
   const titles = chart.series.map(({title}) => plainText(title)).filter(Boolean);
-  const entry = 7 * Math.max(0, ...titles.map((title) => title.length));
+  const letters = Math.max(0, ...titles.map((title) => title.length));
+  const entry = 7 * Math.min(letters, lettersIn(width));
   const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - 20) / (entry + 45))));
-  const key = 20 * rows + 6;
+  const key = 20 * rows * Math.ceil(letters / lettersIn(width)) + 6;
   const points = chart.series.flatMap((one) => one.points);
   const flat = chart.lines.filter(({vertical}) => !vertical).map(({at}) => at);
   const shape = ({at, vertical, stub, colour}) => ({
@@ -139,7 +145,7 @@ export class Plot {
     const save = {
       name: "Save as SVG", title: "Save as SVG", icon: Plotly.Icons.camera, click: () => this.saveSvg()
     };
-    Plotly.react(this.canvas, tracesOf(this.chart, background[0] < 128),
+    Plotly.react(this.canvas, tracesOf(this.chart, this.width, background[0] < 128),
       layoutOf(this.chart, this.width, `rgb(${ink.join()})`), {
         displaylogo: false, displayModeBar: true, doubleClick: "reset",
         modeBarButtons: [["zoomIn2d", "zoomOut2d", "resetScale2d", save]]
@@ -162,7 +168,7 @@ export class Plot {
     const onPaper = layoutOf(this.chart, this.width, "#1a1a1a");
     for (const axis of ["xaxis", "yaxis"]) onPaper[axis].range = layout[axis].range;
     Plotly.downloadImage({
-      data: tracesOf(this.chart, false).map((trace, k) => ({...trace, visible: data[k].visible})), layout: onPaper
+      data: tracesOf(this.chart, this.width, false).map((trace, k) => ({...trace, visible: data[k].visible})), layout: onPaper
     }, {format: "svg", filename: this.name, width: onPaper.width, height: onPaper.height});
   }
 
