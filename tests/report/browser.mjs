@@ -185,8 +185,12 @@ const checks = {
     await page.mouse.move(box.x + box.width * 0.7, box.y + box.height * 0.6, {steps: 4});
     await page.mouse.up();
     await until("a dragged rectangle does not zoom", async () => await ticks() !== before);
-    await page.mouse.dblclick(box.x + box.width * 0.5, box.y + box.height * 0.5);
-    await until("a double click does not show all", async () => await ticks() === before);
+    // On a loaded machine two clicks may come too slowly for a double click.
+    for (let k = 0; k < 5 && await ticks() !== before; ++k) {
+      await page.mouse.dblclick(box.x + box.width * 0.5, box.y + box.height * 0.5);
+      await page.waitForTimeout(500);
+    }
+    expect(await ticks() === before, "interaction: a double click does not show all");
 
     const symbols = () => canvas.locator(".scatterlayer .point").count();
     const all = await symbols();

@@ -39,9 +39,9 @@ function valuesAt(chart, one, [x, y, xError, yError]) {
 }
 
 // Entries of the legend are broken at spaces to fit the width.
-const lettersIn = (width) => Math.max(12, Math.floor((width - 65) / 7));
+const lettersIn = (width) => Math.max(12, Math.floor((width - 60) / 7.4));
 const broken = (label, letters) =>
-  markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){${letters - 12},${letters}}) `, "g"), "$1<br>");
+  markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){12,${letters}}) `, "g"), "$1<br>");
 
 function tracesOf(chart, width, dark) {
   return chart.series.flatMap((one, index) => {
@@ -104,7 +104,7 @@ function layoutOf(chart, width, color) {
     width, height, font: {...font, color}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#8a8f98", activecolor: color}, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
     margin: {l: 62, r: 14, t: chart.title.length > 0 ? 52 : 30, b: 44 + key}, hovermode: "closest",
     title: {text: markup(chart.title), font: {size: 13}, y: 1, yref: "container", yanchor: "top", pad: {t: 8}},
-    legend: {orientation: "h", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: entry,
+    legend: {orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: entry,
       traceorder: "normal", tracegroupgap: 0},
     xaxis: axisOf(chart.x, points.map(([x]) => x), color),
     yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
