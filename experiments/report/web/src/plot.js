@@ -124,7 +124,8 @@ export class Plot {
     host.replaceChildren(this.canvas, this.status);
     this.canvas.addEventListener("keydown", (event) => this.key(event));
     onThemeChange(() => this.draw());
-    new ResizeObserver(() => this.width === host.clientWidth || this.draw()).observe(host);
+    this.fits = () => Math.floor(host.getBoundingClientRect().width);
+    new ResizeObserver(() => this.width === this.fits() || this.draw()).observe(host);
     this.show(chart);
   }
 
@@ -139,7 +140,7 @@ export class Plot {
   }
 
   draw() {
-    this.width = this.canvas.parentElement.clientWidth;
+    this.width = this.fits();
     if (this.width < 50) return;
     const {background, ink} = coloursOf(document.body);
     const save = {
