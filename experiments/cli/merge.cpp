@@ -127,7 +127,9 @@ void add_merge(CLI::App& app, Context& context) {
       R"(Checks the chain of each source and every file to copy before anything changes. Refuses two
 stores that record different states of one run at one step. The sources stay unchanged, and
 merging twice changes nothing. If the stores have different versions of a manifest, figures show
-the one registered last; the command then names the runs that they leave out. Cached measures are copied if three recomputed ones are right.
+the one registered last; the command then names the runs that they leave out. To show all, run one
+manifest that states the runs of both: it computes nothing new. Cached measures are copied if three
+recomputed ones are right.
 Examples:
   shearcell merge task-1 task-2 --store all)");
   command->callback([sources, &context] { merge(*sources, context); });
