@@ -60,6 +60,8 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.run.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
+    // The stage is completed for all that were declared since.
+    if (ended.contains("memberships")) ended["memberships"] = plan_.run.memberships.size();
     start(beginning, host_facts(), true);
     return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);

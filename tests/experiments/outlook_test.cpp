@@ -119,8 +119,9 @@ TEST_F(LeftTest, IsWhatIsThenRecorded) {
     EXPECT_NEAR(queued, planned.at("particle_steps_left"), 1);
     expect(0, {"run", "m.yaml", "-q"});
     expect_recorded(planned, recorded_since(seq), at_most);
-    for (const nlohmann::json& stage : plan().at("stages")) EXPECT_EQ(stage.at("state"), "done");
-    EXPECT_EQ(json({"status", "--json"}).at("estimate"), nullptr);
+    const nlohmann::json after = plan();
+    for (const nlohmann::json& stage : after.at("stages")) EXPECT_EQ(stage.at("state"), "done");
+    EXPECT_EQ(json({"status", "--json"}).at("estimate"), nullptr) << run({"status"}).out;
     if (HasFailure()) return;
   }
   for (const auto& [state, count] : seen) std::printf("%s: %d\n", state.c_str(), count);
