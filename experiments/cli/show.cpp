@@ -320,7 +320,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
     }
   }
   print_attempts(run, makers);
-  print_text("  cycles      {}: {}, {}\n", cut(input.states.cycles, 40),
+  print_text("  cycles      {}: {}, {}\n", cut(to_text(input.states.cycles), 40),
              counted(input.checkpoints.size(), "checkpoint"),
              input.fault.empty() ? "with the states that the figure names" : input.fault);
   print_text("  last state  {}\n", cut(input.states.state_hash, 14));
