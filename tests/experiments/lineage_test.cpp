@@ -177,8 +177,9 @@ TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
 
 TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
   nlohmann::json facts = figure_records(store_).at(0).provenance;
-  for (const auto& [key, value] :
-       {std::pair("cycles", "0"), {"state_hash", "another"}, {"states_sha256", "another"}}) {
+  const nlohmann::json others = {
+      {"cycles", Cycles{{0, 0, 1}}}, {"state_hash", "another"}, {"states_sha256", "another"}};
+  for (const auto& [key, value] : others.items()) {
     nlohmann::json changed = facts;
     changed["inputs"][1][key] = value;
     store_.record_figure("S2", changed);
