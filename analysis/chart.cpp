@@ -94,6 +94,44 @@ Text operator+(Text first, const Text& second) {
   return first;
 }
 
+Text text_with_formulas(std::string_view text) {
+  Text result;
+  const auto add = [&](std::string_view part, const char* style) {
+    if (part.empty()) return;
+    if (result.parts.empty() || result.parts.back().style != style) {
+      result.parts.push_back({"", style});
+    }
+    result.parts.back().text += part;
+  };
+  const auto take = [&](std::size_t length) {
+    const std::string_view part = text.substr(0, length);
+    text.remove_prefix(part.size());
+    return part;
+  };
+  for (bool formula = false; !text.empty();) {
+    const char c = text.front();
+    if (c == '$') {
+      formula = !formula;
+      take(1);
+    } else if (formula && (c == '_' || c == '^') && text.size() > 1) {
+      take(1);
+      const bool braces = text.front() == '{';
+      if (braces) take(1);
+      std::size_t length = 1;  // a character of UTF-8, or up to the brace
+      while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
+        ++length;
+      }
+      add(take(braces ? std::min(text.find('}'), text.size()) : length), c == '_' ? "sub" : "sup");
+      if (braces) take(1);
+    } else {
+      const bool latin = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+      const bool greek = (static_cast<unsigned char>(c) & 0xFE) == 0xCE;  // its first byte of two
+      add(take(greek ? 2 : 1), formula && (latin || greek) ? "i" : "");
+    }
+  }
+  return result;
+}
+
 std::string digits(double value) {
   return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
 }
@@ -150,6 +188,8 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
 }
 
 void name_run_counts(FigureTable& table) {
+  std::vector<Series*> means;
+  std::vector<std::string> counts;  // of each; "" if it is complete
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const ChartPoint& point : points_of(table, series)) {
@@ -158,12 +198,24 @@ void name_run_counts(FigureTable& table) {
       most = std::max(most, *point.runs);
     }
     const auto all = std::max(static_cast<double>(series.runs), most);
-    if (fewest >= all) continue;  // also without points
-    std::string counts = fmt::format("{}", fewest);
-    if (fewest < most) counts += fmt::format(" to {}", most);
-    if (most < all) counts += fmt::format(" of {}", all);
-    series.title = series.title.empty() ? Text(counts + " runs")
-                                        : series.title + Text(" (" + counts + " runs)");
+    if (most == 0) continue;
+    means.push_back(&series);
+    std::string& count = counts.emplace_back();
+    if (fewest >= all) continue;
+    count = fmt::format("{}", fewest);
+    if (fewest < most) count += fmt::format(" to {}", most);
+    if (most < all) count += fmt::format(" of {}", all);
+  }
+  const bool equal = std::ranges::all_of(counts, [&](const auto& c) { return c == counts[0]; });
+  if (counts.size() > 1 && equal && !counts[0].empty()) {
+    std::string& note = table.chart.note;
+    note += fmt::format("{}Means over {} runs each", note.empty() ? "" : ". ", counts[0]);
+    return;
+  }
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    if (counts[k].empty()) continue;
+    Text& title = means[k]->title;
+    title = title.empty() ? Text(counts[k] + " runs") : title + Text(" (" + counts[k] + " runs)");
   }
 }
 

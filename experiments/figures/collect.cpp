@@ -144,7 +144,7 @@ std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
     return variant_names(variants, labels);
   };
   for (const PlotSpec& plot : read_one->plots) figures.push_back(plot_figure(plot, names));
-  for (const ClaimSpec& claim : read_one->claims) figures.push_back(claim_figure(claim));
+  for (const ClaimSpec& claim : read_one->claims) figures.push_back(claim_figure(claim, names));
   return figures;
 }
 

@@ -176,8 +176,16 @@ bool has_no_value(const FigureTable& table) {
 /// Also says which runs were selected and what was left out.
 std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
                     const std::vector<FigureTable>& tables, const RunSelection& selected) {
-  std::vector<std::string> counts;
-  for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
+  std::vector<std::string> variants, counts;
+  std::set<std::size_t> distinct;
+  for (const auto& [variant, count] : runs) {
+    variants.push_back(variant);
+    counts.push_back(fmt::format("{}: {}", variant, count));
+    distinct.insert(count);
+  }
+  if (runs.size() > 1 && distinct.size() == 1) {
+    counts = {fmt::format("{} each of {}", *distinct.begin(), fmt::join(variants, "; "))};
+  }
   // The title of an own plot says what its axes say.
   const std::string title = find_figure(summary.name) == nullptr ? "" : ". " + summary.title;
   std::string text =

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
@@ -355,9 +356,18 @@ std::uint64_t length_of(const Variant& variant) {
   return target_cycles(variant.parameters);
 }
 
-std::uint64_t cycles_back(string_view measure) {
-  const ScalarMeasure* found = find_measure(measure);
-  return found == nullptr ? 0 : found->cycles_back();
+/// To the earliest checkpoint that a measure or expression needs besides its own.
+std::uint64_t cycles_back(string_view text) {
+  std::uint64_t most = 0;
+  for (const string& name : names_in(text)) {
+    if (const ScalarMeasure* found = find_measure(name)) most = std::max(most, found->cycles_back());
+  }
+  return most;
+}
+
+/// Whether the y of the plot is one number of a run.
+bool is_of_run(const PlotSpec& plot) {
+  return is_parameter(plot.y) && find_curve_measure(plot.y) == nullptr;
 }
 
 /// "a checkpoint at cycle 3 with another one 1 cycle before it".
@@ -410,7 +420,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+  } else if (!draws_every_cycle(plot) && !is_of_run(plot)) {
     if (!plot.cycle && scale.until->until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(length_of(shortest)));
     where = format(" at cycle {}", cycles[0]);
@@ -452,7 +462,9 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
 std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                                 std::span<const Variant> variants, std::size_t) {
   std::vector<string> found;
-  const string key = plot.by.empty() ? "" : averaged_over({plot.by, plot.x}, variants);
+  std::vector<string> keys = names_in(plot.x);
+  keys.insert(keys.end(), {plot.by, plot.panel});
+  const string key = plot.by.empty() ? "" : averaged_over(keys, variants);
   if (!key.empty()) {
     found.push_back(format(
         "it would average over the values of {}. Leave out `by` for a curve of each variant.",
@@ -465,7 +477,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
-  if (plot.cycle && find_run_measure(plot.y) != nullptr) {
+  if (plot.cycle && is_of_run(plot)) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
@@ -489,6 +501,7 @@ std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
   const auto run_of = [](const Variant& variant) {
     return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).key;
   };
+  if (claim.published) sides[1].clear();
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
   std::vector<string> found =
       problems_of_sides(claim, {sides[0].size(), sides[1].size()},

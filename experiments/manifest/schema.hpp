@@ -54,10 +54,12 @@ struct Field {
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< of a choice: the values
   bool whole = false;                            ///< takes whole numbers alone
+  std::span<const std::string_view> terms = {};  ///< numbers of which it takes expressions too
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};                  ///< "a map of settings"
   bool required = false;
-  std::size_t longest = 0;  ///< of a free text [bytes]
+  std::size_t longest = 0;  ///< of a free text [bytes]; one line, unless `lines`
+  bool lines = false;
   /// One parameter as JSON, and back; null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
