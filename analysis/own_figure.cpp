@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -295,13 +296,13 @@ std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
   constexpr std::array<int, 11> points = {0, 5, 7, 9, 11, 13, 4, 6, 8, 10, 12};  // of a Marker
   std::vector<CurveStyle> styles;
   for (const SeriesSpec& one : plot.series) {
-    CurveStyle& style = styles.emplace_back(CurveStyle{.where = one.where, .over_labels = true});
-    style.title = text_with_formulas(one.label);
+    CurveStyle& stated = styles.emplace_back(CurveStyle{.where = one.where, .over_labels = true});
+    stated.title = text_with_formulas(one.label);
     const auto name = std::ranges::find(colour_names, one.colour);
-    style.colour = name == colour_names.end()
-                       ? one.colour
-                       : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
-    if (one.marker) style.point = points.at(static_cast<std::size_t>(*one.marker));
+    stated.colour = name == colour_names.end()
+                        ? one.colour
+                        : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
+    if (one.marker) stated.point = points.at(static_cast<std::size_t>(*one.marker));
   }
   return styles;
 }
@@ -393,6 +394,11 @@ void share_ranges(std::vector<FigureTable>& tables) {
 
 FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
                        const NameVariants& names) {
+  if (!plot.by.empty()) {
+    std::vector<std::string> keys = names_in(plot.x);
+    keys.insert(keys.end(), {plot.by, plot.panel});
+    require_told_apart(plot.name, given, keys, "leave out its `by` for a curve of each variant");
+  }
   std::vector<FigureRun> runs = with_values(given, {plot.y, plot.x});
   FigureResult result;
   std::vector<nlohmann::json> wheres;
@@ -418,6 +424,32 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
   }
   if (result.tables.size() > 1) share_ranges(result.tables);
   return result;
+}
+
+/// One figure of several: its panels and verdicts are theirs.
+Figure joined(const std::string& name, std::vector<Figure> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  Figure figure{name, parts.front().title, {}};
+  figure.within = parts.front().within;
+  for (const Figure& part : parts) {
+    figure.needs.insert(figure.needs.end(), part.needs.begin(), part.needs.end());
+    if (part.within != figure.within) figure.within = {};
+  }
+  if (std::ranges::all_of(parts, [](const Figure& part) { return bool(part.uses); })) {
+    figure.uses = [parts](const FigureRun& run) {
+      return std::ranges::any_of(parts, [&](const Figure& part) { return part.uses(run); });
+    };
+  }
+  figure.make = [parts = std::move(parts)](std::span<const FigureRun> runs) {
+    FigureResult result;
+    for (const Figure& part : parts) {
+      FigureResult more = part.make(runs);
+      std::ranges::move(more.tables, std::back_inserter(result.tables));
+      std::ranges::move(more.verdicts, std::back_inserter(result.verdicts));
+    }
+    return result;
+  };
+  return figure;
 }
 
 }  // namespace
@@ -499,14 +531,31 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   if (plot.cycle && !draws_every_cycle(plot) && !(measured == nullptr && is_parameter(plot.y))) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
-  if (!plot.by.empty()) {
-    figure.form = FigureForm::groups;
-    figure.keys = names_in(x);
-    for (const std::string& key : {plot.by, plot.panel}) {
-      if (!key.empty()) figure.keys.push_back(key);
+  return figure;
+}
+
+std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
+                                const NameVariants& names) {
+  std::vector<Figure> parts;
+  std::vector<std::string> figures;  // of each part
+  for (const PlotSpec& plot : plots) {
+    parts.push_back(plot_figure(plot, names));
+    figures.push_back(plot.figure.empty() ? plot.name : plot.figure);
+  }
+  for (const ClaimSpec& claim : claims) {
+    parts.push_back(claim_figure(claim, names));
+    figures.push_back(claim.figure.empty() ? claim.name : claim.figure);
+  }
+  std::map<std::string, std::vector<Figure>> parts_of;
+  for (std::size_t k = 0; k < parts.size(); ++k) parts_of[figures[k]].push_back(parts[k]);
+  std::vector<Figure> found;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (std::find(figures.begin(), figures.begin() + static_cast<std::ptrdiff_t>(k), figures[k]) ==
+        figures.begin() + static_cast<std::ptrdiff_t>(k)) {
+      found.push_back(joined(figures[k], std::move(parts_of.at(figures[k]))));
     }
   }
-  return figure;
+  return found;
 }
 
 }  // namespace shearcell

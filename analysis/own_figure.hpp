@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,8 +83,9 @@ struct PlotSpec {
   std::string y;
   /// "cycle", a scalar measure, a parameter, or an expression of these; unused by curves.
   std::string x = "cycle";
-  std::string by = {};     ///< a curve for each value of it; "": for each variant
-  std::string panel = {};  ///< a panel for each value of this parameter
+  std::string by = {};      ///< a curve for each value of it; "": for each variant
+  std::string figure = {};  ///< plots and claims of one figure are drawn together; "": alone
+  std::string panel = {};   ///< a panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
   std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
@@ -101,7 +103,8 @@ struct PlotSpec {
 
 struct ClaimSpec {
   std::string name;
-  std::string compare;  ///< as PlotSpec::y, but no curve
+  std::string figure = {};  ///< as PlotSpec::figure
+  std::string compare;      ///< as PlotSpec::y, but no curve
   /// The measure's mean over these cycles, first to last; nothing for a run measure.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   /// Parameters and their values, of one variant each. The second one is empty if the first is
@@ -156,5 +159,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
 /// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
 /// Its function throws UsageError with the first of problems_of_sides(). `names` names the sides.
 Figure claim_figure(const ClaimSpec& claim, const NameVariants& names = {});
+
+/// The figures of a manifest, in the order of their first plots and claims.
+std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
+                                const NameVariants& names);
 
 }  // namespace shearcell

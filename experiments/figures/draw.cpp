@@ -112,33 +112,6 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record_figure(name, facts);
 }
 
-/// Throws UsageError if the figure would average over values of a parameter other than its keys.
-/// Parameters that change together with its keys are allowed.
-void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>& runs) {
-  if (wanted.figure.form != FigureForm::groups) return;
-  std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
-  for (const FigureRun& run : runs) {
-    std::vector<nlohmann::json> group;
-    for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
-    variants.emplace_back(std::move(group), run.swept);
-  }
-  const std::string key = averaged_key(variants);
-  if (key.empty()) return;
-  if (find_field(key) == nullptr) {  // `manifest`, not swept
-    throw UsageError(
-        fmt::format("figure {} would average over several versions of the manifest of experiment "
-                    "{}; leave out --all-versions",
-                    wanted.figure.name, wanted.experiment));
-  }
-  const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
-  throw UsageError(fmt::format(
-      "figure {} would average over the values of {} that experiment {} sweeps; {}",
-      wanted.figure.name, key, wanted.experiment,
-      of_manifest
-          ? "leave out its `by` for a curve of each variant"
-          : "give each an experiment of its own, or state a plot in the manifest (`plots`)"));
-}
-
 /// "drag/desk", or "desk" for a figure of all experiments: the path of its files in the folder for
 /// figures, and of its record. Checks both names, since the store is not trusted.
 std::string place_of(const FigureSummary& figure) {
@@ -240,7 +213,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   measuring.also = wanted.also;
   const std::vector<FigureRun> runs =
       figure_runs(store, figure, collected.runs, measuring, summary);
-  require_told_apart(wanted, runs);
+  if (figure.form == FigureForm::groups) {
+    require_told_apart(
+        figure.name, runs, figure.keys,
+        "give each an experiment of its own, or state a plot in the manifest (`plots`)");
+  }
   summary.title = title_of(figure, runs);
   summary.runs = runs.size();
   for (const FigureRun& run : runs) {

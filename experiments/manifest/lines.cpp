@@ -71,10 +71,10 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
       if (selects(label, swept)) add("labels", label.at);
     }
     for (const auto& plot : manifest.plots) {
-      if (plot.name == figure) add("plots", plot.at);
+      if (plot.name == figure || plot.figure == figure) add("plots", plot.at);
     }
     for (const auto& claim : manifest.claims) {
-      if (claim.name == figure) add("claims", claim.at);
+      if (claim.name == figure || claim.figure == figure) add("claims", claim.at);
     }
   } catch (const ManifestError&) {
     found.clear();  // a manifest of another version of the schema

@@ -155,6 +155,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                          "parameter is refused. Default: one for each variant or, with a parameter "
                          "as `x`, for each combination of the other swept values",
                   .names = can_be_by});
+  visit(plot.figure,
+        {.name = "figure",
+         .doc = "plots and claims with the same `figure` are its panels (a), (b), ... and its "
+                "claims, with one caption; default: a figure of its own"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel, NAME_1, NAME_2, ..., for each value of this parameter, "
                             "with equal ranges",
@@ -205,6 +209,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   static const Names can_be_compared = joined({}, scalars, runs);
   static const Names terms = joined({"cycle"}, scalars, runs, numbers());
   visit(claim.name, {.name = "name", .doc = "required", .required = true});
+  visit(claim.figure, {.name = "figure", .doc = "as of a plot"});
   visit(claim.compare, {.name = "compare",
                         .doc = "required; as `y` of a plot, but no curve",
                         .names = can_be_compared,
@@ -886,6 +891,9 @@ struct Reader {
       cycles->reject("draws each run along its cycles",
                      "It takes `show: traces`, and `cycle` or a measure as x.");
     }
+    if (cycles && !plot.figure.empty()) {
+      cycles->reject("does not go with figure", "Give the plot a figure of its own.");
+    }
     if (const auto also = in.find("also"); also && (plot.x != "cycle" || plot.show != Show::mean)) {
       also->reject("goes with means against the cycle", "Leave it out.");
     }
@@ -963,25 +971,37 @@ struct Reader {
   }
 };
 
-// Names of plots and claims differ from each other and from those of the supplement's figures and
-// panels.
+// Names of plots and claims, of their figures and of the panels of a plot differ from each other
+// and from those of the supplement's figures and panels.
 void check_own_names(const Entry& document) {
-  std::set<string> taken;
+  std::vector<Entry> items;
   for (const char* list : {"plots", "claims"}) {
     const auto own = document.find(list);
-    for (const Entry& item : own ? own->items() : std::vector<Entry>()) {
-      const auto name = item.find("name");
-      if (!name || !is_name(name->node.text)) continue;
-      const string_view text = name->node.text;
+    for (const Entry& item : own ? own->items() : std::vector<Entry>()) items.push_back(item);
+  }
+  std::set<string> taken;
+  const auto is_taken = [&](const string& text) {
+    return std::ranges::any_of(items, [&](const Entry& other) {
+      const auto name = other.find("name");
+      return other.find("panel") && name && text.starts_with(name->node.text + "_") &&
+             text.find_first_not_of("0123456789", name->node.text.size() + 1) == text.npos;
+    });
+  };
+  for (const char* key : {"name", "figure"}) {
+    for (const Entry& item : items) {
+      const auto own = item.find(key);
+      if (!own || !is_name(own->node.text)) continue;
+      const string& text = own->node.text;
       const auto is_panel = [&](const Figure& figure) {
         if (!text.starts_with(figure.name)) return false;
-        const string_view rest = text.substr(figure.name.size());
+        const string_view rest = string_view(text).substr(figure.name.size());
         return rest.size() < 2 || rest.front() == '_';
       };
+      const bool names_it = key == string_view("name");
       if (std::ranges::any_of(all_figures(), is_panel)) {
-        name->reject_value("is the name of a figure of the supplement", "Choose another one.");
-      } else if (!taken.insert(name->node.text).second) {
-        name->reject_value("is the name of another plot or claim", "Choose another one.");
+        own->reject_value("is the name of a figure of the supplement", "Choose another one.");
+      } else if (is_taken(text) || (names_it ? !taken.insert(text).second : taken.contains(text))) {
+        own->reject_value("is the name of another plot or claim", "Choose another one.");
       }
     }
   }
