@@ -14,9 +14,9 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t longest = 200;  // [bytes]
+constexpr std::size_t longest_expression = 200;  // [bytes]
 
-constexpr std::array<std::string_view, 13> functions = {
+constexpr std::array<std::string_view, 13> expression_functions = {
     "abs", "acos", "asin", "atan", "cos", "exp", "ln", "log10", "max", "min", "sin", "sqrt", "tan"};
 
 bool is_digit(char c) {
@@ -83,7 +83,8 @@ std::vector<std::string> names_in(std::string_view text) {
 }
 
 std::string wrong_in_expression(const std::string& text) {
-  if (text.size() > longest) return fmt::format("is longer than {} bytes", longest);
+  if (text.size() > longest_expression)
+    return fmt::format("is longer than {} bytes", longest_expression);
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view token = take_token(rest);
     if (is_digit(token[0]) || token[0] == '.') continue;
@@ -93,7 +94,7 @@ std::string wrong_in_expression(const std::string& text) {
     }
     const std::size_t next = rest.find_first_not_of(' ');
     if (next == rest.npos || rest[next] != '(') continue;
-    if (std::ranges::find(functions, token) == functions.end()) {
+    if (std::ranges::find(expression_functions, token) == expression_functions.end()) {
       return fmt::format("uses the unknown function {}", token);
     }
   }
