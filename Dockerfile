@@ -5,7 +5,7 @@ FROM debian:12-slim AS build
 COPY . /source
 WORKDIR /source
 RUN sh .ci/setup \
- && apt-get install -q -y --no-install-recommends dpkg-dev file git nodejs npm \
+ && apt-get install -q -y --no-install-recommends dpkg-dev file git help2man nodejs npm \
  && cmake --preset release -DSHEARCELL_TESTS=OFF \
  && cmake --build --preset release \
  && cd build/release && cpack -B /package

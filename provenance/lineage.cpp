@@ -8,6 +8,7 @@
 
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
@@ -114,6 +115,23 @@ std::string newest_of(const RunLineage& run) {
 
 }  // namespace
 
+Maker maker_of(const json& host) {
+  const json build = member_of(host, "build"), libraries = member_of(host, "libraries");
+  Maker maker;
+  maker.version = fmt::format("{} ({})", text_at(build, "version"), text_at(build, "commit"));
+  maker.program = fmt::format("shearcell {}, {} {}", maker.version, text_at(build, "compiler"),
+                              text_at(build, "type"));
+  maker.flags = text_at(build, "flags");
+  for (const auto& [name, version] : libraries.items()) {
+    maker.libraries.push_back(name + " " + short_text(version));
+  }
+  maker.host = text_at(host, "host");
+  maker.system = text_at(host, "system");
+  maker.machine = fmt::format("{}, {} cores, {}", text_at(host, "cpu"), text_at(host, "cores"),
+                              text_at(host, "simd"));
+  return maker;
+}
+
 const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
   const auto found = std::ranges::find(checkpoints, sha256, &CheckpointHistory::sha256);
   return found == checkpoints.end() ? nullptr : &*found;
@@ -142,6 +160,14 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     before = std::move(events);
   }
   return stages;
+}
+
+void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages) {
+  if (lineages.contains(id)) return;
+  for (RunLineage& stage : run_lineage(store, id)) {
+    const std::string stage_id = stage.run.id;
+    lineages.try_emplace(stage_id, std::move(stage));
+  }
 }
 
 std::optional<ManifestText> find_manifest(const Store& store, const std::string& sha256) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,6 +19,20 @@ enum class AttemptOutcome { running, completed, interrupted, failed, lost };
 template <>
 inline constexpr auto kNames<AttemptOutcome> =
     names_in_order<AttemptOutcome>("running", "completed", "interrupted", "failed", "lost");
+
+/// The program and the machine that made something, as texts to show; "unknown" where nothing was
+/// recorded.
+struct Maker {
+  std::string program;                 ///< "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release"
+  std::string version;                 ///< "0.1.0 (dd11cbe)"
+  std::string flags;                   ///< of the compiler
+  std::vector<std::string> libraries;  ///< "hdf5 1.10.8"
+  std::string host;                    ///< its name
+  std::string system;
+  std::string machine;  ///< "AMD EPYC 7763, 4 cores, AVX2"
+};
+/// Reads what host_facts() recorded.
+Maker maker_of(const nlohmann::json& host);
 
 /// One computation of a run by one program, from start to end.
 struct Attempt {
@@ -55,6 +70,11 @@ struct RunLineage {
 /// The run and the stages before it, the first one first. Throws NotFound for an unknown run and
 /// StoreDamaged, naming the event, for a damaged payload.
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
+
+using RunLineages = std::map<std::string, RunLineage>;  ///< by id
+
+/// Adds the run and the stages before it, unless they are there.
+void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages);
 
 struct ManifestText {
   std::string sha256;

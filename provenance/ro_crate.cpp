@@ -2,23 +2,33 @@
 #include "provenance/ro_crate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 
 namespace shearcell {
 
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kCrateSpecification = "https://w3id.org/ro/crate/1.1";
 constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
+
+/// Identifier of the crate of a run; it marks the folder of an earlier export.
+std::string crate_identifier(const std::string& run) {
+  return "urn:x-shearcell:run:" + run;
+}
 
 json reference(const std::string& id) {
   return {{"@id", id}};
@@ -52,7 +62,7 @@ json file_entity(const std::string& path, const std::string& name, const std::st
 
 json add_manifest(Graph& graph, const ManifestText& manifest) {
   // Only the file name: the rest of the path is private.
-  const std::string name = std::filesystem::path(manifest.path).filename().string();
+  const std::string name = fs::path(manifest.path).filename().string();
   json entity = file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
                             "application/yaml", manifest.text.size(), manifest.sha256);
   entity["description"] = "The experiment as it was declared";
@@ -81,36 +91,26 @@ json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
 }
 
 /// The program that computed the attempt.
-json add_software(Graph& graph, const json& host) {
-  const json build = host.value("build", json::object());
-  const json libraries = host.value("libraries", json::object());
-  json needs = json::array();
-  for (const auto& [name, version] : libraries.items()) {
-    needs.push_back(name + " " + text_at(libraries, name.c_str()));
-  }
+json add_software(Graph& graph, const Maker& maker) {
+  const std::string libraries = fmt::format("{}", fmt::join(maker.libraries, ", "));
+  const std::string id = sha256_hex(maker.program + maker.flags + libraries).substr(0, 16);
   return graph.add(
-      {{"@id", "#shearcell-" + sha256_hex(build.dump() + libraries.dump()).substr(0, 16)},
+      {{"@id", "#shearcell-" + id},
        {"@type", "SoftwareApplication"},
        {"name", "shearcell"},
-       {"softwareVersion",
-        fmt::format("{} ({})", text_at(build, "version"), text_at(build, "commit"))},
-       {"softwareRequirements", needs},
+       {"softwareVersion", maker.version},
+       {"softwareRequirements", maker.libraries},
        {"description",
-        fmt::format("Discrete element simulations of cyclically sheared grains; built by {} as "
-                    "{} with {}",
-                    text_at(build, "compiler"), text_at(build, "type"), text_at(build, "flags"))}});
+        fmt::format("Discrete element simulations of cyclically sheared grains; {}, built with {}",
+                    maker.program, maker.flags)}});
 }
 
-json add_host(Graph& graph, const json& host) {
-  json machine = json::object();
-  for (const char* key : {"host", "system", "cpu", "cores", "simd"})
-    machine[key] = text_at(host, key);
-  return graph.add({{"@id", "#host-" + sha256_hex(machine.dump()).substr(0, 16)},
+json add_host(Graph& graph, const Maker& maker) {
+  const std::string machine = maker.system + "; " + maker.machine;
+  return graph.add({{"@id", "#host-" + sha256_hex(maker.host + machine).substr(0, 16)},
                     {"@type", "Place"},
-                    {"name", text_at(host, "host")},
-                    {"description", fmt::format("{}; {}, {} cores, {}", text_at(host, "system"),
-                                                text_at(host, "cpu"), text_at(host, "cores"),
-                                                text_at(host, "simd"))}});
+                    {"name", maker.host},
+                    {"description", machine}});
 }
 
 /// Seed, resolved parameters and number of cycles of a run.
@@ -180,12 +180,13 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
   for (const std::string& sha256 : attempt.checkpoints) {
     results.push_back(add_checkpoint(graph, *stage.find(sha256)));
   }
+  const Maker maker = maker_of(attempt.host);
   json action = {
       {"@id", fmt::format("#attempt-{}-{}", stage.run.id, a + 1)},
       {"@type", "CreateAction"},
       {"name", fmt::format("{} of run {:.12}, attempt {}", stage.run.kind, stage.run.id, a + 1)},
-      {"instrument", add_software(graph, attempt.host)},
-      {"location", add_host(graph, attempt.host)},
+      {"instrument", add_software(graph, maker)},
+      {"location", add_host(graph, maker)},
       {"startTime", attempt.started_at},
       {"actionStatus", reference(status_of(attempt))},
       {"object", objects},
@@ -250,10 +251,6 @@ std::string crate_path_of_manifest(const std::string& sha256) {
   return "manifests/" + sha256 + ".yaml";
 }
 
-std::string crate_identifier(const std::string& run) {
-  return "urn:x-shearcell:run:" + run;
-}
-
 json ro_crate_metadata(const CrateFacts& facts) {
   Graph graph;
   json actions = json::array();
@@ -300,6 +297,91 @@ json ro_crate_metadata(const CrateFacts& facts) {
   return {{"@context", json::array({kCrateSpecification + std::string("/context"),
                                     "https://w3id.org/ro/terms/workflow-run/context"})},
           {"@graph", all}};
+}
+
+namespace {
+
+bool is_crate_of(const fs::path& folder, const std::string& run) {
+  const auto text = read_plain(folder / kCrateMetadata, StoreLimits::value_bytes);
+  const json graph = member_of(parse_json(text.value_or("")), "@graph");
+  return graph.is_array() && std::any_of(graph.begin(), graph.end(), [&](const json& entity) {
+           return member_of(entity, "@id") == "./" &&
+                  member_of(entity, "identifier") == crate_identifier(run);
+         });
+}
+
+/// Creates a folder in the crate; a link is refused.
+void make_subfolder(const fs::path& crate, const char* name) {
+  const fs::path path = crate / name;
+  const fs::file_status status = fs::symlink_status(path);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw std::invalid_argument(path.string() +
+                                ": this must be a folder, but it is a file or a link; remove it");
+  }
+  fs::create_directory(path);
+}
+
+std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
+  const ObjectStore objects(store.folder());
+  std::vector<std::string> written;
+  for (const char* subfolder : {"checkpoints", "manifests"}) make_subfolder(folder, subfolder);
+  std::set<std::string> done;
+  for (const RunLineage& stage : facts.stages) {
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (!c.kept() || !done.insert(c.record.sha256).second) continue;
+      const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
+      const std::string path = crate_path_of_checkpoint(c.record.sha256);
+      write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+      written.push_back(path);
+    }
+  }
+  // An earlier export wrote what was pruned or rejected since.
+  for (const RunLineage& stage : facts.stages) {
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (!done.contains(c.sha256())) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
+    }
+  }
+  for (const ManifestText& manifest : facts.manifests) {
+    written.push_back(crate_path_of_manifest(manifest.sha256));
+    write_output(folder / written.back(), manifest.text);
+  }
+  // Last, because it describes the other files. Bytes that are not UTF-8 are replaced.
+  write_output(folder / kCrateMetadata,
+               ro_crate_metadata(facts).dump(1, ' ', false, json::error_handler_t::replace) + '\n');
+  written.emplace_back(kCrateMetadata);
+  return written;
+}
+
+}  // namespace
+
+std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
+                                        const fs::path& where, const std::string& licence,
+                                        const std::vector<std::string>& left_out) {
+  const CrateFacts facts = crate_facts(store, run, licence, left_out);
+  // "crate/" has no file name; "crate" is the same folder.
+  const fs::path given = fs::absolute(where);
+  const fs::path folder = given.has_filename() ? given : given.parent_path();
+  const fs::file_status status = fs::symlink_status(folder);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw std::invalid_argument(folder.string() +
+                                ": this is a file or a link; name another folder");
+  }
+  if (fs::exists(status) && !fs::is_empty(folder)) {
+    if (!is_crate_of(folder, run)) {
+      throw std::invalid_argument(folder.string() +
+                                  ": the folder is not an export of this run; name another one");
+    }
+    return fill(store, facts, folder);
+  }
+  // On the same file system as the folder, to be renamed to it.
+  fs::create_directories(folder.parent_path());
+  const TemporaryFolder beside(folder.parent_path() /
+                               fmt::format(".{}.tmp-", folder.filename().string()));
+  const fs::path staged = beside.path() / "crate";
+  fs::create_directory(staged);
+  std::vector<std::string> written = fill(store, facts, staged);
+  fs::rename(staged, folder);
+  return written;
 }
 
 }  // namespace shearcell

@@ -33,9 +33,6 @@ inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
 /// The content of ro-crate-metadata.json. Equal logs give equal bytes.
 nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 
-/// Identifier of the crate of a run; it marks the folder of an earlier export.
-std::string crate_identifier(const std::string& run);
-
 /// Writes the metadata, the manifests and every checkpoint that was neither rejected nor
 /// pruned; each checkpoint is verified. `folder` must be missing, empty, or an earlier export of
 /// the same run, which is updated: files of checkpoints that are no longer kept are deleted. A new

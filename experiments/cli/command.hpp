@@ -60,14 +60,6 @@ AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_reb
 /// Prints the result of a campaign and sets the exit code.
 void print_result(const CampaignResult& result, Context& context);
 
-/// Prints the origin of a figure, within 80 columns or as JSON.
-void show_figure(const Store& store, const FigureRecord& record, Context& context);
-
-/// Compares a figure's file and its inputs with the store's records, then prints as show_figure().
-/// The exit code is kStoreDamaged if one of them differs. Throws NotFound for a file that the store
-/// does not know.
-void show_published(const Store& store, const std::filesystem::path& file, Context& context);
-
 /// An error message if the path is empty; else "".
 std::string unnamed(const std::string& path);
 

@@ -1,87 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual`: texts generated from the parser's commands and options.
-//   manual              the manual page, in roff, from the same texts as --help
-//   manual --markdown   the reference, experiments/REFERENCE.md
+// `manual`: the reference (experiments/REFERENCE.md), from the program's own tables and the
+// parser's commands and options. Manual pages are made of --help (experiments/install).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
+#include <algorithm>
 
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/command_tree.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/host.hpp"
 
 namespace shearcell::cli {
 namespace {
 
-/// Text for roff: no line may begin with a control character, and hyphens stay hyphens.
-std::string escaped(const std::string& text) {
-  std::string all;
-  bool line_begins = true;
-  for (const char c : text) {
-    if (line_begins && (c == '.' || c == '\'')) all += "\\&";
-    line_begins = c == '\n';
-    if (c == '\\') {
-      all += "\\e";
-    } else if (c == '-') {
-      all += "\\-";
-    } else if (c == '|') {
-      all += "|\\:";  // a line may end here
-    } else {
-      all += c;
-    }
-  }
-  return all;
-}
+constexpr std::size_t kLongestChoice = 60;
 
 /// "--jobs, -j J"; for a positional "manifest".
-std::string usage(const OptionEntry& option) {
-  const bool spaced = !option.names.empty() && !option.placeholder.empty();
-  return fmt::format("{}{}{}", fmt::join(option.names, ", "), spaced ? " " : "",
-                     option.placeholder);
-}
-
-std::string section(const CommandEntry& command) {
-  std::string text;
-  if (!command.path.empty()) {
-    text += fmt::format(".SS {}\n{}\n", escaped(spoken(command)),
-                        escaped(command.app->get_description()));
+std::string usage(const CLI::Option& option) {
+  std::vector<std::string> words;
+  for (const std::string& name : option.get_snames()) words.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) words.push_back("--" + name);
+  const std::string names = fmt::format("{}", fmt::join(words, ", "));
+  if (option.get_items_expected_max() == 0) return names;
+  if (option.get_positional()) return option.get_single_name();
+  std::string value = option.get_type_name();
+  if (const auto choices = value.find(":{"); choices != std::string::npos) {
+    std::string one_of = value.substr(choices + 2);
+    one_of.pop_back();
+    std::ranges::replace(one_of, ',', '|');
+    value.erase(choices);
+    if (one_of.size() <= kLongestChoice) value = one_of;  // longer lists are left out
   }
-  for (const OptionEntry& option : command.options) {
-    text += fmt::format(".TP\n.B {}\n{}\n", escaped(usage(option)), escaped(option.meaning));
-  }
-  if (!command.path.empty() && !command.app->get_footer().empty()) {
-    text += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.app->get_footer()));
-  }
-  return text;
+  return names + " " + (value.empty() ? "VALUE" : value);
 }
-
-std::string manual(const std::vector<CommandEntry>& tree) {
-  const CommandEntry& program = tree.front();
-  std::string text = fmt::format(
-      ".TH SHEARCELL 1 \"\" \"shearcell {}\" \"User Commands\"\n"
-      ".SH NAME\nshearcell \\- discrete element experiments on cyclically sheared grains\n"
-      ".SH SYNOPSIS\n.B shearcell\n.I command\n[\\fIoptions\\fR]\n"
-      ".SH DESCRIPTION\n{}\n.SH OPTIONS\n",
-      escaped(host_facts().at("build").at("version").get<std::string>()),
-      escaped(program.app->get_description()));
-  text += section(program) + ".SH COMMANDS\n";
-  for (std::size_t i = 1; i < tree.size(); ++i) text += section(tree[i]);
-  return text +
-         ".SH ENVIRONMENT\n"
-         ".TP\n.B SHEARCELL_STORE\nfolder of the store where \\-\\-store does not name it\n"
-         ".TP\n.B SHEARCELL_LAMMPS\nthe LAMMPS program to use instead of lmp on PATH\n"
-         ".TP\n.B NO_COLOR\nset to anything: no colours\n"
-         ".SH EXAMPLES AND EXIT CODES\n.nf\n" +
-         escaped(program.app->get_footer()) + "\n.fi\n";
-}
-
-// --- The reference, which also lists manifest keys, measures and figures ---
 
 /// Escapes text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
@@ -144,25 +98,35 @@ std::string figure_reference() {
   return text;
 }
 
-std::string command_reference(const CommandEntry& command) {
-  std::string text =
-      fmt::format("\n### {}\n\n{}.\n", spoken(command), command.app->get_description());
-  std::string rows;
-  for (const OptionEntry& option : command.options) {
-    if (!option.names.empty() && option.names.back() == "--help") continue;
-    rows += fmt::format("| `{}` | {} |\n", cell(usage(option)), cell(option.meaning));
+/// The command, then its own subcommands. `path`: its words, as "shearcell bench".
+std::string command_reference(const CLI::App& command, const std::string& path) {
+  std::string text = fmt::format("\n### {}\n\n{}.\n", path, command.get_description());
+  std::string positionals, options;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option == command.get_help_ptr()) continue;
+    std::string meaning = option->get_description();
+    if (const std::string value = option->get_default_str(); !value.empty()) {
+      meaning += fmt::format(" (default: {})", value);
+    }
+    (option->get_positional() ? positionals : options) +=
+        fmt::format("| `{}` | {} |\n", cell(usage(*option)), cell(meaning));
   }
-  if (!rows.empty()) text += "\n| argument | meaning |\n|---|---|\n" + rows;
+  if (const std::string rows = positionals + options; !rows.empty()) {
+    text += "\n| argument | meaning |\n|---|---|\n" + rows;
+  }
   // The help texts of these two list columns and figures, which the reference lists above.
-  const bool listed = command.path.back() == "table" || command.path.back() == "figures";
-  if (!command.app->get_footer().empty() && !listed) {
-    text += fmt::format("\n```text\n{}\n```\n", command.app->get_footer());
+  const bool listed = command.get_name() == "table" || command.get_name() == "figures";
+  if (!command.get_footer().empty() && !listed) {
+    text += fmt::format("\n```text\n{}\n```\n", command.get_footer());
+  }
+  for (const CLI::App* sub : command.get_subcommands({})) {
+    text += command_reference(*sub, path + " " + sub->get_name());
   }
   return text;
 }
 
 /// The text of experiments/REFERENCE.md (test docs.reference).
-std::string reference(const std::vector<CommandEntry>& tree) {
+std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"
       "`shearcell manual --markdown` prints this file from the program's own tables; a test "
@@ -172,24 +136,21 @@ std::string reference(const std::vector<CommandEntry>& tree) {
       "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not, "
       "`SHEARCELL_LAMMPS`\nthe LAMMPS program to use instead of `lmp` on PATH; `NO_COLOR` turns "
       "colours off.\n";
-  for (std::size_t k = 1; k < tree.size(); ++k) text += command_reference(tree[k]);
-  return text + fmt::format("\n## Examples and exit codes\n\n```text\n{}\n```\n",
-                            tree.front().app->get_footer());
+  for (const CLI::App* command : program.get_subcommands({})) {
+    text += command_reference(*command, "shearcell " + command->get_name());
+  }
+  return text +
+         fmt::format("\n## Examples and exit codes\n\n```text\n{}\n```\n", program.get_footer());
 }
 
 }  // namespace
 
 void add_manual(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("manual", "Print the manual page, in roff");
-  auto markdown = std::make_shared<bool>(false);
-  command->add_flag("--markdown", *markdown,
-                    "Print the reference of manifest keys, measures and commands instead");
-  command->footer(
-      "Examples:\n  shearcell manual | man -l -\n  shearcell manual --markdown > reference.md");
-  command->callback([&app, markdown] {
-    const std::vector<CommandEntry> tree = command_tree(app);
-    fmt::print("{}", *markdown ? reference(tree) : manual(tree));
-  });
+  CLI::App* command = app.add_subcommand(
+      "manual", "Print the reference of manifest keys, measures and commands, in Markdown");
+  command->add_flag("--markdown")->description("As without it");
+  command->footer("Example:\n  shearcell manual > reference.md");
+  command->callback([&app] { fmt::print("{}", reference(app)); });
 }
 
 }  // namespace shearcell::cli

@@ -322,8 +322,6 @@ void add_plan(CLI::App& app, Context& context) {
   add_engine_option(*command, *options);
   add_common_options(*command, context);
   command->footer(
-      "For each new run, prints the values in which it differs from the most similar run in the "
-      "store.\n"
       "Runs that several of the manifests share are counted once.\n"
       "Examples:\n"
       "  shearcell plan experiments/drag.yaml --scale paper\n"

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "analysis/error.hpp"
@@ -16,9 +19,11 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/run_end.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -57,10 +62,8 @@ nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
 // The engine that the latest attempt recorded; null for our own.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
-  for (const Event& event : store.events(run_stream(run))) {
-    const nlohmann::json body = event.body();
-    const nlohmann::json host = body.value("host", nlohmann::json::object());
-    if (host.is_object() && host.contains("engine")) engine = host["engine"];
+  for (const Attempt& attempt : run_lineage(store, run).back().attempts) {
+    if (attempt.host.contains("engine")) engine = attempt.host["engine"];
   }
   return engine;
 }
@@ -219,6 +222,235 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print(facts_at(store, record, context));
 }
 
+// --- Figures and their files ---
+
+// Escapes a recorded text and cuts it to the rest of the terminal's line; in a pipe it stays whole.
+std::string cut(const std::string& text, std::size_t used) {
+  const std::string shown = without_controls(text);
+  const std::size_t width = terminal_columns(stdout).value_or(std::string::npos);
+  const std::size_t left = width > used + 3 ? width - used : 4;
+  if (characters(shown) <= left) return shown;
+  return std::string(first_characters(shown, left - 3)) + "...";
+}
+
+// "2026-11-20T21:40:51.123Z" as "2026-11-20 21:40:51".
+std::string moment(const std::string& utc) {
+  std::string text = utc.substr(0, 19);
+  std::replace(text.begin(), text.end(), 'T', ' ');
+  return text;
+}
+
+// Numbers builds and hosts, so that the lines of attempts stay short.
+class Makers {
+ public:
+  /// "build 1, host 1".
+  std::string number(const nlohmann::json& host) {
+    const Maker maker = maker_of(host);
+    Row build = {maker.program, maker.flags};
+    if (!maker.libraries.empty())
+      build.push_back(fmt::format("{}", fmt::join(maker.libraries, ", ")));
+    return fmt::format("build {}, host {}", number(builds_, build),
+                       number(hosts_, {maker.host + ", " + maker.system, maker.machine}));
+  }
+  void print() const {
+    for (const auto& [what, all] : {std::pair("build", &builds_), {"host", &hosts_}}) {
+      for (std::size_t k = 0; k < all->size(); ++k) {
+        std::string name = fmt::format("{} {}", what, k + 1);
+        for (const std::string& line : all->at(k)) {
+          print_text("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
+        }
+      }
+    }
+  }
+
+ private:
+  static std::size_t number(std::vector<Row>& known, const Row& lines) {
+    const auto found = std::ranges::find(known, lines);
+    const auto place = static_cast<std::size_t>(found - known.begin());
+    if (found == known.end()) known.push_back(lines);
+    return place + 1;
+  }
+  std::vector<Row> builds_, hosts_;  // lines to print
+};
+
+void print_manifests(const FigureLineage& lineage) {
+  for (const ManifestText& manifest : lineage.manifests) {
+    print_text("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
+    std::map<int, std::string> lines;
+    for (const FigureInput& input : lineage.inputs) {
+      if (input.manifest != manifest.sha256) continue;
+      for (const ManifestLine& line : input.lines) lines.emplace(line.line, line.text);
+    }
+    for (const auto& [number, text] : lines) {
+      print_text("  line {:>4}  {}\n", number, cut(text, 13));
+    }
+  }
+}
+
+void print_attempts(const RunLineage& stage, Makers& makers) {
+  for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
+    const Attempt& attempt = stage.attempts[a];
+    print_text("  attempt {:<3} {}  {}, {}\n", a + 1, moment(attempt.started_at),
+               name_of(attempt.outcome), makers.number(attempt.host));
+    if (!attempt.why.empty()) print_text("              {}\n", cut(attempt.why, 14));
+    if (!attempt.from_checkpoint.empty()) {
+      print_text("  from        {}\n", attempt.from_checkpoint);
+    }
+  }
+}
+
+void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLineage& run) {
+  print_text("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
+  for (const std::string& sha256 : checkpoints) {
+    const CheckpointHistory* known = run.find(sha256);
+    const bool has_attempt = known != nullptr && known->attempt;
+    print_text("  {:>6}  {:>2}  {}\n",
+               known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
+               has_attempt ? std::to_string(*known->attempt + 1) : "?", sha256);
+  }
+}
+
+void print_input(const FigureInput& input, const RunLineage& run, bool list, Makers& makers) {
+  std::set<int> numbers;
+  for (const ManifestLine& line : input.lines) numbers.insert(line.line);
+  const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
+  print_text("\nrun       {}\n", input.run);
+  print_text("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
+                                       input.experiment, input.variant, input.seed, run.run.grains,
+                                       input.manifest, lines),
+                           2));
+  if (input.overrides.is_object()) {
+    for (const auto& [key, values] : input.overrides.items()) {
+      print_text("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                           text_at(values, "run"), text_at(values, "manifest")),
+                               2));
+    }
+  }
+  print_attempts(run, makers);
+  print_text("  cycles      {}: {}, {}\n", cut(input.states.cycles, 40),
+             counted(input.checkpoints.size(), "checkpoint"),
+             input.fault.empty() ? "with the states that the figure names" : input.fault);
+  print_text("  last state  {}\n", cut(input.states.state_hash, 14));
+  if (list) print_checkpoints(input.checkpoints, run);
+}
+
+void print_stage_before(const RunLineage& stage, bool list, Makers& makers) {
+  print_text("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
+             text_at(stage.run.resolved, "seed"), stage.run.grains);
+  print_attempts(stage, makers);
+  if (!list) return;
+  std::vector<std::string> checkpoints;
+  for (const CheckpointHistory& c : stage.checkpoints) {
+    if (c.record.state != CheckpointState::rejected) checkpoints.push_back(c.record.sha256);
+  }
+  print_checkpoints(checkpoints, stage);
+}
+
+// `list`: every checkpoint.
+void print(const FigureLineage& lineage, bool list) {
+  Makers makers;
+  print_text(
+      "figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
+      cut(scale_name(lineage.scale), 50),
+      cut(lineage.analysis_version.is_null() ? "unknown" : short_text(lineage.analysis_version),
+          70));
+  print_text("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
+             lineage.record.seq,
+             lineage.made.is_object() ? ", " + makers.number(lineage.made) : "");
+  std::size_t widest = 0;
+  for (const auto& [name, sha256] : lineage.outputs) {
+    widest = std::max(widest, cut(name, 66).size());
+  }
+  for (const auto& [name, sha256] : lineage.outputs) {
+    print_text("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
+  }
+  print_manifests(lineage);
+  for (const FigureInput& input : lineage.inputs) {
+    print_input(input, lineage.runs.at(input.run), list, makers);
+  }
+  for (const auto& [id, stage] : lineage.runs) {
+    if (std::ranges::count(lineage.inputs, id, &FigureInput::run) == 0) {
+      print_stage_before(stage, list, makers);
+    }
+  }
+  print_text("\n");
+  makers.print();
+}
+
+nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile& found,
+                          const std::vector<InputFault>& faults, std::size_t inputs) {
+  const auto fault_facts = [](const InputFault& fault) -> nlohmann::json {
+    return {{"run", fault.run}, {"checkpoint", fault.checkpoint}, {"what", fault.what}};
+  };
+  return {{"file", file.string()},
+          {"sha256", found.sha256},
+          {"recorded_sha256", found.recorded},
+          {"verdict", found.matches() ? "matches" : "changed"},
+          {"inputs", inputs},
+          {"input_faults", json_list(faults, fault_facts)}};
+}
+
+void print_check(const std::filesystem::path& file, const PublishedFile& found,
+                 const std::vector<InputFault>& faults, std::size_t inputs) {
+  print_text("file      {}\n", cut(file.string(), 10));
+  if (found.matches()) {
+    print_text("verdict   matches what event {} recorded\n", found.record.seq);
+  } else {
+    print_text("verdict   WAS CHANGED since event {}, or another store made it\n",
+               found.record.seq);
+    print_text("  is      {}\n  was     {}\n", found.sha256, found.recorded);
+  }
+  if (faults.empty()) {
+    print_text("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
+    return;
+  }
+  const auto pruned = std::ranges::count(faults, "pruned", &InputFault::what);
+  const auto changed = std::ssize(faults) - pruned;
+  print_text("inputs    {}: {} present and right{}{}\n", counted(inputs, "checkpoint"),
+             inputs - faults.size(), pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
+             changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
+  for (const InputFault& fault : faults) {
+    print_text("  {}\n  {}\n", fault.checkpoint.empty() ? "run " + fault.run : fault.checkpoint,
+               fault.what);
+  }
+  print_text("\n");
+}
+
+void show_figure(const Store& store, const FigureRecord& record, bool list, Context& context) {
+  const FigureLineage lineage = figure_lineage(store, record);
+  const auto is_right = [](const FigureInput& input) { return input.fault.empty(); };
+  if (!std::ranges::all_of(lineage.inputs, is_right)) fail(context, kStoreDamaged);
+  if (context.json) return print_json(to_json(lineage));
+  print(lineage, list);
+}
+
+// Compares a figure's file and its inputs with the store's records.
+void show_published(const Store& store, const std::filesystem::path& file, bool list,
+                    Context& context) {
+  const auto found = find_published(store, file);
+  if (!found) {
+    throw NotFound(
+        file.string() +
+        ": unknown to this store: no figure that it recorded has a file with these bytes "
+        "or of this name; name the right store with --store");
+  }
+  const FigureLineage lineage = figure_lineage(store, found->record);
+  const std::vector<InputFault> faults = check_inputs(store, lineage);
+  // A pruned checkpoint is not damage.
+  const bool damaged =
+      std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
+  if (damaged || !found->matches()) fail(context, kStoreDamaged);
+  std::size_t inputs = 0;
+  for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();
+  if (context.json) {
+    nlohmann::json all = to_json(lineage);
+    all["check"] = check_json(file, *found, faults, inputs);
+    return print_json(all);
+  }
+  print_check(file, *found, faults, inputs);
+  print(lineage, list);
+}
+
 // The newest record of "drag/desk/S2"; also of "drag/S2" and "S2" if no other figure has that name.
 std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
   std::map<std::string, FigureRecord> found;  // by path
@@ -246,12 +478,14 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-void show(const std::string& name, Context& context) {
+void show(const std::string& name, bool list, Context& context) {
   const Store store(context.store, Access::read);
-  if (const auto figure = find_record(store, name)) return show_figure(store, *figure, context);
+  if (const auto figure = find_record(store, name))
+    return show_figure(store, *figure, list, context);
   require_not_undrawn(name);
   // Ids of runs and checkpoints have no dot or slash.
-  if (name.find_first_of("./") != std::string::npos) return show_published(store, name, context);
+  if (name.find_first_of("./") != std::string::npos)
+    return show_published(store, name, list, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
       for (const RunRecord& run : store.runs()) {
@@ -277,19 +511,22 @@ void add_show(CLI::App& app, Context& context) {
       ->add_option("name", *name,
                    "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
       ->required();
+  auto list = std::make_shared<bool>(false);
+  command->add_flag("--checkpoints", *list, "List every checkpoint behind a figure");
   add_common_options(*command, context);
   command->footer(
-      R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and the
-SHA-256 of every checkpoint in it. For a file (CSV, SVG or lineage): checks that it is what the
-store recorded and that every checkpoint behind it is intact; exit code 4 if not. Pruned
-checkpoints are counted and are not an error.
+      R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and
+cycles, and checks that the log has the states of which it was made; exit code 4 if not.
+For a file (CSV, SVG or lineage): checks that it is what the store recorded and that every
+checkpoint behind it is intact; exit code 4 if not. Pruned checkpoints are counted and are not
+an error.
 With --json, `parameters` of a run are those that affect it; `resolved` is the stored record,
 whose hash is the run's id, and has fixed values for some that do not (max_overlap_diameters).
 Examples:
   shearcell show 3f9a
   shearcell show drag/smoke/S2
   shearcell show figures/drag/smoke/S2a.csv)");
-  command->callback([name, &context] { show(*name, context); });
+  command->callback([name, list, &context] { show(*name, *list, context); });
 }
 
 }  // namespace shearcell::cli

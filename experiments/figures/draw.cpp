@@ -61,15 +61,18 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   return runs;
 }
 
-/// Puts those that are not listed, by step, before the others.
-void add_earlier(const std::map<std::uint64_t, std::string>& earlier,
-                 std::vector<std::string>& checkpoints) {
-  const std::set<std::string> listed(checkpoints.begin(), checkpoints.end());
-  std::vector<std::string> first;
-  for (const auto& [step, sha256] : earlier) {
-    if (!listed.contains(sha256)) first.push_back(sha256);
+/// The checkpoints of the run that the figure was made of, those of earlier cycles from which it
+/// measured changes included; by step.
+std::vector<CheckpointRecord> used_checkpoints(const Store& store, const FigureSummary& result,
+                                               const FigureRun& run) {
+  std::set<std::string> used;
+  for (const CheckpointMeasures& c : run.checkpoints) used.insert(c.sha256);
+  if (const auto earlier = result.earlier.find(run.run_id); earlier != result.earlier.end()) {
+    for (const auto& [step, sha256] : earlier->second) used.insert(sha256);
   }
-  checkpoints.insert(checkpoints.begin(), first.begin(), first.end());
+  std::vector<CheckpointRecord> records = store.checkpoints(run.run_id, Listed::and_pruned);
+  std::erase_if(records, [&](const CheckpointRecord& c) { return !used.contains(c.sha256); });
+  return records;
 }
 
 /// The figure's record, without facts that depend on the time or the host.
@@ -79,17 +82,16 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const CollectedRun& input = inputs[r];
-    std::vector<std::string> checkpoints;
-    for (const CheckpointMeasures& c : runs[r].checkpoints) checkpoints.push_back(c.sha256);
-    const auto earlier = result.earlier.find(input.run.id);
-    if (earlier != result.earlier.end()) add_earlier(earlier->second, checkpoints);
+    const States states = states_of(used_checkpoints(store, result, runs[r]));
     list.push_back({{"run", input.run.id},
                     {"parent", input.run.parent},
                     {"experiment", input.membership.experiment},
                     {"manifest", input.membership.manifest},
                     {"variant", input.membership.variant},
                     {"seed", input.membership.seed},
-                    {"checkpoints", checkpoints}});
+                    {"cycles", states.cycles},
+                    {"state_hash", states.state_hash},
+                    {"states_sha256", states.sha256}});
     if (auto given = overrides_of(store, input.run, input.membership); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }

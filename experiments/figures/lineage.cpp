@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
+#include "experiments/figures/cycle_range.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -17,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 
+/// What the record says of a run, without its states.
 FigureInput read_input(const json& input) {
   FigureInput result;
   input.at("run").get_to(result.run);
@@ -24,9 +27,42 @@ FigureInput read_input(const json& input) {
   input.at("variant").get_to(result.variant);
   result.seed = count_at(input, "seed");
   input.at("manifest").get_to(result.manifest);
-  input.at("checkpoints").get_to(result.checkpoints);
   result.overrides = input.value("overrides", json());
   return result;
+}
+
+/// The checkpoints of these cycles. A rejected one counts where no other has its cycle.
+std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const std::string& cycles) {
+  const std::vector<CycleRange> ranges = read_cycles(cycles);
+  std::map<double, CheckpointRecord> found;
+  for (const CheckpointHistory& c : run.checkpoints) {
+    const double cycle = c.record.cycle;
+    const auto holds = [&](const CycleRange& range) { return range.holds(cycle, kSameCycle); };
+    if (std::ranges::none_of(ranges, holds)) continue;
+    const auto [known, first] = found.try_emplace(cycle, c.record);
+    if (!first && c.record.state != CheckpointState::rejected) known->second = c.record;
+  }
+  std::vector<CheckpointRecord> all;
+  for (auto& [cycle, record] : found) all.push_back(std::move(record));
+  return all;
+}
+
+/// Reads the states of an input and finds them in the log.
+void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
+  std::vector<CheckpointRecord> found;
+  if (entry.contains("checkpoints")) {  // of an earlier version
+    entry.at("checkpoints").get_to(input.checkpoints);
+    for (const std::string& sha256 : input.checkpoints) {
+      if (const CheckpointHistory* known = run.find(sha256)) found.push_back(known->record);
+    }
+    input.states = states_of(found);
+    if (found.size() < input.checkpoints.size()) input.fault = "the log lacks some of them";
+    return;
+  }
+  input.states = {entry.at("cycles"), entry.at("state_hash"), entry.at("states_sha256")};
+  found = at_cycles(run, input.states.cycles);
+  for (const CheckpointRecord& record : found) input.checkpoints.push_back(record.sha256);
+  if (states_of(found) != input.states) input.fault = "the log has other states at these cycles";
 }
 
 // The swept values of the run, by the membership that the figure used.
@@ -88,6 +124,12 @@ json stage_json(const RunLineage& stage) {
       {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
 }
 
+StoreDamaged malformed(const FigureRecord& record, const std::exception& problem) {
+  return StoreDamaged(
+      fmt::format("event {} (FigureGenerated of {}): its payload is malformed: {}; run `verify`",
+                  record.seq, record.name, problem.what()));
+}
+
 // File name -> SHA-256, from JSON that is not trusted.
 std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
@@ -114,6 +156,17 @@ std::map<std::string, std::string> files_of(const FigureRecord& record) {
 }
 
 }  // namespace
+
+States states_of(const std::vector<CheckpointRecord>& checkpoints) {
+  std::vector<double> cycles;
+  std::string hashes;
+  for (const CheckpointRecord& record : checkpoints) {
+    cycles.push_back(record.cycle);
+    hashes += record.state_hash + '\n';
+  }
+  return {cycles_text(cycles), checkpoints.empty() ? "" : checkpoints.back().state_hash,
+          sha256_hex(hashes)};
+}
 
 json overrides_of(const Store& store, const RunRecord& run, const Membership& membership) {
   if (run.kind != name_of(Stage::shear)) return nullptr;
@@ -150,29 +203,29 @@ std::vector<FigureRecord> figure_records(const Store& store) {
 }
 
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
-  FigureLineage lineage{record, {}, outputs_of(record.provenance), {}, {}};
+  FigureLineage lineage;
+  lineage.record = record;
+  lineage.outputs = outputs_of(record.provenance);
+  lineage.analysis_version = member_of(record.provenance, "analysis_version");
+  lineage.made = member_of(record.provenance, "made");
   try {
-    const std::string scale = record.provenance.value("scale", "");
+    lineage.experiment = record.provenance.value("experiment", "");
+    lineage.scale = record.provenance.value("scale", "");
     for (const json& entry : record.provenance.at("inputs")) {
       FigureInput input = read_input(entry);
-      if (!lineage.runs.contains(input.run)) {
-        for (RunLineage& stage : run_lineage(store, input.run)) {
-          const std::string id = stage.run.id;
-          lineage.runs.try_emplace(id, std::move(stage));
-        }
-      }
+      add_run_lineage(store, input.run, lineage.runs);
+      const RunLineage& run = lineage.runs.at(input.run);
+      find_states(entry, run, input);
       if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
-        input.lines = manifest_lines(manifest->text, scale,
-                                     swept_values_of(lineage.runs.at(input.run).run, input),
+        input.lines = manifest_lines(manifest->text, lineage.scale, swept_values_of(run.run, input),
                                      figure_name(record));
       }
       lineage.inputs.push_back(std::move(input));
     }
   } catch (const json::exception& problem) {
-    throw StoreDamaged(
-        fmt::format("event {} (FigureGenerated of {}): its payload is "
-                    "malformed: {}; run `verify`",
-                    record.seq, record.name, problem.what()));
+    throw malformed(record, problem);
+  } catch (const std::invalid_argument& problem) {  // its cycles
+    throw malformed(record, problem);
   } catch (const NotFound& problem) {
     throw StoreDamaged(fmt::format("event {} (FigureGenerated of {}): {}", record.seq, record.name,
                                    problem.what()));
@@ -202,17 +255,21 @@ json to_json(const FigureLineage& lineage) {
                       {"manifest", input.manifest},
                       {"manifest_lines", lines},
                       {"overrides", input.overrides},
+                      {"cycles", input.states.cycles},
+                      {"state_hash", input.states.state_hash},
+                      {"states_sha256", input.states.sha256},
+                      {"fault", input.fault},
                       {"checkpoints", checkpoints}});
   }
   for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
-  const json& facts = lineage.record.provenance;
+  const std::string& experiment = lineage.experiment;
   return {{"figure", figure_name(lineage.record)},
-          {"experiment", facts.value("experiment", json(nullptr))},
+          {"experiment", experiment.empty() ? json() : json(experiment)},
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
-          {"scale", facts.value("scale", json(nullptr))},
-          {"analysis_version", facts.value("analysis_version", json(nullptr))},
-          {"made", facts.value("made", json(nullptr))},
+          {"scale", lineage.scale},
+          {"analysis_version", lineage.analysis_version},
+          {"made", lineage.made},
           {"outputs", lineage.outputs},
           {"manifests", manifests},
           {"inputs", inputs},
@@ -252,6 +309,7 @@ std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& li
   std::vector<InputFault> faults;
   for (const FigureInput& input : lineage.inputs) {
     const RunLineage& run = lineage.runs.at(input.run);
+    if (!input.fault.empty()) faults.push_back({input.run, "", input.fault});
     for (const std::string& sha256 : input.checkpoints) {
       const CheckpointHistory* known = run.find(sha256);
       if (known == nullptr) {

@@ -16,6 +16,19 @@
 
 namespace shearcell {
 
+/// States of a run, as a published lineage file names them. The hashes of states do not depend on
+/// the version of HDF5, as those of files do.
+struct States {
+  std::string cycles;      ///< of the states, as "0:120:1" (cycle_range.hpp)
+  std::string state_hash;  ///< of the last one
+  std::string sha256;      ///< of the text with one line for each state: its state_hash
+
+  bool operator==(const States&) const = default;
+};
+
+/// By step.
+States states_of(const std::vector<CheckpointRecord>& checkpoints);
+
 /// A run of the figure.
 struct FigureInput {
   std::string run;
@@ -25,15 +38,21 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< of that manifest
   nlohmann::json overrides;              ///< key -> {"run", "manifest"}; null without any
-  std::vector<std::string> checkpoints;  ///< SHA-256 of those in the figure
+  States states;                         ///< as recorded
+  std::vector<std::string> checkpoints;  ///< SHA-256 of those in the figure, from the log
+  std::string fault;                     ///< how the log differs from `states`; "" if it does not
 };
 
 struct FigureLineage {
   FigureRecord record;
+  std::string experiment;  ///< "" for a figure of all experiments
+  std::string scale;
+  nlohmann::json analysis_version;  ///< null where it was not recorded
+  nlohmann::json made;              ///< host and build, the same
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< each once
-  std::map<std::string, RunLineage> runs;      ///< of the inputs and of the stages before them
+  RunLineages runs;                            ///< of the inputs and of the stages before them
 };
 
 /// Values that the command line gave in place of the manifest's, as {"cycles": {"run": 8,
@@ -53,7 +72,7 @@ std::string lineage_text(nlohmann::json provenance);
 std::vector<FigureRecord> figure_records(const Store& store);
 
 /// Collects the lineage from the log. Throws StoreDamaged if the record is malformed or names an
-/// unknown run.
+/// unknown run. Records of earlier versions list the SHA-256 of every file in place of `states`.
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
 nlohmann::json to_json(const FigureLineage& lineage);
@@ -75,8 +94,8 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
 /// An input that is missing or damaged.
 struct InputFault {
   std::string run;
-  std::string checkpoint;
-  std::string what;  ///< "missing ...", "pruned", "the log does not have it"
+  std::string checkpoint;  ///< SHA-256; "" for the run as a whole
+  std::string what;        ///< "missing ...", "pruned", FigureInput::fault
 };
 
 /// Reads and hashes every input checkpoint; returns those that are not as recorded.

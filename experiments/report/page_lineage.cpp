@@ -23,18 +23,15 @@ std::string code(const std::string& text) {
   return "<code>" + escape_html(text) + "</code>";
 }
 
-/// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release, on HOST: CPU, AVX-512".
-std::string made_by(const json& host) {
-  const json build = member_of(host, "build");
-  return fmt::format("shearcell {} ({}), {} {}; {}, {}, {}", text_at(build, "version"),
-                     text_at(build, "commit"), text_at(build, "compiler"), text_at(build, "type"),
-                     text_at(host, "host"), text_at(host, "cpu"), text_at(host, "simd"));
+/// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release; HOST, CPU, 4 cores, AVX-512".
+std::string made_by(const Maker& maker) {
+  return fmt::format("{}; {}, {}", maker.program, maker.host, maker.machine);
 }
 
 std::string makers_html(const ReportFigure& figure) {
   std::set<std::string> makers;
   for (const auto& [id, stage] : figure.lineage.runs) {
-    for (const Attempt& attempt : stage.attempts) makers.insert(made_by(attempt.host));
+    for (const Attempt& attempt : stage.attempts) makers.insert(made_by(maker_of(attempt.host)));
   }
   std::string html;
   for (const std::string& maker : makers) html += escape_html(maker) + "<br>";
@@ -112,6 +109,7 @@ std::string attempts_html(const RunLineage& stage) {
   std::string html;
   for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
     const Attempt& attempt = stage.attempts[a];
+    const Maker maker = maker_of(attempt.host);
     html += fmt::format("<p>Attempt {}, {}, {}: {}{}.<br><span class=\"small\">{}; flags {}</span>",
                         a + 1, escape_html(attempt.started_at), name_of(attempt.outcome),
                         attempt.from_run.empty() ? "from a fresh filling"
@@ -119,8 +117,7 @@ std::string attempts_html(const RunLineage& stage) {
                         attempt.from_checkpoint.empty()
                             ? ""
                             : ", checkpoint " + code(attempt.from_checkpoint.substr(0, 12)),
-                        escape_html(made_by(attempt.host)),
-                        code(text_at(member_of(attempt.host, "build"), "flags")));
+                        escape_html(made_by(maker)), code(maker.flags));
     if (!attempt.why.empty()) html += "<br>" + escape_html(attempt.why);
     html += "</p>\n";
   }
@@ -168,17 +165,15 @@ std::string run_link(const std::string& id, std::size_t digits) {
 }
 
 std::string lineage_html(const ReportData& data, const ReportFigure& figure) {
-  const json& facts = figure.lineage.record.provenance;
-  const std::string scale = text_at(facts, "scale");
   std::string html = fmt::format(
       "<details class=\"lineage\" id=\"lineage-{0}\"><summary>Where {0} "
       "comes from</summary>\n<dl>\n",
       escape_html(figure.id));
   html += row("log", fmt::format("event {}, {}", data.head.seq, code(data.head.hash)));
-  html += row("scale", escape_html(scale_name(scale)));
-  html += row("inputs", fmt::format("{} runs, {} checkpoints; analysis version {}",
-                                    figure.summary.runs, figure.summary.checkpoints,
-                                    escape_html(text_at(facts, "analysis_version"))));
+  html += row("scale", escape_html(scale_name(figure.lineage.scale)));
+  html += row("inputs",
+              fmt::format("{} runs, {} checkpoints; analysis version {}", figure.summary.runs,
+                          figure.summary.checkpoints, short_text(figure.lineage.analysis_version)));
   html += row("computed by", makers_html(figure));
   html += row("manifests", manifests_html(figure));
   html += row("outputs", outputs_html(figure));

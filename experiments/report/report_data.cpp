@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
@@ -57,18 +58,20 @@ std::string draw(const FigureTable& table) {
   return std::move(*svg);
 }
 
-/// The newest record of the figure with the same scale, inputs and analysis version.
-std::optional<FigureRecord> record_of(const std::vector<FigureRecord>& records,
-                                      const std::string& name, const json& lineage) {
-  for (auto record = records.rbegin(); record != records.rend(); ++record) {
-    if (figure_name(*record) != name || !record->provenance.is_object()) continue;
-    const auto same = [&](const char* key) {
-      const auto found = record->provenance.find(key);
-      return found != record->provenance.end() && *found == lineage.at(key);
-    };
-    if (same("scale") && same("analysis_version") && same("inputs")) return *record;
+/// Whether the record is of the same figure, with the same scale, states and analysis version.
+bool is_record_of(const Store& store, const FigureRecord& record, const FigureLineage& lineage) {
+  if (figure_name(record) != figure_name(lineage.record)) return false;
+  const auto key = [](const FigureInput& i) {
+    return std::tie(i.run, i.experiment, i.variant, i.seed, i.manifest, i.overrides, i.states);
+  };
+  try {
+    const FigureLineage recorded = figure_lineage(store, record);
+    return recorded.scale == lineage.scale &&
+           recorded.analysis_version == lineage.analysis_version &&
+           std::ranges::equal(recorded.inputs, lineage.inputs, {}, key, key);
+  } catch (const StoreDamaged&) {
+    return false;
   }
-  return std::nullopt;
 }
 
 ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const ReportOptions& options,
@@ -82,8 +85,11 @@ ReportFigure figure_of(const Store& store, const WantedFigure& wanted, const Rep
   ReportFigure made;
   made.id = prefix + wanted.figure.name;
   made.summary = std::move(computed.summary);
-  made.recorded = record_of(records, wanted.figure.name, computed.lineage);
   made.lineage = figure_lineage(store, {wanted.path(), 0, "", computed.lineage});
+  const auto newest = std::find_if(
+      records.rbegin(), records.rend(),
+      [&](const FigureRecord& record) { return is_record_of(store, record, made.lineage); });
+  if (newest != records.rend()) made.recorded = *newest;
   for (const FigureTable& table : computed.result.tables) {
     ReportPanel panel{table.name, prefix + table.name, {}, to_csv(table), table.text, "", ""};
     if (!table.chart.series.empty()) panel.chart = chart_json(table);
@@ -130,14 +136,6 @@ void add_figures(const Store& store, const ReportOptions& options, ReportData& d
   data.notes.assign(notes.begin(), notes.end());
 }
 
-void add_lineage(const Store& store, const std::string& id, ReportData& data) {
-  if (data.runs.contains(id)) return;
-  for (RunLineage& stage : run_lineage(store, id)) {
-    const std::string stage_id = stage.run.id;
-    data.runs.try_emplace(stage_id, std::move(stage));
-  }
-}
-
 /// Checkpoints that a run will still record for the experiment if nothing ends it early. Those of
 /// a packing are not counted: how long it takes to settle is not known.
 std::size_t to_come(const Store& store, const RunLineage& lineage, const std::string& experiment) {
@@ -158,7 +156,7 @@ void add_runs(const Store& store, ReportData& data) {
       data.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
     for (const RunRecord& run : experiment.runs) {
-      add_lineage(store, run.id, data);
+      add_run_lineage(store, run.id, data.runs);
       experiment.to_come += to_come(store, data.runs.at(run.id), experiment.manifest.experiment);
     }
   }
@@ -170,7 +168,7 @@ void add_runs(const Store& store, ReportData& data) {
 }
 
 /// ReportExperiment::traces.
-json traces_of(const RunTable& runs, const std::map<std::string, RunLineage>& lineages) {
+json traces_of(const RunTable& runs, const RunLineages& lineages) {
   constexpr int significant = 6;
   json all = json::array();
   for (std::size_t k = 0; k < runs.rows.size(); ++k) {
@@ -198,7 +196,8 @@ void add_run_tables(const Store& store, const ReportOptions& options, ReportData
     try {
       experiment.table = run_table(store, selection, RowPer::run, measuring);
       // Another program may have declared runs since they were listed.
-      for (const FigureRun& run : experiment.table.histories) add_lineage(store, run.run_id, data);
+      for (const FigureRun& run : experiment.table.histories)
+        add_run_lineage(store, run.run_id, data.runs);
       experiment.traces = traces_of(experiment.table, data.runs);
       for (const std::string& line : experiment.table.damage) {
         if (std::ranges::count(data.damage, line) == 0) data.damage.push_back(line);

@@ -69,7 +69,7 @@ struct ReportData {
   nlohmann::json program;  ///< build of this program
   std::vector<ReportExperiment> experiments;
   std::vector<ReportFigure> figures;       ///< of `experiments`, and of all experiments together
-  std::map<std::string, RunLineage> runs;  ///< by id
+  RunLineages runs;
   std::map<std::string, ManifestText> manifests;
   Packings packings;
   bool interactive = false;

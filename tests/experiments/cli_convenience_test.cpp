@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `new`, the manual page, `doctor`, and tables that fit a terminal and have colours
+// `new`, the manual, `doctor`, and tables that fit a terminal and have colours
 // only there.
 #include <gtest/gtest.h>
 
@@ -90,11 +90,7 @@ TEST_F(Convenience, TheManualDoesNotDependOnTheEnvironment) {
 TEST_F(Convenience, TheManualHasEveryCommand) {
   const std::string page = run({"manual"}).out;
   for (const std::string& command : commands()) {
-    EXPECT_TRUE(has(page, ".SS shearcell " + command + "\n"));
-  }
-  if (find_program("groff")) {
-    write("page", page);
-    EXPECT_EQ(shell_output("groff -man -Tutf8 -ww -z page 2>&1"), "");
+    EXPECT_TRUE(has(page, "### shearcell " + command + "\n"));
   }
 }
 

@@ -17,16 +17,23 @@ class CommandLineLineage : public ProgramTest {
 
 TEST_F(CommandLineLineage, ShowsAFigureUncutInAPipe) {
   // The manifest's 2 cycles were overridden.
-  const Outcome shown = expect(0, {"show", "tiny/S2"},
+  const Outcome shown = expect(0, {"show", "tiny/S2", "--checkpoints"},
                                {"m.yaml", "experiment: tiny", "  cycles: 2",
-                                "given at the command line: cycles 1 (manifest: 2)"});
+                                "given at the command line: cycles 1 (manifest: 2)",
+                                "0,1: 2 checkpoints, with the states that the figure names"});
+  const Outcome brief = expect(0, {"show", "tiny/S2"}, {"experiment: tiny"});
   EXPECT_FALSE(has(shown.out, "..."));
   const nlohmann::json all = json({"show", "tiny/S2", "--json"});
   EXPECT_EQ(all.at("inputs").size(), 2U);
   for (const auto& input : all.at("inputs")) {
     EXPECT_TRUE(has(shown.out, input.at("run").get<std::string>()));
-    for (const auto& c : input.at("checkpoints"))
+    EXPECT_TRUE(has(brief.out, input.at("run").get<std::string>()));
+    EXPECT_TRUE(has(brief.out, input.at("state_hash").get<std::string>()));
+    EXPECT_EQ(input.at("checkpoints").size(), 2U);
+    for (const auto& c : input.at("checkpoints")) {
       EXPECT_TRUE(has(shown.out, c.at("sha256").get<std::string>()));
+      EXPECT_FALSE(has(brief.out, c.at("sha256").get<std::string>()));
+    }
   }
   const nlohmann::json overrides = {{"cycles", {{"run", 1}, {"manifest", 2}}}};
   const nlohmann::json lineage =

@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 
+#include "experiments/figures/cycle_range.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
@@ -148,6 +150,69 @@ TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
   EXPECT_EQ(faults[1].checkpoint, lineage.inputs[3].checkpoints[0]);
 }
 
+// As earlier versions recorded them: the SHA-256 of every file in place of the states.
+TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
+  const FigureLineage now = figure_lineage(store_, figure_records(store_).at(0));
+  nlohmann::json old = now.record.provenance;
+  for (std::size_t i = 0; i < now.inputs.size(); ++i) {
+    nlohmann::json& input = old.at("inputs").at(i);
+    for (const char* key : {"cycles", "state_hash", "states_sha256"}) input.erase(key);
+    input["checkpoints"] = now.inputs[i].checkpoints;
+  }
+  store_.record_figure("S2", old);
+  const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
+  ASSERT_EQ(lineage.inputs.size(), now.inputs.size());
+  for (std::size_t i = 0; i < now.inputs.size(); ++i) {
+    EXPECT_EQ(lineage.inputs[i].states, now.inputs[i].states);
+    EXPECT_EQ(lineage.inputs[i].checkpoints, now.inputs[i].checkpoints);
+    EXPECT_EQ(lineage.inputs[i].fault, "");
+  }
+  EXPECT_TRUE(check_inputs(store_, lineage).empty());
+  old["inputs"][0]["checkpoints"][1] = std::string(64, 'a');
+  store_.record_figure("S2", old);
+  const auto faults = check_inputs(store_, figure_lineage(store_, figure_records(store_).back()));
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0].run, now.inputs[0].run);
+  EXPECT_EQ(faults[1].checkpoint, std::string(64, 'a'));
+}
+
+TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
+  nlohmann::json facts = figure_records(store_).at(0).provenance;
+  for (const auto& [key, value] :
+       {std::pair("cycles", "0"), {"state_hash", "another"}, {"states_sha256", "another"}}) {
+    nlohmann::json changed = facts;
+    changed["inputs"][1][key] = value;
+    store_.record_figure("S2", changed);
+    const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
+    const std::vector<InputFault> faults = check_inputs(store_, lineage);
+    ASSERT_EQ(faults.size(), 1U) << key;
+    EXPECT_EQ(faults[0].run, lineage.inputs[1].run);
+    EXPECT_EQ(faults[0].what, "the log has other states at these cycles");
+  }
+}
+
+TEST(CycleRanges, AreShortAndReadBack) {
+  for (const auto& [cycles, text] : std::vector<std::pair<std::vector<double>, std::string>>{
+           {{}, ""},
+           {{3}, "3"},
+           {{0, 1}, "0,1"},
+           {{0, 1, 2, 3}, "0:3:1"},
+           {{0, 0.25, 0.5, 0.75, 1, 1.25}, "0:1.25:0.25"},
+           {{0, 10, 20, 30, 33.5}, "0:30:10,33.5"},
+           {{0, 1, 2, 4, 6, 8, 9}, "0:2:1,4:8:2,9"}}) {
+    EXPECT_EQ(cycles_text(cycles), text);
+    const std::vector<CycleRange> ranges = read_cycles(text);
+    for (double cycle = 0; cycle < 40; cycle += 0.25) {
+      const bool held = std::ranges::any_of(
+          ranges, [&](const CycleRange& range) { return range.holds(cycle, kSameCycle); });
+      EXPECT_EQ(held, std::ranges::count(cycles, cycle) > 0) << text << ": " << cycle;
+    }
+  }
+  for (const char* bad : {"a", "1:0", "0:1:0", "0:1:2:3", "nan"}) {
+    EXPECT_THROW(read_cycles(bad), std::invalid_argument) << bad;
+  }
+}
+
 // As the program recorded them before it recorded who made a figure.
 TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   nlohmann::json old = figure_records(store_).at(0).provenance;
@@ -157,9 +222,14 @@ TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
   EXPECT_EQ(lineage.inputs.size(), 4U);
   EXPECT_TRUE(to_json(lineage).at("made").is_null());
+  const auto with_cycles = [&](const char* cycles) {
+    nlohmann::json facts = old;
+    facts["inputs"][0]["cycles"] = cycles;
+    return facts;
+  };
   for (const nlohmann::json& broken :
-       {nlohmann::json{{"inputs", 3}}, nlohmann::json{{"inputs", {{{"run", "x"}}}}},
-        nlohmann::json::object()}) {
+       {nlohmann::json{{"inputs", 3}}, with_cycles("1:0"),
+        nlohmann::json{{"inputs", {{{"run", "x"}}}}}, nlohmann::json::object()}) {
     store_.record_figure("S2", broken);
     EXPECT_THROW(figure_lineage(store_, figure_records(store_).back()), StoreDamaged)
         << broken.dump();

@@ -3,6 +3,7 @@
 
 #include "analysis/crystal.hpp"
 #include "analysis/derived_measures.hpp"
+#include "experiments/figures/lineage.hpp"
 #include "provenance/events.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -64,18 +65,23 @@ fs::path make_store(const fs::path& folder) {
     inputs.push_back(store.record_checkpoint(shear.id, checkpoint).sha256);
   }
   store.interrupt_run(shear.id, "a signal");
-  store.record_figure("S2", {{"figure", "S2"},
-                             {"scale", "smoke"},
-                             {"analysis_version", 1},
-                             {"inputs",
-                              {{{"run", shear.id},
-                                {"parent", prepare.id},
-                                {"experiment", "a"},
-                                {"manifest", manifest},
-                                {"variant", "base"},
-                                {"seed", 1},
-                                {"checkpoints", inputs}}}},
-                             {"outputs", {{"S2a.csv", sha256_hex(kCsv)}}}});
+  nlohmann::json input = {{"run", shear.id},      {"parent", prepare.id}, {"experiment", "a"},
+                          {"manifest", manifest}, {"variant", "base"},    {"seed", 1},
+                          {"checkpoints", inputs}};  // as earlier versions recorded it
+  const auto record = [&] {
+    store.record_figure("S2", {{"figure", "S2"},
+                               {"scale", "smoke"},
+                               {"analysis_version", 1},
+                               {"inputs", {input}},
+                               {"outputs", {{"S2a.csv", sha256_hex(kCsv)}}}});
+  };
+  record();
+  input.erase("checkpoints");
+  const States states = states_of(store.checkpoints(shear.id));
+  input.update({{"cycles", states.cycles},
+                {"state_hash", states.state_hash},
+                {"states_sha256", states.sha256}});
+  record();
   return folder;
 }
 

@@ -8,11 +8,20 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 cmake --install "$build" --prefix "$folder/prefix" > "$folder/log" || { cat "$folder/log"; exit 1; }
-for file in bin/shearcell share/man/man1/shearcell.1 share/shearcell/experiments/drag.yaml \
+for file in bin/shearcell share/shearcell/experiments/drag.yaml \
             share/shearcell/shearcell.cdx.json \
             lib/python3/dist-packages/shearcell/store.py include/shearcell/core/simulation.hpp; do
   [ -s "$folder/prefix/$file" ] || { echo "not installed: $file"; exit 1; }
 done
+# A manual page for the program and for each command.
+if command -v help2man > /dev/null; then
+  for page in shearcell $("$folder/prefix/bin/shearcell" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/shearcell-\1/p'); do
+    [ -s "$folder/prefix/share/man/man1/$page.1" ] || { echo "not installed: the manual page $page"; exit 1; }
+    if command -v groff > /dev/null; then
+      [ -z "$(groff -man -Tutf8 -ww -W break -z "$folder/prefix/share/man/man1/$page.1" 2>&1)" ] || { echo "faults in the manual page $page"; exit 1; }
+    fi
+  done
+fi
 "$folder/prefix/bin/shearcell" plan "$folder/prefix/share/shearcell/experiments/drag.yaml" \
   --scale smoke --store "$folder/none" | grep -q "4 runs"
 
