@@ -235,15 +235,21 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   std::string text = title + ".";
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, notes;
+  std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
   };
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
-    text += fmt::format(" {}{} against {}{}.",
-                        chart.letter.empty() ? "" : "(" + chart.letter + ") ", axis_text(chart.y),
-                        axis_text(chart.x), chart.errors.empty() ? "" : "; " + chart.errors);
+    // Panels that show the same share a sentence.
+    const std::string what = fmt::format("{} against {}{}.", axis_text(chart.y), axis_text(chart.x),
+                                         chart.errors.empty() ? "" : "; " + chart.errors);
+    std::string panel = chart.letter.empty() ? "" : "(" + chart.letter + ")";
+    if (!chart.title.empty()) panel += (panel.empty() ? "" : " ") + plain_text(chart.title);
+    if (panels.empty() || what != panels.back().second) panels.emplace_back("", what);
+    std::string& names = panels.back().first;
+    if (!panel.empty()) names += (names.empty() ? "" : ", ") + panel;
     own_errors = own_errors || !chart.errors.empty();
     std::size_t lost = 0;
     for (const Series& series : chart.series) {
@@ -256,6 +262,10 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
     if (lost > 0)
       add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
+  }
+  for (const auto& [names, what] : panels) {
+    const bool titled = names.size() > 3;  // more than "(a)"
+    text += " " + names + (names.empty() ? "" : titled ? ": " : " ") + what;
   }
   if (bars || bands) {
     text += fmt::format(" {}: standard errors over runs{}.",

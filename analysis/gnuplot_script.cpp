@@ -135,7 +135,7 @@ Layout layout_of(const Chart& chart) {
     layout.width = double_width;
     rows = rows_in(double_width);
   }
-  layout.height += key_row * rows;
+  layout.height += key_row * (rows + (chart.title.empty() ? 0 : 1));
   return layout;
 }
 

@@ -100,32 +100,20 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
   return {text, claim.margin, higher ? Claimed::above : Claimed::within};
 }
 
-/// Names of the sides, in order; "" for a side that selects nothing.
-std::array<std::string, 2> names_of_sides(const ClaimSpec& claim, const NameVariants& names) {
-  std::vector<nlohmann::json> sides;
-  for (const nlohmann::json& side : claim.between) {
-    if (!side.empty()) sides.push_back(side);
-  }
-  const auto named = names ? names(sides) : std::map<nlohmann::json, std::string>();
-  std::array<std::string, 2> words;
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    words.at(k) = names ? named.at(sides[k]) : words_of(sides[k]);
-  }
-  return words;
-}
-
-FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given,
-                          const NameVariants& names) {
+FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {
   const std::vector<FigureRun> runs = with_values(given, {claim.compare});
-  const std::array<std::string, 2> words = names_of_sides(claim, names);
-  const Claim decided = stated(claim, words);
   std::array<std::vector<const FigureRun*>, 2> sides;
   std::array<std::size_t, 2> counts = {1, 1};
+  std::array<std::string, 2> words;  // as people name the variants
   const std::size_t compared = claim.published ? 1 : 2;
   for (std::size_t k = 0; k < compared; ++k) {
     sides.at(k) = runs_with(claim.between.at(k), runs);
     counts.at(k) = std::max<std::size_t>(variants(sides.at(k)), 1);
+    const bool named = !sides.at(k).empty() && !sides.at(k).front()->name.empty();
+    words.at(k) = named ? sides.at(k).front()->name : words_of(claim.between.at(k));
+    if (claim.between.at(k).empty()) words.at(k).clear();
   }
+  const Claim decided = stated(claim, words);
   const bool same = !sides[0].empty() && !sides[1].empty() &&
                     sides[0].front()->run_id == sides[1].front()->run_id;
   const std::vector<std::string> problems = problems_of_sides(claim, counts, same);
@@ -177,10 +165,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
   return problems;
 }
 
-Figure claim_figure(const ClaimSpec& claim, const NameVariants& names) {
-  Figure figure{claim.name, "", [claim, names](std::span<const FigureRun> runs) {
-                  return decide_claim(claim, runs, names);
-                }};
+Figure claim_figure(const ClaimSpec& claim) {
+  Figure figure{claim.name, "",
+                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
   figure.needs = needs_of({claim.compare});
   figure.within = claim.cycles;
   figure.uses = [claim](const FigureRun& run) {

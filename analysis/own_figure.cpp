@@ -131,7 +131,8 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   for (const FigureRun& run : found) curves.push_back(run.swept);
   const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
-    if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
+    const bool of_one_variant = names.at(run.variant).size() == 1 && !run.name.empty();
+    if (of_one_variant && plot.panel.empty()) continue;
     run.name = name && !keys.empty() ? shared.at(run.swept) : run.variant;
   }
   return found;
@@ -386,8 +387,12 @@ void share_ranges(std::vector<FigureTable>& tables) {
     Axis* const axes[] = {&table.chart.x, &table.chart.y};
     for (std::size_t k = 0; k < 2; ++k) {
       if (!(low[k] < high[k])) continue;
-      axes[k]->low = std::min(axes[k]->low.value_or(low[k]), low[k]);
-      axes[k]->high = high[k];
+      const double room = 0.04 * (axes[k]->log ? std::log(high[k] / low[k]) : high[k] - low[k]);
+      const auto beyond = [&](double end, double by) {
+        return axes[k]->log ? end * std::exp(by) : end + by;
+      };
+      axes[k]->low = std::min(axes[k]->low.value_or(high[k]), beyond(low[k], -room));
+      axes[k]->high = beyond(high[k], room);
     }
   }
 }
@@ -543,7 +548,7 @@ std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const
     figures.push_back(plot.figure.empty() ? plot.name : plot.figure);
   }
   for (const ClaimSpec& claim : claims) {
-    parts.push_back(claim_figure(claim, names));
+    parts.push_back(claim_figure(claim));
     figures.push_back(claim.figure.empty() ? claim.name : claim.figure);
   }
   std::map<std::string, std::vector<Figure>> parts_of;

@@ -157,8 +157,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
                                            const std::array<std::size_t, 2>& variants, bool same);
 
 /// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
-/// Its function throws UsageError with the first of problems_of_sides(). `names` names the sides.
-Figure claim_figure(const ClaimSpec& claim, const NameVariants& names = {});
+/// Its function throws UsageError with the first of problems_of_sides().
+Figure claim_figure(const ClaimSpec& claim);
 
 /// The figures of a manifest, in the order of their first plots and claims.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,

@@ -159,7 +159,9 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
     distinct.insert(count);
   }
   if (runs.size() > 1 && distinct.size() == 1) {
-    counts = {fmt::format("{} each of {}", *distinct.begin(), fmt::join(variants, "; "))};
+    counts = {fmt::format("{} each of {}", *distinct.begin(),
+                          runs.size() > 6 ? fmt::format("{} variants", runs.size())
+                                          : fmt::format("{}", fmt::join(variants, "; ")))};
   }
   // The title of an own plot says what its axes say.
   const std::string title = find_figure(summary.name) == nullptr ? "" : ". " + summary.title;

@@ -644,7 +644,6 @@ struct Reader {
       }
       if (point.size() != 2 && point.size() != 3) {
         item.reject("is not a point", "It takes [x, y], or [x, y, error].");
-        points.pop_back();
       }
     }
   }
