@@ -77,27 +77,28 @@ std::string published_in_words(const PublishedSpec& published) {
 
 /// What the claim says. `sides`: names of the variants.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
+  const bool waits = compares_waits(claim);
+  const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
   const bool higher = claim.is == Relation::higher;
-  const std::string name = compares_waits(claim) ? "the cycle of the onset" : scalar_of(claim).name;
-  const std::string more =
-      compares_waits(claim)
-          ? fmt::format("later by more than a factor of {:.3g}", std::exp2(claim.margin))
-      : claim.relative ? fmt::format("higher by more than {} %", 100 * claim.margin)
-                       : fmt::format("higher by more than {}", claim.margin);
-  std::string text = claim.statement;
-  if (!text.empty()) {
-    // as it is
-  } else if (claim.published) {
-    text = fmt::format(
-        "{}: {} is {} {}{}", claim.name, name, higher ? more + " than" : "as published,",
-        published_in_words(*claim.published), sides[0].empty() ? "" : ", for " + sides[0]);
-  } else if (higher) {
-    text =
-        fmt::format("{}: {} is {} for {} than for {}", claim.name, name, more, sides[0], sides[1]);
-  } else {
-    text = fmt::format("{}: {} is the same for {} and {}", claim.name, name, sides[0], sides[1]);
+  std::string how = "the same";
+  if (claim.is != Relation::same) {
+    const char* word = waits ? (higher ? "later" : "earlier") : (higher ? "higher" : "lower");
+    how = fmt::format("{} by more than {}", word,
+                      waits            ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
+                      : claim.relative ? fmt::format("{} %", 100 * claim.margin)
+                                       : fmt::format("{}", claim.margin));
   }
-  return {text, claim.margin, higher ? Claimed::above : Claimed::within};
+  const bool same = claim.is == Relation::same;
+  std::string text = claim.statement;
+  if (text.empty() && claim.published) {
+    text = fmt::format(
+        "{}: {} is {} {}{}", claim.name, name, same ? "as published," : how + " than published,",
+        published_in_words(*claim.published), sides[0].empty() ? "" : ", for " + sides[0]);
+  } else if (text.empty()) {
+    text = fmt::format("{}: {} is {} for {} {} {}", claim.name, name, how, sides[0],
+                       same ? "and" : "than for", sides[1]);
+  }
+  return {text, claim.margin, same ? Claimed::within : higher ? Claimed::above : Claimed::below};
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {

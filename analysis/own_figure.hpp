@@ -28,10 +28,10 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// What a claim says of the first variant: it has the same value, or a higher one.
-enum class Relation : std::uint8_t { same, higher };
+/// What a claim says of the first variant: it has the same value, a higher or a lower one.
+enum class Relation : std::uint8_t { same, higher, lower };
 template <>
-inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher");
+inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
 
 /// The symbol at the points of a curve.
 enum class Marker : std::uint8_t {

@@ -241,8 +241,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                        .doc = "or first and last of the cycles whose mean is compared",
                        .example = "[1, 15]"});
   visit(claim.is, {.name = "is",
-                   .doc = "`same` (default): the difference is within the margin; `higher`: the "
-                          "first is higher by more than the margin (for lower, exchange the two)"});
+                   .doc = "`same` (default): the difference is within the margin; `higher`, "
+                          "`lower`: the first is so by more than the margin"});
   visit(claim.statement, {.name = "statement",
                           .doc = "what the claim says, for people; default: from its keys",
                           .longest = 300});
