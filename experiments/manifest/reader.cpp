@@ -121,11 +121,11 @@ void fields(SeriesSpec& series, const auto& visit) {
 }
 
 void fields(PublishedSpec& published, const auto& visit) {
-  constexpr Range any = {-kInfinity, kInfinity};
+  constexpr Range any = {-1e15, 1e15};
   visit(published.label, {.name = "label", .longest = kLongestLabel});
   visit(published.source, {.name = "source", .required = true, .longest = kLongestLabel});
   visit(published.value, {.name = "value", .range = any});
-  visit(published.error, {.name = "error", .range = {0, kInfinity}});
+  visit(published.error, {.name = "error", .range = {0, any.max}});
   visit(published.points, {.name = "points", .range = any, .example = "[[0.05, 0.646, 0.001]]"});
 }
 
