@@ -297,7 +297,7 @@ std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
   constexpr std::array<int, 11> points = {0, 5, 7, 9, 11, 13, 4, 6, 8, 10, 12};  // of a Marker
   std::vector<CurveStyle> styles;
   for (const SeriesSpec& one : plot.series) {
-    CurveStyle& stated = styles.emplace_back(CurveStyle{.where = one.where, .over_labels = true});
+    CurveStyle& stated = styles.emplace_back(CurveStyle{.where = one.where, .of_manifest = true});
     stated.title = text_with_formulas(one.label);
     const auto name = std::ranges::find(colour_names, one.colour);
     stated.colour = name == colour_names.end()

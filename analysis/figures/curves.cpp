@@ -178,8 +178,9 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
     Curve curve{plain_field(variant), {}, std::move(members), {}};
     curve.points = points_of(curve.runs);
     if (curve.points.empty()) continue;
-    const auto style = std::ranges::find_if(
-        styles, [&](const CurveStyle& s) { return own && matches(*curve.runs.front(), s.where); });
+    const auto style = std::ranges::find_if(styles, [&](const CurveStyle& s) {
+      return (own || s.of_manifest) && matches(*curve.runs.front(), s.where);
+    });
     const auto rank = static_cast<std::size_t>(style - styles.begin());
     ++used[rank];
     ranked.emplace_back(rank, std::move(curve));
@@ -190,7 +191,7 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
     if (used[rank] > 1) rank = styles.size();
     if (rank == styles.size()) continue;
     const CurveStyle& stated = styles[rank];
-    if (!stated.title.empty() && (stated.over_labels || !run.named)) {
+    if (!stated.title.empty() && (stated.of_manifest || !run.named)) {
       curve.style.title = stated.title;
     }
     if (!stated.colour.empty()) curve.style.colour = stated.colour;

@@ -17,17 +17,17 @@
 namespace shearcell {
 
 /// How the curve of the runs with these parameters is drawn. Numbers match within 3 %, because a
-/// time step is a whole fraction of a cycle. A style is used only if one curve fits it and the runs
-/// differ in the parameters of styles alone. What a style does not state, and other curves, follow
-/// from what varies: its names, a colour for each value of the first parameter and a symbol for the
-/// others.
+/// time step is a whole fraction of a cycle. A style is used only if one curve fits it. What a
+/// style does not state, and other curves, follow from what varies: its names, a colour for each
+/// value of the first parameter and a symbol for the others.
 struct CurveStyle {
   nlohmann::json where;     ///< parameters and their values
   Text title = {};          ///< empty: not stated
   std::string colour = {};  ///< "#rrggbb"; empty: not stated
   int point = -1;           ///< as in Series; -1: not stated
-  bool over_labels =
-      false;  ///< the title is used even if a label of the manifest names the variant
+  /// Stated in a manifest. Others are used only if the runs differ in the parameters of styles
+  /// alone, and their titles only if no label of the manifest names the variant.
+  bool of_manifest = false;
 };
 
 /// All checkpoints of one variant at the end of one cycle, one per run.

@@ -360,7 +360,8 @@ std::uint64_t length_of(const Variant& variant) {
 std::uint64_t cycles_back(string_view text) {
   std::uint64_t most = 0;
   for (const string& name : names_in(text)) {
-    if (const ScalarMeasure* found = find_measure(name)) most = std::max(most, found->cycles_back());
+    if (const ScalarMeasure* found = find_measure(name))
+      most = std::max(most, found->cycles_back());
   }
   return most;
 }
@@ -459,6 +460,27 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
   return "";
 }
 
+bool has_values(const Variant& variant, const json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& item) {
+    return find_field(item.key())->get(variant.parameters) == item.value();
+  });
+}
+
+/// The number of the plot's curves that the entry of `series` fits.
+std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
+                      std::span<const Variant> variants) {
+  std::set<json> curves;
+  for (const Variant& variant : variants) {
+    if (!has_values(variant, series.where)) continue;
+    json curve = variant.swept_values();
+    for (const string& name : names_in(plot.x)) curve.erase(name);
+    curve.erase(plot.panel);
+    if (!plot.by.empty()) curve = find_field(plot.by)->get(variant.parameters);
+    curves.insert(std::move(curve));
+  }
+  return curves.size();
+}
+
 std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                                 std::span<const Variant> variants, std::size_t) {
   std::vector<string> found;
@@ -477,6 +499,13 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
+  for (const SeriesSpec& one : plot.series) {
+    const std::size_t curves = curves_of(one, plot, variants);
+    if (curves < 2) continue;
+    found.push_back(
+        format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
+               words_of(one.where), curves));
+  }
   if (plot.cycle && is_of_run(plot)) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
@@ -492,10 +521,7 @@ std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
   std::array<std::vector<const Variant*>, 2> sides;
   for (const Variant& variant : variants) {
     for (std::size_t k = 0; k < 2; ++k) {
-      const bool fits = std::ranges::all_of(claim.between[k].items(), [&](const auto& item) {
-        return find_field(item.key())->get(variant.parameters) == item.value();
-      });
-      if (fits) sides[k].push_back(&variant);
+      if (has_values(variant, claim.between[k])) sides[k].push_back(&variant);
     }
   }
   const auto run_of = [](const Variant& variant) {
