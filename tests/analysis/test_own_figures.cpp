@@ -40,17 +40,17 @@ std::vector<FigureRun> runs_of_sweep() {
   return runs;
 }
 
-FigureTable drawn(const PlotSpec& plot) {
+FigureTable drawing_of(const PlotSpec& plot) {
   return plot_figure(plot).make(runs_of_sweep()).tables.at(0);
 }
 
-std::vector<std::string> key_of(const FigureTable& table) {
+std::vector<std::string> titles_of(const FigureTable& table) {
   std::vector<std::string> titles;
   for (const Series& one : table.chart.series) titles.push_back(plain_text(one.title));
   return titles;
 }
 
-double value_of(const std::string& text, const ValueOf& names = {}) {
+double result_of(const std::string& text, const ValueOf& names = {}) {
   return evaluator_of(text)(names);
 }
 
@@ -58,11 +58,11 @@ TEST(Expression, IsArithmetic) {
   const auto a_is = [](double a) {
     return [a](const std::string& name) { return name == "a" ? a : std::nan(""); };
   };
-  EXPECT_EQ(value_of("1/a_s", [](const std::string&) { return 4.0; }), 0.25);
-  EXPECT_EQ(value_of("-a^2 + 2*(a - 1)", a_is(3)), -5);
-  EXPECT_EQ(value_of("sqrt(16) + max(1, a, 2) + ln(exp(1))", a_is(7)), 12);
-  EXPECT_NEAR(value_of("2*pi/a", a_is(2)), std::acos(-1.0), 1e-15);
-  EXPECT_EQ(value_of("1e-3*2.5E+2"), 0.25);
+  EXPECT_EQ(result_of("1/a_s", [](const std::string&) { return 4.0; }), 0.25);
+  EXPECT_EQ(result_of("-a^2 + 2*(a - 1)", a_is(3)), -5);
+  EXPECT_EQ(result_of("sqrt(16) + max(1, a, 2) + ln(exp(1))", a_is(7)), 12);
+  EXPECT_NEAR(result_of("2*pi/a", a_is(2)), std::acos(-1.0), 1e-15);
+  EXPECT_EQ(result_of("1e-3*2.5E+2"), 0.25);
   EXPECT_EQ(names_in("stress_xy_Pa/(2*pi*max(phi, phi)) + 1e5"),
             (std::vector<std::string>{"stress_xy_Pa", "phi"}));
   EXPECT_EQ(names_in("phi"), std::vector<std::string>{"phi"});
@@ -72,10 +72,10 @@ TEST(Expression, IsArithmetic) {
 
 TEST(Expression, WithoutAFiniteResultIsNotANumber) {
   for (const char* text : {"1/0", "0/0", "sqrt(-1)", "ln(0)", "exp(1000)", "10^400", "asin(2)"}) {
-    EXPECT_TRUE(std::isnan(value_of(text))) << text;
+    EXPECT_TRUE(std::isnan(result_of(text))) << text;
   }
   for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    EXPECT_TRUE(std::isnan(value_of("0*a", [&](const std::string&) { return value; }))) << value;
+    EXPECT_TRUE(std::isnan(result_of("0*a", [&](const std::string&) { return value; }))) << value;
   }
 }
 
@@ -103,7 +103,7 @@ TEST(Expression, OfAnyTextIsSoundOrRefused) {
     if (!wrong_in_expression(text).empty()) {
       ++refused;
     } else {
-      value_of(text, [](const std::string&) { return 2.0; });
+      result_of(text, [](const std::string&) { return 2.0; });
       ++sound;
     }
   }
@@ -116,7 +116,7 @@ TEST(Expression, DoesNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"}) {
     std::setlocale(LC_ALL, locale);
-    EXPECT_EQ(value_of("1.5*2"), 3) << locale;
+    EXPECT_EQ(result_of("1.5*2"), 3) << locale;
     EXPECT_NE(wrong_in_expression("1,5*2"), "") << locale;
   }
   std::setlocale(LC_ALL, before.c_str());
@@ -140,7 +140,7 @@ TEST(Formula, IsItalicWithLoweredAndRaisedText) {
 }
 
 TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
-  const FigureTable by_frequency = drawn(
+  const FigureTable by_frequency = drawing_of(
       {.name = "own", .y = "phi", .x = "1/period_s", .xlabel = "frequency $f$ [Hz]", .cycle = 2});
   EXPECT_EQ(by_frequency.chart.series.size(), 3U) << "a curve for each amplitude";
   EXPECT_EQ(plain_text(by_frequency.chart.x.name), "frequency f [Hz]");
@@ -148,13 +148,13 @@ TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
       << to_csv(by_frequency);
   EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,2,0.020502,"));
   const FigureTable both =
-      drawn({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
+      drawing_of({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
   EXPECT_EQ(both.chart.series.size(), 6U);
   for (const Series& series : both.chart.series) {
     for (const ChartPoint& p : points_of(both, series)) EXPECT_NEAR(p.y, 1, 0.005);
   }
-  const FigureTable strange =
-      drawn({.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
+  const FigureTable strange = drawing_of(
+      {.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
   ASSERT_EQ(strange.chart.series.size(), 18U) << "every run";
   EXPECT_EQ(strange.chart.series[0].points.size(), 3U) << "1/0 at cycle 2";
   EXPECT_EQ(strange.chart.series[0].points[2].x, 6);
@@ -178,8 +178,8 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
                  {.where = {{"amplitude_rad", 0.02}},
                   .colour = "#123456",
                   .marker = Marker::open_diamond}}};
-  const FigureTable table = drawn(plot);
-  EXPECT_EQ(key_of(table),
+  const FigureTable table = drawing_of(plot);
+  EXPECT_EQ(titles_of(table),
             (std::vector<std::string>{"large A", "amplitude_rad=0.02", "amplitude_rad=0.04"}))
       << "in the order of the series, then the others";
   EXPECT_EQ(table.chart.series[0].colour, "#009e73");
@@ -190,11 +190,11 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
   traces.x = "cycle";
   traces.by.clear();
   traces.series = {{.where = {{"amplitude_rad", 0.08}, {"period_s", 2.0}}, .colour = "purple"}};
-  EXPECT_EQ(drawn(traces).chart.series[0].colour, "#cc79a7");
+  EXPECT_EQ(drawing_of(traces).chart.series[0].colour, "#cc79a7");
 }
 
 TEST(OwnPlot, ShowsPublishedNumbers) {
-  const FigureTable table = drawn(
+  const FigureTable table = drawing_of(
       {.name = "own",
        .y = "phi",
        .x = "amplitude_rad",
@@ -215,9 +215,9 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
   }
   const std::vector<FigureTable> tables = {table};
   EXPECT_TRUE(has(caption_of("A title", tables), " Published: Jin: S C; Smith: a book."));
-  EXPECT_EQ(drawn({.name = "own",
-                   .y = "phi",
-                   .published = {{.label = "exact", .source = "S C", .value = 0.05}}})
+  EXPECT_EQ(drawing_of({.name = "own",
+                        .y = "phi",
+                        .published = {{.label = "exact", .source = "S C", .value = 0.05}}})
                 .chart.lines.size(),
             1U);
 }
@@ -234,7 +234,7 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
   EXPECT_EQ(result.tables[0].name, "own_1");
   EXPECT_EQ(result.tables[1].name, "own_2");
   EXPECT_EQ(plain_text(result.tables[0].chart.title), "<period_s=0.5>");
-  EXPECT_EQ(key_of(result.tables[1]),
+  EXPECT_EQ(titles_of(result.tables[1]),
             (std::vector<std::string>{"<amplitude_rad=0.02>", "<amplitude_rad=0.04>",
                                       "<amplitude_rad=0.08>"}));
   EXPECT_EQ(result.tables[0].rows.size(), 12U);
