@@ -98,7 +98,9 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
     text = fmt::format("{}: {} is {} for {} {} {}", claim.name, name, how, sides[0],
                        same ? "and" : "than for", sides[1]);
   }
-  return {text, claim.margin, same ? Claimed::within : higher ? Claimed::above : Claimed::below};
+  if (same) return {text, claim.margin, Claimed::within};
+  return higher ? Claim{text, claim.margin, Claimed::above}
+                : Claim{text, -claim.margin, Claimed::below};
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {
@@ -145,7 +147,7 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
 
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
                                            const std::array<std::size_t, 2>& variants, bool same) {
-  if (claim.between[0] == claim.between[1]) {
+  if (!claim.published && claim.between[0] == claim.between[1]) {
     return {"both sides of `between` are the same. Name two variants."};
   }
   std::vector<std::string> problems;
