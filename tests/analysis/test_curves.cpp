@@ -262,7 +262,9 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
       6)
       << "each variant once in the key";
   EXPECT_TRUE(table({.name = "own", .y = "phi", .log = LogAxes::y}).chart.y.log);
-  EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
+  const PlotSpec by_fluid{.name = "own", .y = "phi", .by = "fluid"};
+  EXPECT_THROW(table(by_fluid), UsageError) << "it would average over the drags";
+  EXPECT_EQ(plot_figure(by_fluid).make(two_variants()).tables.at(0).chart.series.size(), 2U);
 }
 
 TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
