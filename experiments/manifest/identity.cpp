@@ -36,7 +36,7 @@ StageSpec stage_spec(Stage stage, const Parameters& given, std::uint64_t seed,
   const Parameters parameters = without_ineffective(given);
   json values = json::object();
   for (const Field& field : schema()) {
-    json value = field.identity.recorded_as.empty() ? get_value(field, parameters)
+    json value = field.identity.recorded_as.empty() ? field.get(parameters)
                                                     : as_json(field, field.identity.recorded_as);
     if (enters(field.identity, stage, parameters.protocol, value)) {
       values[std::string(field.name)] = std::move(value);
@@ -107,10 +107,10 @@ Parameters read_parameters(Stage stage, const json& values) {
       }
       const std::string_view constant = field.identity.recorded_as;
       const bool is_constant = !constant.empty() && *found == as_json(field, constant);
-      set_value(field, is_constant ? get_value(field, Parameters{}) : *found, parameters);
+      field.set(parameters, is_constant ? field.get(Parameters{}) : *found);
     } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
       if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
-      set_value(field, as_json(field, field.identity.omitted_at), parameters);
+      field.set(parameters, as_json(field, field.identity.omitted_at));
     } else if (found != values.end()) {
       throw damaged(field.name, "does not belong there");
     }

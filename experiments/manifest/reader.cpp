@@ -551,17 +551,15 @@ struct Reader {
     return known;
   }
 
-  static void read(const Entry& in, const Field& about, std::uint64_t& value) {
-    if (const auto read = read_scalar(in, about)) read->get_to(value);
-  }
-  static void read(const Entry& in, const Field& about, double& value) {
-    if (const auto read = read_scalar(in, about)) read->get_to(value);
-  }
-  template <class Enum>
-  requires std::is_enum_v<Enum>
-  static void read(const Entry& in, const Field& about, Enum& value) {
-    if (const auto read = read_scalar(in, about)) {
-      value = value_of<Enum>(read->get_ref<const string&>()).value();
+  template <class T>
+  requires(std::is_arithmetic_v<T> ||
+           std::is_enum_v<T>) static void read(const Entry& in, const Field& about, T& value) {
+    const auto read = read_scalar(in, about);
+    if (!read) return;
+    if constexpr (std::is_enum_v<T>) {
+      value = value_of<T>(read->get_ref<const string&>()).value();
+    } else {
+      read->get_to(value);
     }
   }
   template <class T>
