@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <kainjow/mustache.hpp>
 #include <map>
+#include <stdexcept>
 
 namespace shearcell {
 namespace {
@@ -27,6 +29,24 @@ std::string escaped(const std::string& text, const Escapes& escapes) {
     result += escape == escapes.end() ? std::string_view(&c, 1) : escape->second;
   }
   return result;
+}
+
+kainjow::mustache::data template_value(const nlohmann::json& value) {
+  using kainjow::mustache::data;
+  if (value.is_object()) {
+    data object;
+    for (const auto& [key, member] : value.items()) object[key] = template_value(member);
+    return object;
+  }
+  if (value.is_array()) {
+    data list(data::type::list);
+    for (const nlohmann::json& item : value) list << template_value(item);
+    return list;
+  }
+  if (value.is_number()) return value.dump();
+  if (value.is_boolean()) return value.get<bool>();
+  const auto* text = value.get_ptr<const std::string*>();
+  return text == nullptr || text->empty() ? data(false) : data(*text);
 }
 
 }  // namespace
@@ -52,36 +72,12 @@ std::string text_html(const Text& text) {
   return html;
 }
 
-std::string card_label(std::string_view head) {
-  return head.empty()
-             ? ""
-             : fmt::format("<span class=\"card-label\" aria-hidden=\"true\">{}</span>", head);
-}
-
-std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
-                       std::string_view css_class) {
-  const auto add = [&](std::string& html, const HtmlRow& row, const char* tag) {
-    html += "<tr>";
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const bool number = head[k].starts_with('#');
-      const std::string_view name = std::string_view(head[k]).substr(number ? 1 : 0);
-      html += fmt::format("<{0}{1}>{2}</{0}>", tag, number ? " class=\"number\"" : "",
-                          &row == &head ? std::string(name) : card_label(name) + row[k]);
-    }
-    html += "</tr>\n";
-  };
-  std::string html = fmt::format("<table class=\"cards {}\"><thead>", css_class);
-  add(html, head, "th");
-  html += "</thead><tbody>\n";
-  for (const HtmlRow& row : rows) add(html, row, "td");
-  return html + "</tbody></table>";
-}
-
-std::string scroll_box(std::string_view label, const std::string& html,
-                       std::string_view css_class) {
-  return fmt::format(
-      "<div class=\"{}\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">{}</div>\n", css_class,
-      escape_html(label), html);
+std::string filled(const std::string& page, const nlohmann::json& values) {
+  kainjow::mustache::mustache parsed(page);
+  parsed.set_custom_escape([](const std::string& text) { return escape_html(text); });
+  std::string html = parsed.render(template_value(values));
+  if (!parsed.is_valid()) throw std::logic_error("page.html: " + parsed.error_message());
+  return html;
 }
 
 std::string script_json(const nlohmann::json& value) {

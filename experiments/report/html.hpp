@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Escapes foreign text for HTML and JSON; writes HTML tables.
+// Escapes foreign text for HTML and JSON; fills a template.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +19,11 @@ std::string escape_html(std::string_view text);
 
 std::string text_html(const Text& text);
 
-/// The heading (markup) of a cell's column. The style sheet shows it on narrow pages, where each
-/// row becomes a card.
-std::string card_label(std::string_view head);
-
-/// Cells hold markup, in which foreign text must be escaped. A heading that begins with '#' makes a
-/// right-aligned column of numbers.
-using HtmlRow = std::vector<std::string>;
-std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows,
-                       std::string_view css_class = "");
-
-/// Wraps markup into a box that scrolls.
-std::string scroll_box(std::string_view label, const std::string& html,
-                       std::string_view css_class = "scroll");
+/// The Mustache template `page` with these values. Tags in double braces are escaped by
+/// escape_html(), those in triple braces are markup. A section is shown for true, a number, a text
+/// that is not empty, an object, and for each item of an array. A name that the innermost object
+/// lacks is looked up in the objects around it. Throws std::logic_error for a malformed template.
+std::string filled(const std::string& page, const nlohmann::json& values);
 
 /// JSON for a <script> element. It contains no '<', '>' or '&', so that no text can end the element
 /// or begin a comment.

@@ -175,8 +175,11 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
     json& run = all.emplace_back(json::object());
     for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
       run["cycle"].push_back(checkpoint.cycle);
-      run["phi"].push_back(rounded(checkpoint.measures.phi, significant));
-      run["percent"].push_back(rounded(checkpoint.measures.crystalline_percent, significant));
+      for (const ScalarMeasure& scalar : all_scalar_measures()) {
+        if (scalar.derived() != table_measures().front()) continue;
+        run[std::string(scalar.name)].push_back(
+            rounded(scalar.of(checkpoint.measures), significant));
+      }
     }
     const std::vector<json>& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];

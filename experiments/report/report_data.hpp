@@ -58,8 +58,9 @@ struct ReportExperiment {
   std::vector<RunRecord> runs = {};
   std::size_t to_come = 0;  ///< checkpoints of unfinished runs if nothing ends them early
   RunTable table = {};      ///< a row for each run, without those that settle packings
-  /// For the front end: [{id, kind, scale, variant, seed, cycle, phi, percent}] in the order of the
-  /// rows; the last three are arrays over the checkpoints, null where a value is unknown.
+  /// For the front end, in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi,
+  /// ...}]. The cycle and each scalar measure are arrays over the checkpoints, null where a value
+  /// is unknown.
   nlohmann::json traces = nlohmann::json::array();
 };
 
@@ -68,7 +69,7 @@ struct ReportData {
   Head head;
   nlohmann::json program;  ///< build of this program
   std::vector<ReportExperiment> experiments;
-  std::vector<ReportFigure> figures;       ///< of `experiments`, and of all experiments together
+  std::vector<ReportFigure> figures;  ///< of `experiments`, and of all experiments together
   RunLineages runs;
   std::map<std::string, ManifestText> manifests;
   Packings packings;

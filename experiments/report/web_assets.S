@@ -2,6 +2,11 @@
 // The files themselves. Their paths are defined by the build.
 .section .rodata
 
+.globl shearcell_page, shearcell_page_end
+shearcell_page:
+.incbin SHEARCELL_PAGE_FILE
+shearcell_page_end:
+
 .globl shearcell_style, shearcell_style_end
 shearcell_style:
 .incbin SHEARCELL_STYLE_FILE

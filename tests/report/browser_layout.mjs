@@ -25,7 +25,7 @@ function misfits() {
     if (box.scrollWidth > box.clientWidth) found.push(`${box.ariaLabel} does not fit`);
   }
   // Labels of plots stay within their picture.
-  for (const text of document.querySelectorAll("svg.canvas text")) {
+  for (const text of document.querySelectorAll(".main-svg text")) {
     const outer = text.ownerSVGElement.getBoundingClientRect();
     const inner = text.getBoundingClientRect();
     if (inner.width > 0 && (inner.left < outer.left - 1 || inner.right > outer.right + 1)) {
@@ -64,7 +64,7 @@ export function layoutChecks({open, expect, shots, drawAllPlots}) {
         const page = await open(`layout${width}`, {viewport: {width, height: 900}, colorScheme});
         await drawAllPlots(page);
         await page.locator("#compare").scrollIntoViewIfNeeded();
-        await page.locator("#compare svg.canvas").first().waitFor();
+        await page.locator("#compare .main-svg .xtick").first().waitFor({state: "attached"});
         await page.locator(".runs .disclosure").first().click();
         const flow = page.locator(".workflow").first();
         await flow.scrollIntoViewIfNeeded();

@@ -61,18 +61,93 @@ export function runChecks({open, expect, shots}) {
       expect((await shown("")).length === all.length, "filtering: an empty filter hides rows");
     },
 
+    // As the page writes a parameter: by its symbol.
+    async symbols() {
+      const page = await open("symbols");
+      const table = page.locator('[data-runs]:has(th[data-key="amplitude_rad"])').first();
+      const value = await table.locator("tbody[data-row]").first().evaluate((body) =>
+        body.rows[0].cells[body.closest("table").querySelector('th[data-key="amplitude_rad"]').cellIndex].dataset.value);
+      const all = await table.locator("tbody[data-row]").count();
+      const counted = async (text) => {
+        await table.getByRole("searchbox").fill(text);
+        return table.locator("tbody[data-row]").count();
+      };
+      const by = await counted(`amplitude_rad=${value}`);
+      expect(by > 0 && by < all, `symbols: amplitude_rad=${value} finds ${by} of ${all} runs`);
+      expect(await counted(`A=${value}`) === by, `symbols: A=${value} finds others`);
+    },
+
+    async folding() {
+      const page = await open("folding");
+      const {table, column} = await openTable(page);
+      const rows = (await column("run")).length;
+      await table.getByLabel("fold by variant").check();
+      const variants = table.locator("tbody.variant");
+      const names = await variants.evaluateAll((all) => all.map((body) => body.rows[0].cells[0].textContent));
+      expect(names.length > 1 && await table.locator("tbody[data-row]").count() === 0, `folding: ${names}`);
+      const counts = names.map((name) => Number(name.match(/\((\d+) runs?\)$/)[1]));
+      expect(counts.reduce((sum, count) => sum + count, 0) === rows, `folding: ${counts} of ${rows} runs`);
+      await variants.first().locator(".disclosure").press("Enter");
+      expect(await table.locator("tbody[data-row]").count() === counts[0], "folding: a variant does not open");
+      const at = await table.locator('th[data-key="phi"]').evaluate((head) => head.cellIndex);
+      const mean = Number(await variants.first().locator("td").nth(at).evaluate((cell) => cell.lastChild.textContent));
+      const phi = (await table.locator("tbody[data-row]").evaluateAll((all, k) =>
+        all.map((body) => Number(body.rows[0].cells[k].dataset.value)), at));
+      expect(Math.abs(mean - phi.reduce((sum, one) => sum + one, 0) / phi.length) < 1e-4, `folding: ${mean} of ${phi}`);
+      await table.getByLabel("fold by variant").uncheck();
+      expect((await column("run")).length === rows, "folding: rows were lost");
+    },
+
+    async columns() {
+      const page = await open("columns");
+      const {table} = await openTable(page);
+      await table.getByText("Columns", {exact: true}).click();
+      const key = "contacts_per_grain";
+      const box = table.locator("details").first().getByLabel(key, {exact: true});
+      await box.check();
+      const head = table.locator(`th[data-key="${key}"]`);
+      const at = await head.evaluate((one) => one.cellIndex);
+      const values = await table.locator("tbody[data-row]").evaluateAll((all, k) =>
+        all.map((body) => body.rows[0].cells[k].lastChild.textContent), at);
+      expect(values.length > 3 && values.some((text) => text !== "–"), `columns: ${key}: ${values}`);
+      await head.getByRole("button").click();
+      expect(await head.getAttribute("aria-sort") === "ascending", `columns: ${key} does not sort`);
+      await box.uncheck();
+      expect(!(await head.isVisible()), `columns: ${key} stays`);
+    },
+
+    async measures() {
+      const page = await open("measures");
+      const {table} = await openTable(page);
+      await table.getByText("Plot measures").click();
+      const plot = table.locator("details .plot");
+      await plot.locator(".xtick").first().waitFor({state: "attached"});
+      const shown = async () => [await plot.locator(".xtitle, .ytitle").allTextContents(),
+        await plot.locator(".point").count()];
+      const [[x, y], points] = await shown();
+      expect(x === "shear cycle n" && y === "volume fraction ϕ" && points > 5, `measures: ${x}, ${y}, ${points}`);
+      await table.locator(".choices select").first().selectOption("largest_overlap_d");
+      await table.locator(".choices select").nth(1).selectOption("phi");
+      await page.waitForTimeout(500);
+      const [[phi, other], ends] = await shown();
+      expect(phi === "volume fraction ϕ" && /largest overlap/.test(other) &&
+        ends === await table.locator("tbody[data-row]").count(), `measures: ${phi}, ${other}, ${ends} points`);
+      await plot.screenshot({path: join(shots, "measures.png")});
+    },
+
     async traces() {
       const page = await open("traces");
       const {table} = await openTable(page);
       const body = table.locator("tbody").nth(1);
       await body.locator('td:has(.state)').click();
-      const plots = body.locator(".trace svg.canvas");
+      const plots = body.locator(".trace .canvas");
+      await plots.nth(1).locator(".xtick").first().waitFor({state: "attached"});
       expect(await plots.count() === 2, "traces: not two plots");
-      const labels = await body.locator(".trace .label").allTextContents();
+      const labels = await body.locator(".trace").locator(".xtitle, .ytitle").allTextContents();
       for (const label of ["volume fraction ϕ", "percentage crystalline  [%]", "shear cycle n"]) {
         expect(labels.includes(label), `traces: labels ${labels}`);
       }
-      expect(await body.locator(".trace .symbol").count() > 3, "traces: no points");
+      expect(await body.locator(".trace .point").count() > 3, "traces: no points");
       await body.scrollIntoViewIfNeeded();
       await page.screenshot({path: join(shots, "trace.png")});
       await table.locator('th[data-key="phi"]').getByRole("button").click();
@@ -96,18 +171,16 @@ export function runChecks({open, expect, shots}) {
       const page = await open("compare", {viewport: {width: 1400, height: 900}});
       const section = page.locator("#compare");
       await section.scrollIntoViewIfNeeded();
-      await section.locator(".side svg.canvas").first().waitFor();
-      expect(await section.locator(".side svg.canvas").count() === 4, "compare: not four plots");
-      const ticks = (side, plot) => section.locator(".side").nth(side).locator("svg.canvas").nth(plot)
-        .locator(".axes text").allTextContents();
+      await section.locator(".xtick").first().waitFor({state: "attached"});
+      expect(await section.locator(".panels .canvas").count() === 2, "compare: not two plots");
       for (const plot of [0, 1]) {
-        expect((await ticks(0, plot)).join() === (await ticks(1, plot)).join(),
-          `compare: plots ${plot} have different axes`);
+        const names = await section.locator(".panels .canvas").nth(plot).locator(".legendtext").allTextContents();
+        expect(["first", "second"].every((side) => names.filter((name) => name.startsWith(`${side}, seed`)).length > 1),
+          `compare: plot ${plot} has the curves ${names}`);
       }
-      const boxes = await section.locator(".side").evaluateAll((sides) =>
-        sides.map((side) => side.getBoundingClientRect()).map(({left, right, top}) => ({left, right, top})));
-      expect(boxes[0].top === boxes[1].top && boxes[0].right <= boxes[1].left,
-        "compare: they are not side by side");
+      const looks = await section.locator(".panels .canvas").first().locator(".legendpoints path").evaluateAll((all) =>
+        all.map((mark) => mark.style.fill + mark.style.stroke + mark.getAttribute("d")));
+      expect(new Set(looks).size === looks.length, `compare: two curves look alike: ${looks}`);
       await section.locator(".comparison > div").last().scrollIntoViewIfNeeded();
       await section.locator(".pane canvas").nth(1).waitFor();
       await page.waitForTimeout(300);
@@ -123,10 +196,10 @@ export function runChecks({open, expect, shots}) {
       await page.waitForTimeout(250);
       expect(!turned.equals(await pictures.nth(1).screenshot()), "compare: one is not coloured");
       await section.screenshot({path: join(shots, "compare.png")});
-      const left = section.locator(".side").nth(0);
-      const facts = await left.locator(".small").textContent();
-      await left.locator("select").selectOption({index: 2});
-      expect(await left.locator(".small").textContent() !== facts, "compare: the choice is not followed");
+      const side = section.locator(".side").nth(0);
+      const facts = await side.locator(".small").textContent();
+      await side.locator("select").selectOption({index: 2});
+      expect(await side.locator(".small").textContent() !== facts, "compare: the choice is not followed");
     },
 
     async workflow() {

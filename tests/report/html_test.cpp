@@ -18,10 +18,17 @@ TEST(Html, EscapesMarkupAndCharactersThatAPageMayNotHold) {
   EXPECT_EQ(escape_html("cut \xCF"), "cut \uFFFD");
 }
 
-TEST(Html, CellsOfATableNameTheirColumns) {
-  const std::string html = html_table({"run", "#<i>N</i>", ""}, {{"a", "600", "x"}});
-  EXPECT_TRUE(has(html, "<th class=\"number\"><i>N</i></th>"));
-  EXPECT_TRUE(has(html, "<td class=\"number\">" + card_label("<i>N</i>") + "600</td><td>x</td>"));
+TEST(Html, ATemplateEscapesTextsAndReadsNoTagInThem) {
+  const nlohmann::json values = {{"text", "<b>{{other}}</b>"},
+                                 {"other", "x"},
+                                 {"list", {"a", "b&"}},
+                                 {"none", ""},
+                                 {"count", 0}};
+  EXPECT_EQ(filled("{{text}}|{{{text}}}|{{#list}}{{.}},{{/list}}|{{^none}}none{{/none}}|{{count}}",
+                   values),
+            "&lt;b&gt;{{other}}&lt;/b&gt;|<b>{{other}}</b>|a,b&amp;,|none|0");
+  EXPECT_EQ(filled("{{#nothing}}x{{/nothing}}{{nothing}}", values), "");
+  EXPECT_THROW(filled("{{#list}}", values), std::logic_error);
 }
 
 TEST(Html, JsonCannotEndItsScriptElement) {

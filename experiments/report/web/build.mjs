@@ -21,7 +21,6 @@ const result = await build({
   target: "es2021",
   charset: "utf8",
   legalComments: "none",  // licences.txt has them whole
-  metafile: true,
   write: false
 });
 
@@ -31,13 +30,9 @@ function licenceOf(folder) {
   return readFileSync(join(folder, file), "utf8").trim();
 }
 
-const packages = new Set();
-for (const [path, {bytesInOutput}] of Object.entries(Object.values(result.metafile.outputs)[0].inputs)) {
-  const name = path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)\//)?.[1];
-  if (name && bytesInOutput > 0) packages.add(name);
-}
+const packages = Object.keys(JSON.parse(readFileSync(join(here, "package.json"), "utf8")).dependencies);
 const locked = JSON.parse(readFileSync(join(modulesParent, "package-lock.json"), "utf8")).packages;
-const list = [...packages].sort().map((name) => {
+const list = packages.map((name) => {
   const {version, license, integrity} = locked[`node_modules/${name}`];
   const [kind, hash] = integrity.split("-");
   if (kind !== "sha512") throw new Error(`the lock file has no SHA-512 of ${name}`);

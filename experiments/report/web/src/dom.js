@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements of the page.
+// Elements of the page, downloads, and the theme.
 
 // element("p", {className: "small", "aria-label": "it"}, "text", other): properties of the DOM, or
 // attributes.
@@ -13,18 +13,12 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
-export function svg(tag, attributes = {}, parent = null) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  parent?.append(made);
-  return made;
-}
-
-export function button(properties, action, ...children) {
-  const made = element("button", {type: "button", ...properties}, ...children);
-  made.addEventListener("click", action);
-  return made;
-}
+// Labels are lists of [text, style]; the style is "", or the element "i", "sub" or "sup".
+export const plain = (text) => [[text, ""]];
+export const italic = (text) => [[text, "i"]];
+export const sub = (text) => [[text, "sub"]];
+export const written = (label) =>
+  label.map(([text, style]) => ["i", "sub", "sup"].includes(style) ? element(style, {}, text) : text);
 
 // Fills a <select>: an option for each item, valued by its place, in groups.
 export function addOptions(select, items, groupOf, textOf) {
@@ -38,11 +32,54 @@ export function addOptions(select, items, groupOf, textOf) {
 }
 
 // Calls `action` once, when the element is scrolled near the window.
-export function whenNear(target, pixels, action) {
+export function whenNear(target, action) {
   const watcher = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     watcher.disconnect();
     action();
-  }, {rootMargin: `${pixels}px`});
+  }, {rootMargin: "300px"});
   watcher.observe(target);
+}
+
+export function save(name, blob) {
+  const link = element("a", {href: URL.createObjectURL(blob), download: name});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+const themed = [];
+
+export function onThemeChange(action) {
+  themed.push(action);
+}
+
+// The choice is kept if the browser allows it for files; else it lasts until the page is closed.
+export function addThemeSwitch(select) {
+  const key = "shearcell-theme";
+  const apply = () => {
+    document.documentElement.style.colorScheme = select.value;
+    themed.forEach((action) => action());
+  };
+  const stored = (action) => {
+    try {
+      return action(localStorage);
+    } catch {
+      return null;
+    }
+  };
+  const kept = stored((storage) => storage.getItem(key));
+  if ([...select.options].some((option) => option.value === kept)) select.value = kept;
+  apply();
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", apply);
+  select.addEventListener("change", () => {
+    stored((storage) => storage.setItem(key, select.value));
+    apply();
+  });
+}
+
+// Of an element, as red, green and blue from 0 to 255.
+export function coloursOf(probe) {
+  const channels = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
+  const style = getComputedStyle(probe);
+  return {background: channels(style.backgroundColor), ink: channels(style.color)};
 }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds plots, packings, comparisons and downloads to the page; everything else works without scripts.
-import {Comparison} from "./compare.js";
-import {whenNear} from "./dom.js";
+import {addComparison} from "./compare.js";
+import {addThemeSwitch, save, whenNear} from "./dom.js";
 import {Plot} from "./plot.js";
-import {RunTable} from "./run_table.js";
-import {saveText} from "./save.js";
-import {addThemeSwitch} from "./theme.js";
+import {RunTable} from "./runs.js";
 import {Viewer} from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("report-data").textContent);
@@ -17,49 +15,46 @@ function addPlots() {
     if (waiting.delete(host)) new Plot(host, data.charts[host.dataset.chart], host.dataset.chart);
   };
   for (const host of document.querySelectorAll("[data-chart]")) {
-    if (!data.charts[host.dataset.chart]) continue;
     waiting.add(host);
-    whenNear(host, 300, () => draw(host));
+    whenNear(host, () => draw(host));
   }
   window.addEventListener("beforeprint", () => [...waiting].forEach(draw));
 }
 
 function addViewer() {
+  if (data.packings.length === 0) return;
   const section = document.getElementById("packings");
-  if (!section || data.packings.length === 0) return;
   section.hidden = false;
   let viewer = null;
-  const open = () => (viewer ??= new Viewer(section.querySelector(".viewer"), data.packings));
-  whenNear(section, 200, open);
+  const open = () => (viewer ??= new Viewer(section.querySelector(".viewer"), data.packings, 1));
+  whenNear(section, open);
   for (const link of document.querySelectorAll("[data-packing]")) {
     link.hidden = false;
-    link.addEventListener("click", () => open().showRunCalled(link.dataset.packing));
+    link.addEventListener("click", () =>
+      open().showRuns([data.packings.find(({id}) => id === link.dataset.packing)]));
   }
 }
 
-function addRunTables() {
-  for (const host of document.querySelectorAll("[data-runs]")) {
-    const known = data.experiments.find(({experiment}) => experiment === host.dataset.runs);
-    new RunTable(host, known.runs);
-  }
+const theme = document.getElementById("theme");
+theme.parentElement.hidden = false;
+addThemeSwitch(theme);
+addPlots();
+addViewer();
+for (const host of document.querySelectorAll("[data-runs]")) {
+  new RunTable(host, data.experiments.find(({experiment}) => experiment === host.dataset.runs));
 }
-
-function addComparison() {
+if (data.experiments.some(({runs}) => runs.some((run) => run.cycle))) {
   const section = document.getElementById("compare");
-  if (data.experiments.every(({runs}) => runs.every((run) => !run.cycle))) return;
   section.hidden = false;
-  whenNear(section, 300, () =>
-    new Comparison(section.querySelector(".comparison"), data.experiments, data.packings));
+  whenNear(section, () =>
+    addComparison(section.querySelector(".comparison"), data.experiments, data.packings));
 }
-
-function addDownloads() {
-  for (const button of document.querySelectorAll("[data-csv]")) {
-    button.hidden = false;
-    button.addEventListener("click", () => {
-      const name = button.dataset.csv;
-      saveText(`${name}.csv`, document.getElementById(`csv-${name}`).textContent, "text/csv");
-    });
-  }
+for (const button of document.querySelectorAll("[data-csv]")) {
+  button.hidden = false;
+  button.addEventListener("click", () => {
+    const name = button.dataset.csv;
+    save(`${name}.csv`, new Blob([document.getElementById(`csv-${name}`).textContent], {type: "text/csv"}));
+  });
 }
 
 // A link to a closed <details> opens it.
@@ -67,14 +62,5 @@ function openTarget() {
   const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
   if (target instanceof HTMLDetailsElement) target.open = true;
 }
-
-const theme = document.getElementById("theme");
-theme.parentElement.hidden = false;
-addThemeSwitch(theme);
-addPlots();
-addRunTables();
-addComparison();
-addViewer();
-addDownloads();
 window.addEventListener("hashchange", openTarget);
 openTarget();

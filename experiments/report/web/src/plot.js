@@ -1,161 +1,206 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One interactive plot: keeps which series and which part of the axes are visible, and redraws when
-// either changes.
-import {button, element, svg} from "./dom.js";
-import {drawFrame, drawReferenceLines, drawSeries, drawSymbol, dress, lineClass} from "./draw.js";
-import {addGestures} from "./gestures.js";
-import {addReadout} from "./readout.js";
-import {saveSvg} from "./save.js";
-import {extentOf, makeScale} from "./scales.js";
-import {plainText, writeText} from "./text.js";
+// Shows the chart descriptions of analysis/chart.hpp with Plotly.
+import Plotly from "plotly.js-basic-dist-min";
+import {coloursOf, element, onThemeChange} from "./dom.js";
 
-const margin = {left: 66, right: 24, top: 12, bottom: 52};
-let plots = 0;
+const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's 4 to 13
+const font = {family: '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif', size: 13};
+
+// Plotly reads a label as markup.
+const markup = (label) => label.map(([text, style]) => {
+  const safe = text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  return style ? `<${style}>${safe}</${style}>` : safe;
+}).join("");
+const plainText = (label) => label.map(([text]) => text).join("").replace(/\s+/g, " ").trim();
+const withUnit = ({label, unit}) => unit.length > 0 ? [...label, ["  [", ""], ...unit, ["]", ""]] : label;
+const digits = (value) => String(Number(value.toPrecision(6))).replace("-", "−");
+
+// Makes dark colours visible on a dark page.
+function onDark(colour) {
+  const channels = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const light = (0.3 * channels[0] + 0.59 * channels[1] + 0.11 * channels[2]) / 255;
+  const mix = Math.max(0, 0.62 - light) * 1.15;
+  return `rgb(${channels.map((c) => Math.round(c + (235 - c) * mix)).join()})`;
+}
+
+// The series whose entry of the legend shows and hides this one: itself, the last one before it with
+// its colour, or else the first one after it.
+function ownerOf(series, index) {
+  const fits = (one, at) => one.title.length > 0 && (at === index || one.colour === series[index].colour);
+  const before = series.slice(0, index + 1).findLastIndex(fits);
+  return before >= 0 ? before : series.findIndex(fits);
+}
+
+function valuesAt(chart, one, [x, y, xError, yError]) {
+  const line = ({label}, value, error) =>
+    `${markup(label)} = ${digits(value)}${error ? ` ± ${digits(error)}` : ""}`;
+  return `<b>${markup(one.name ?? one.title)}</b><br>` +
+    `${line(chart.x, x - one.shift, xError)}<br>${line(chart.y, y, yError)}`;
+}
+
+// Entries of the legend are broken at spaces to fit the width.
+const lettersIn = (width) => Math.max(12, Math.floor((width - 60) / 7.4));
+const broken = (label, letters) =>
+  markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){12,${letters}}) `, "g"), "$1<br>");
+
+function tracesOf(chart, width, dark) {
+  return chart.series.flatMap((one, index) => {
+    const color = dark ? onDark(one.colour) : one.colour;
+    const [x, y, xError, yError] = [0, 1, 2, 3].map((k) => one.points.map((point) => point[k]));
+    const legendgroup = String(ownerOf(chart.series, index));
+    const bars = (array, hidden) =>
+      ({array, color, thickness: 1, width: 3, visible: !hidden && array.some((error) => error)});
+    const modes = [one.line && "lines", one.point > 0 && "markers"].filter(Boolean);
+    const shown = {
+      type: "scatter", x, y, mode: modes.join("+") || "none", name: broken(one.title, lettersIn(width)), legendgroup,
+      showlegend: one.title.length > 0, cliponaxis: one.line,
+      line: {color, width: one.thin ? 0.7 : 1.4, dash: one.dashed ? "5px,4px" : "solid"},
+      marker: {
+        color, size: 7, line: {color, width: 1.2}, maxdisplayed: one.line ? 60 : 0,
+        symbol: (symbols[Math.floor(one.point / 2) - 2] ?? "circle") + (one.point % 2 ? "" : "-open")
+      },
+      error_x: bars(xError, one.band), error_y: bars(yError, one.band),
+      text: one.points.map((point) => valuesAt(chart, one, point)), hoverinfo: "text"
+    };
+    if (!one.band) return [shown];
+    const edge = (sign) => y.map((value, k) => value + sign * (yError[k] ?? 0));
+    return [{
+      type: "scatter", x: [...x, ...x.toReversed()], y: [...edge(1), ...edge(-1).toReversed()],
+      mode: "none", fill: "toself", fillcolor: color, opacity: 0.2, legendgroup, showlegend: false,
+      hoverinfo: "skip"
+    }, shown];
+  });
+}
+
+function axisOf(axis, values, color) {
+  const {log, whole, low, high, clip} = axis;
+  const [least, most] = [Math.min(...values), Math.max(...values)];
+  return {
+    title: {text: markup(withUnit(axis)), standoff: 8}, type: log ? "log" : "linear", color,
+    ...(clip && {range: log ? [Math.log10(low), Math.log10(high)] : [low, high]}),
+    ...(!log && {autorangeoptions: {include: [low, high].filter(Number.isFinite)}}),
+    rangemode: low === 0 && least >= 0 ? "tozero" : "normal",
+    ...(whole && most - least < 9 && {tick0: 0, dtick: 1}),
+    exponentformat: "power", minexponent: 4, nticks: 7, ticks: "inside", minor: {ticks: "inside", ticklen: 2},
+    showline: true, mirror: "ticks", zeroline: false, showgrid: false, automargin: true
+  };
+}
+
+function layoutOf(chart, width, color) {
+  const titles = chart.series.map(({title}) => plainText(title)).filter(Boolean);
+  const letters = Math.max(0, ...titles.map((title) => title.length));
+  const entry = 7 * Math.min(letters, lettersIn(width));
+  const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - 20) / (entry + 45))));
+  const key = 20 * rows * Math.ceil(letters / lettersIn(width)) + 6;
+  const points = chart.series.flatMap((one) => one.points);
+  const flat = chart.lines.filter(({vertical}) => !vertical).map(({at}) => at);
+  const shape = ({at, vertical, stub, colour}) => ({
+    type: "line", layer: "below", line: {color: colour, width: stub ? 2 : 1, dash: stub ? "solid" : "dash"},
+    ...(vertical ? {x0: at, x1: at, yref: "paper", y0: 0, y1: stub ? 0.06 : 1}
+      : {y0: at, y1: at, xref: "paper", x0: 0, x1: 1})
+  });
+  const height = Math.round(Math.min(430, Math.max(310, width * 0.7))) + key;
+  return {
+    width, height, font: {...font, color}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#8a8f98", activecolor: color}, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+    margin: {l: 62, r: 14, t: chart.title.length > 0 ? 52 : 30, b: 44 + key}, hovermode: "closest",
+    title: {text: markup(chart.title), font: {size: 13}, y: 1, yref: "container", yanchor: "top", pad: {t: 8}},
+    legend: {orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: entry,
+      traceorder: "normal", tracegroupgap: 0},
+    xaxis: axisOf(chart.x, points.map(([x]) => x), color),
+    yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
+    shapes: chart.lines.map(shape), uirevision: "kept",
+    dragmode: window.matchMedia("(pointer: coarse)").matches ? false : "zoom",  // a finger scrolls the page
+    annotations: points.length > 0 ? [] : [{
+      text: "no data yet", xref: "paper", yref: "paper", x: 0.5, y: 0.5, showarrow: false
+    }]
+  };
+}
 
 export class Plot {
   constructor(host, chart, name) {
-    this.host = host;
-    this.chart = chart;
     this.name = name;
-    this.hidden = new Set();  // indices of series
-    this.view = null;         // {x: [low, high], y: [low, high]}, or all of it
-    this.clipId = `plot-area-${++plots}`;
-    host.replaceChildren();
-    this.addToolbar();
-    this.canvas = svg("svg",
-      {class: "canvas", tabindex: 0, role: "img", "aria-label": this.description()}, host);
-    this.addLegend();
-    this.readout = addReadout(this);
-    addGestures(this);
-    new ResizeObserver(() => this.resize()).observe(host);
-    this.resize();
+    this.canvas = element("div", {className: "canvas", tabIndex: 0, role: "group"});
+    this.status = element("div", {className: "visually-hidden", role: "status"});
+    host.replaceChildren(this.canvas, this.status);
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    onThemeChange(() => this.draw());
+    this.fits = () => Math.floor(host.getBoundingClientRect().width);
+    new ResizeObserver(() => this.width === this.fits() || this.draw()).observe(host);
+    this.show(chart);
   }
 
-  visibleSeries() {
-    return this.chart.series.filter((_, index) => !this.hidden.has(index));
+  show(chart) {
+    this.chart = chart;
+    this.at = null;  // the point that the arrow keys read: {curve, point}
+    const names = chart.series.map(({title}) => plainText(title)).filter(Boolean).join("; ");
+    this.canvas.setAttribute("aria-label", `${this.name}: ${plainText(chart.y.label)} against ` +
+      `${plainText(chart.x.label)}. Series: ${names || "none"}. Arrow keys read values, plus and minus ` +
+      "zoom, 0 shows all.");
+    this.draw();
   }
 
-  description() {
-    const {x, y, series} = this.chart;
-    const names = series.map((one) => plainText(one.title)).filter(Boolean).join("; ");
-    return `${this.name}: ${plainText(y.label)} against ${plainText(x.label)}. Series: ` +
-      `${names || "none"}. Arrow keys read values, plus and minus zoom, 0 shows all.`;
-  }
-
-  resize() {
-    const width = Math.round(this.host.clientWidth);
-    if (width < 50 || width === this.width) return;
-    this.width = width;
-    this.height = Math.round(Math.min(430, Math.max(260, width * 0.7)));
-    this.redraw();
-  }
-
-  redraw() {
-    const {width, height} = this;
-    const box = {
-      left: margin.left, right: width - margin.right,
-      top: margin.top + (this.chart.title.length > 0 ? 16 : 0), bottom: height - margin.bottom
+  draw() {
+    this.width = this.fits();
+    if (this.width < 50) return;
+    const {background, ink} = coloursOf(document.body);
+    const save = {
+      name: "Save as SVG", title: "Save as SVG", icon: Plotly.Icons.camera, click: () => this.saveSvg()
     };
-    const visible = this.visibleSeries();
-    const domain = this.view ?? {
-      x: extentOf(this.chart, visible, "x"), y: extentOf(this.chart, visible, "y")
-    };
-    this.box = box;
-    this.scales = {
-      x: makeScale(this.chart.x.log, domain.x, [box.left, box.right]),
-      y: makeScale(this.chart.y.log, domain.y, [box.bottom, box.top])
-    };
-    const root = this.canvas;
-    root.replaceChildren();
-    root.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    root.setAttribute("width", width);
-    root.setAttribute("height", height);
-    const clip = svg("clipPath", {id: this.clipId}, root);
-    svg("rect", {
-      x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top
-    }, clip);
-    const area = svg("g", {"clip-path": `url(#${this.clipId})`}, root);
-    drawReferenceLines(area, this.chart, this.scales, box);
-    for (const one of visible) drawSeries(area, one, this.scales);
-    drawFrame(root, this.chart, this.scales, box);
-    if (visible.every((one) => one.points.length === 0)) {
-      const note = svg("text", {
-        class: "nothing", "text-anchor": "middle", x: (box.left + box.right) / 2,
-        y: (box.top + box.bottom) / 2
-      }, root);
-      note.textContent = this.hidden.size > 0 ? "all curves are hidden" : "no data yet";
+    Plotly.react(this.canvas, tracesOf(this.chart, this.width, background[0] < 128),
+      layoutOf(this.chart, this.width, `rgb(${ink.join()})`), {
+        displaylogo: false, displayModeBar: true, doubleClick: "reset",
+        modeBarButtons: [["zoomIn2d", "zoomOut2d", "resetScale2d", save]]
+      }).then(() => this.nameEntries());
+  }
+
+  // Makes the entries of the legend buttons for the keyboard.
+  nameEntries() {
+    for (const entry of this.canvas.querySelectorAll(".legendtoggle")) {
+      const name = entry.parentElement.querySelector(".legendtext").textContent;
+      for (const [key, value] of Object.entries({tabindex: 0, role: "button", "aria-label": `Show or hide ${name}`})) {
+        entry.setAttribute(key, value);
+      }
     }
-    this.overlay = svg("g", {class: "overlay"}, root);
-    this.readout?.moved();
   }
 
-  // Shows this part of the axes, or everything.
-  show(view) {
-    this.view = view;
-    this.redraw();
+  // The plot as shown, in the colours for paper.
+  saveSvg() {
+    const {data, layout} = this.canvas;
+    const onPaper = layoutOf(this.chart, this.width, "#1a1a1a");
+    for (const axis of ["xaxis", "yaxis"]) onPaper[axis].range = layout[axis].range;
+    Plotly.downloadImage({
+      data: tracesOf(this.chart, this.width, false).map((trace, k) => ({...trace, visible: data[k].visible})), layout: onPaper
+    }, {format: "svg", filename: this.name, width: onPaper.width, height: onPaper.height});
   }
 
-  // Around a point in pixels; a factor below 1 zooms in.
-  zoom(factor, px, py) {
-    const {box, chart, scales} = this;
-    px ??= (box.left + box.right) / 2;
-    py ??= (box.top + box.bottom) / 2;
-    const around = (scale, p, log) => scale.range().map((end) => {
-      const at = scale.invert(p + (end - p) * factor);
-      return log ? Math.max(at, Number.MIN_VALUE) : at;
-    });
-    const view = {x: around(scales.x, px, chart.x.log), y: around(scales.y, py, chart.y.log)};
-    const tooClose = [view.x, view.y].some(([low, high]) =>
-      !(high - low > 1e-12 * Math.max(Math.abs(low), Math.abs(high))));
-    if (!tooClose) this.show(view);
-  }
-
-  addToolbar() {
-    const bar = element("div", {className: "toolbar"});
-    const add = (text, title, action) =>
-      bar.append(button({title, "aria-label": `${title} (${this.name})`}, action, text));
-    add("+", "Zoom in", () => this.zoom(0.6));
-    add("−", "Zoom out", () => this.zoom(1 / 0.6));
-    add("all", "Show everything", () => this.show(null));
-    add("SVG", "Save as SVG", () => saveSvg(this));
-    this.host.append(bar);
-  }
-
-  addLegend() {
-    const legend = element("div", {className: "legend"});
-    for (const group of entries(this.chart.series)) {
-      const one = this.chart.series[group[0]];
-      const empty = group.every((index) => this.chart.series[index].points.length === 0);
-      const key = svg("svg", {class: "key", width: 26, height: 14, "aria-hidden": "true"});
-      dress(key, one.colour);
-      if (one.line) svg("path", {class: lineClass(one), d: "M0 7H26"}, key);
-      drawSymbol(key, one.point, 13, 7);
-      const entry = button({
-        "aria-pressed": "true", title: "Show or hide this curve", className: empty ? "without-data" : ""
-      }, () => {
-        const shows = this.hidden.has(group[0]);
-        for (const index of group) this.hidden[shows ? "delete" : "add"](index);
-        entry.setAttribute("aria-pressed", String(shows));
-        this.redraw();
-      }, key, writeText(element("span"), one.title));
-      legend.append(entry);
+  key(event) {
+    if (event.key === "Enter" && event.target.matches(".legendtoggle")) {
+      for (const type of ["mousedown", "mouseup"]) event.target.dispatchEvent(new MouseEvent(type, {bubbles: true}));
     }
-    this.host.append(legend);
+    if (event.target !== this.canvas || event.ctrlKey || event.metaKey || event.altKey) return;
+    const buttons = {"+": "in", "=": "in", "-": "out", "0": "reset", "Escape": "reset"};
+    const moves = {
+      ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
+      Home: [-Infinity, 0], End: [Infinity, 0]
+    };
+    if (event.key in buttons) this.canvas.querySelector(`[data-val="${buttons[event.key]}"]`).click();
+    else if (event.key in moves) this.step(...moves[event.key]);
+    else return;
+    event.preventDefault();
   }
-}
 
-// The series of each entry, that with the title first. One without a title belongs to the last
-// entry before it that has its colour, or else to the first one after it.
-export function entries(series) {
-  const titled = [...series.keys()].filter((index) => series[index].title.length > 0);
-  const groups = new Map(titled.map((index) => [index, [index]]));
-  series.forEach((one, index) => {
-    if (one.title.length > 0) return;
-    const same = titled.filter((other) => series[other].colour === one.colour);
-    const owner = same.filter((other) => other < index).at(-1) ?? same[0];
-    groups.get(owner)?.push(index);
-  });
-  return [...groups.values()];
+  step(along, across) {
+    const curves = this.canvas.data.flatMap(({hoverinfo, visible, x}, curve) =>
+      hoverinfo === "text" && visible !== "legendonly" && x.length > 0 ? [curve] : []);
+    if (curves.length === 0) return;
+    const place = Math.max(0, curves.indexOf(this.at?.curve));
+    const curve = curves[(place + across + curves.length) % curves.length];
+    const {text} = this.canvas.data[curve];
+    const point = this.at ? Math.min(text.length - 1, Math.max(0, this.at.point + along)) : 0;
+    this.at = {curve, point};
+    Plotly.Fx.hover(this.canvas, [{curveNumber: curve, pointNumber: point}]);
+    this.status.textContent = element("p", {innerHTML: text[point].replaceAll("<br>", ", ")}).textContent;
+  }
 }
 
 // Appends a plot for each of {name, chart}.

@@ -1,18 +1,157 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The packing viewer: one packing or two side by side, with one set of controls for both.
-import {controls} from "./controls.js";
-import {addOptions} from "./dom.js";
-import {Pane} from "./pane.js";
-import {saveBlob} from "./save.js";
-import {onThemeChange, pageColours} from "./theme.js";
+// The packing viewer: one packing or two side by side, with one set of controls for both. The template
+// elements viewer-parts and pane-parts (page.html) have its parts, found by `data-part`.
+import {addOptions, coloursOf, element, onThemeChange, plain, save, written} from "./dom.js";
+import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
+import {Plot} from "./plot.js";
+import {PackingScene} from "./scene.js";
 
+const wallColour = [107, 116, 128];
 const looks = ["colour", "profile", "disordered", "walls", "box", "cut-axis", "cut-at", "cut-side"];
 
+function partsIn(host, template) {
+  host.append(document.getElementById(template).content.cloneNode(true));
+  return (name) => host.querySelector(`[data-part="${name}"]`);
+}
+
+// Where the clip plane is and which grains it hides. `side` is -1 for its other side.
+function cutOf({axis, at, side}, {width, depth, bottom, top}) {
+  const ends = {x: [-1, width + 1], y: [bottom - 1, top + 1], z: [-0.5, depth + 0.5]}[axis];
+  if (!ends) return {place: null, hides: () => false};
+  const place = ends[0] + (ends[1] - ends[0]) * at;
+  const k = "xyz".indexOf(axis);
+  return {place, hides: (centre) => side * centre[k] > side * place};
+}
+
+// One packing: its picture, the key of its colours, its values.
+class Pane {
+  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns or zooms it.
+  constructor(parent, turned) {
+    this.host = element("div", {className: "pane"});
+    parent.append(this.host);
+    this.part = partsIn(this.host, "pane-parts");
+    this.canvas = this.part("canvas");
+    this.scene = new PackingScene(this.canvas, turned);
+    this.canvas.addEventListener("pointermove", (event) => event.buttons === 0 && this.point(event));
+    this.canvas.addEventListener("pointerdown", (event) => this.point(event));
+    this.canvas.addEventListener("pointerleave", () => this.tell(-1));
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => this.scene.fit()).observe(this.canvas);
+  }
+
+  show(packing) {
+    this.packing = packing;
+    this.stored = null;
+  }
+
+  // The checkpoint at this cycle, or the last one before it.
+  showCycle(cycle, choices) {
+    const {grains, wall_grains: wallGrains, frames} = this.packing;
+    const stored = frames.findLast((frame) => frame.cycle <= cycle) ?? frames[0];
+    this.scene.setCell(stored.cell, this.stored !== null);
+    this.stored = stored;
+    this.frame = decodeFrame(stored, grains, wallGrains);
+    const facts = [plain(stored.name), plain(`N = ${grains}`), ...stored.facts];
+    this.part("facts").replaceChildren(...facts.map((fact) => element("span", {}, ...written(fact))));
+    this.part("checkpoint").textContent = stored.sha256.slice(0, 12);
+    this.part("checkpoint").title = stored.sha256;
+    this.apply(choices);
+    this.tell(-1);
+  }
+
+  apply(choices) {
+    const {frame, stored, packing: {grains}} = this;
+    const look = lookOf(frame, choices.colour);
+    const {hides} = cutOf(choices, stored.cell);
+    const count = frame.position.length / 3;
+    const [spheres, colours] = [new Float32Array(4 * count), new Uint8Array(3 * count)];
+    for (let i = 0; i < count; ++i) {
+      const place = frame.position.subarray(3 * i, 3 * i + 3);
+      // Side walls extend beyond the moving wall; that part is not shown.
+      const walled = choices.walls && place[1] > stored.cell.bottom - 1 && place[1] < stored.cell.top + 1;
+      const radius = i >= grains ? 0.5 * walled : frame.structure[i] === 0 ? choices.disordered : 0.5;
+      spheres.set([...place, hides(place) ? 0 : radius], 4 * i);
+      colours.set(i < grains ? look.paint(i) : wallColour, 3 * i);
+    }
+    this.scene.frameLines.visible = choices.box;
+    this.scene.setSpheres(spheres, colours);
+    this.showKey(look);
+    this.showProfile(choices.profile, choices.profileName);
+  }
+
+  showKey({entries, bar}) {
+    const css = (colour) => `rgb(${colour.join()})`;
+    const coloured = (className, background) => {
+      const mark = element("i", {className});
+      mark.style.background = background;
+      return mark;
+    };
+    if (bar) {
+      const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => css(viridis(t)));
+      this.part("key").replaceChildren(element("span", {}, ...written(bar.label)),
+        element("span", {}, bar.low, coloured("strip", `linear-gradient(to right, ${stops.join()})`), bar.high));
+      return;
+    }
+    this.part("key").replaceChildren(...entries.map(({colour, text}) =>
+      element("span", {}, coloured("dot", css(colour)), text)));
+  }
+
+  // A measure of layers against their height, with the same range for all checkpoints of the run.
+  showProfile(key, name) {
+    const host = this.part("profile-plot");
+    const {height} = this.stored.profiles;
+    const values = key === "none" ? [] : this.packing.frames.flatMap(({profiles}) => profiles[key]).filter(Number.isFinite);
+    host.hidden = values.length === 0;
+    if (host.hidden) return;
+    const chart = {
+      x: {label: plain(name), unit: [], low: Math.min(...values), high: Math.max(...values)},
+      y: {label: plain("height"), unit: plain("d"), low: 0, high: null}, title: [], lines: [],
+      series: [{
+        title: [], name: [], colour: "#d55e00", point: 7, line: true, shift: 0,
+        points: this.stored.profiles[key].map((value, layer) => [value, height[layer]]).filter(([x]) => x !== null)
+      }]
+    };
+    if (this.profile) this.profile.show(chart);
+    else this.profile = new Plot(host, chart, "profile");
+  }
+
+  key(event) {
+    const turns = {ArrowLeft: [0.12, 0], ArrowRight: [-0.12, 0], ArrowUp: [0, 0.12], ArrowDown: [0, -0.12]};
+    if (event.key in turns) this.scene.turn(...turns[event.key]);
+    else if (event.key === "+" || event.key === "=") this.scene.nearer(1.2);
+    else if (event.key === "-") this.scene.nearer(1 / 1.2);
+    else if (event.key === "0") this.scene.resetView();
+    else return;
+    event.preventDefault();
+  }
+
+  point(event) {
+    const bounds = this.canvas.getBoundingClientRect();
+    if (this.frame) this.tell(this.scene.pick(event.clientX - bounds.left, event.clientY - bounds.top));
+  }
+
+  tell(i) {
+    const {frame, packing} = this;
+    const readout = this.part("grain");
+    readout.textContent = "Point at a grain to read its values.";
+    if (i < 0) return;
+    const place = `at (${[0, 1, 2].map((axis) => frame.position[3 * i + axis].toFixed(2)).join(", ")}) d`;
+    readout.textContent = `wall grain ${place}`;
+    if (i >= packing.grains) return;
+    const size = crystalliteSizes(frame.crystallite).get(frame.crystallite[i]);
+    readout.replaceChildren(...written([
+      [`grain ${i}: ${structureNames[frame.structure[i]]}, `, ""], ["ϕ", "i"], ["local", "sub"],
+      [` = ${frame.phi[i].toFixed(4)}, `, ""], ["q", "i"], ["6", "sub"], [` = ${frame.q6[i].toFixed(4)}, ` +
+        `${size ? `in a crystallite of ${size}` : "in no crystallite"}` +
+        `${frame.interior[i] ? "" : ", near a wall"}, ${place}`, ""]
+    ]));
+  }
+}
+
 export class Viewer {
-  constructor(host, packings, count = 1) {
+  constructor(host, packings, count) {
     this.packings = packings;
-    host.innerHTML = controls;
-    this.part = (name) => host.querySelector(`[data-part="${name}"]`);
+    this.part = partsIn(host, "viewer-parts");
     this.panes = [];
     try {
       for (let k = 0; k < count; ++k) {
@@ -26,59 +165,46 @@ export class Viewer {
     }
     this.part("run").parentElement.hidden = count > 1;
     addOptions(this.part("run"), packings, ({experiment}) => experiment, ({label}) => label);
-    this.connect();
-    onThemeChange(() => this.setColours());
-    this.setColours();
-    if (count === 1) this.showRuns([packings[0]]);
-  }
-
-  connect() {
     const on = (name, event, action) => this.part(name).addEventListener(event, action);
-    on("run", "change", () => this.showRuns([this.packings[Number(this.part("run").value)]]));
+    on("run", "change", () => this.showRuns([packings[Number(this.part("run").value)]]));
     on("cycle", "input", () => this.showFrame(Number(this.part("cycle").value)));
-    on("play", "click", () => this.play(!this.playing));
+    on("play", "click", () => this.play(!this.timer));
     for (const name of looks) on(name, "input", () => this.apply());
     on("reset", "click", () => this.shown().forEach((pane) => pane.scene.resetView()));
-    on("save", "click", () => this.shown().forEach((pane) => this.savePicture(pane)));
+    on("save", "click", () => this.shown().forEach((pane) => {
+      pane.scene.drawNow();  // what was drawn is lost once the browser has shown it
+      pane.canvas.toBlob((blob) => save(`${pane.packing.id.slice(0, 8)}.png`, blob));
+    }));
+    const recolour = () => this.panes.forEach((pane) => pane.scene.setColours(coloursOf(pane.part("stage"))));
+    onThemeChange(recolour);
+    recolour();
+    if (count === 1) this.showRuns([packings[0]]);
   }
 
   shown() {
     return this.panes.filter((pane) => !pane.host.hidden);
   }
 
-  setColours() {
-    for (const pane of this.panes) pane.scene.setColours(pageColours(pane.part("stage")));
-  }
-
   // One packing for each pane; a pane without one is not shown.
   showRuns(packings) {
-    if (this.panes.length === 0) return;
     this.play(false);
     this.panes.forEach((pane, k) => {
       pane.host.hidden = !packings[k];
       if (packings[k]) pane.show(packings[k]);
     });
     const all = packings.filter(Boolean);
-    if (all.length === 0) return;
+    if (this.panes.length === 0 || all.length === 0) return;
     this.part("run").value = String(this.packings.indexOf(all[0]));
-    this.cycles = [...new Set(all.flatMap((one) => one.frames.map((frame) => frame.cycle)))]
-      .sort((a, b) => a - b);
+    this.cycles = [...new Set(all.flatMap((one) => one.frames.map((frame) => frame.cycle)))].sort((a, b) => a - b);
     const slider = this.part("cycle");
     slider.max = String(this.cycles.length - 1);
-    slider.disabled = this.cycles.length < 2;
-    this.part("play").disabled = slider.disabled;
+    slider.disabled = this.part("play").disabled = this.cycles.length < 2;
     this.showFrame(this.cycles.length - 1);
   }
 
-  showRunCalled(id) {
-    const packing = this.packings.find((one) => one.id === id);
-    if (packing) this.showRuns([packing]);
-  }
-
   showFrame(index) {
-    const choices = this.choices();
     const shown = this.shown();
-    for (const pane of shown) pane.showFrame(pane.frameAt(this.cycles[index]), choices);
+    for (const pane of shown) pane.showCycle(this.cycles[index], this.choices());
     const name = shown.length > 1 ? `cycle ${this.cycles[index]}` : shown[0].stored.name;
     this.part("cycle").value = String(index);
     this.part("cycle").setAttribute("aria-valuetext", name);
@@ -87,11 +213,12 @@ export class Viewer {
   }
 
   choices() {
+    const value = (name) => this.part(name).value;
     return {
-      colour: this.part("colour").value, profile: this.part("profile").value, disordered: this.part("disordered").value,
-      walls: this.part("walls").checked, box: this.part("box").checked,
-      axis: this.part("cut-axis").value, at: Number(this.part("cut-at").value) / 1000,
-      otherSide: this.part("cut-side").checked
+      colour: value("colour"), profile: value("profile"),
+      profileName: this.part("profile").selectedOptions[0].textContent, disordered: Number(value("disordered")),
+      walls: this.part("walls").checked, box: this.part("box").checked, axis: value("cut-axis"),
+      at: Number(value("cut-at")) / 1000, side: this.part("cut-side").checked ? -1 : 1
     };
   }
 
@@ -102,30 +229,20 @@ export class Viewer {
 
   tellCut() {
     const choices = this.choices();
-    const none = choices.axis === "none";
-    for (const name of ["cut-at", "cut-side"]) this.part(name).disabled = none;
-    this.part("cut-text").textContent =
-      none ? "" : `${choices.axis} = ${this.shown()[0].placeOfCut(choices).toFixed(1)} d`;
+    const {place} = cutOf(choices, this.shown()[0].stored.cell);
+    for (const name of ["cut-at", "cut-side"]) this.part(name).disabled = place === null;
+    this.part("cut-text").textContent = place === null ? "" : `${choices.axis} = ${place.toFixed(1)} d`;
   }
 
   // The other pane is seen from the same side.
   follow(from) {
-    for (const pane of this.shown()) if (pane !== from) pane.scene.lookAs(from.scene);
+    for (const pane of this.shown()) if (pane !== from && pane.stored) pane.scene.lookAs(from.scene);
   }
 
   play(wanted) {
     clearInterval(this.timer);
-    this.playing = wanted;
     this.part("play").textContent = wanted ? "Pause" : "Play";
-    if (!wanted) return;
-    this.timer = setInterval(() => {
-      const next = Number(this.part("cycle").value) + 1;
-      this.showFrame(next < this.cycles.length ? next : 0);
-    }, 350);
-  }
-
-  savePicture(pane) {
-    pane.scene.drawNow();  // what was drawn is lost once the browser has shown it
-    pane.canvas.toBlob((blob) => saveBlob(`${pane.packing.id.slice(0, 8)}.png`, blob));
+    this.timer = wanted && setInterval(() =>
+      this.showFrame((Number(this.part("cycle").value) + 1) % this.cycles.length), 350);
   }
 }
