@@ -260,7 +260,7 @@ void fields(Manifest& manifest, const auto& visit) {
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
   visit(manifest.labels,
         {.name = "labels",
-         .doc = "names of variants in drawings, captions, progress, `status` and `table`",
+         .doc = "names of variants in drawings, captions, claims, progress, `status` and `table`",
          .example = "{\"fluid=still\": fluid at rest}",
          .wanted = "a map of names"});
   visit(manifest.plots, {.name = "plots",
