@@ -68,7 +68,7 @@ struct Parser {
 }  // namespace
 
 bool is_expression(std::string_view text) {
-  return !std::ranges::all_of(text, continues_name) || text.empty() || is_digit(text[0]);
+  return text.find_first_of("+-*/^()") != text.npos || (!text.empty() && is_digit(text[0]));
 }
 
 std::vector<std::string> names_in(std::string_view text) {

@@ -10,7 +10,7 @@
 
 namespace shearcell {
 
-/// Whether the text is more than a name.
+/// Whether the text is meant as more than a name: it has an operator or a number.
 bool is_expression(std::string_view text);
 
 /// The names in an expression, each once, in order. Of a name alone, that name.
