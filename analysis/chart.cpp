@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "analysis/error.hpp"
@@ -234,7 +235,7 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
   bool bars = false, bands = false, own_errors = false;
-  std::vector<std::string> lines, notes;
+  std::vector<std::string> lines, notes, sources;
   std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
@@ -259,6 +260,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
       }
     }
     add_once(notes, chart.note);
+    add_once(sources, chart.sources);
     if (lost > 0)
       add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
@@ -274,6 +276,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                                       : "Bands",
                         own_errors ? ", except where stated" : "");
   }
+  std::ranges::move(sources, std::back_inserter(notes));
   for (const std::string& note : notes) text += " " + note + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
   return text;

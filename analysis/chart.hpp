@@ -125,10 +125,11 @@ struct Chart {
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> lines = {};
-  Text title = {};          ///< above the frame; figures have none
-  bool wide = false;        ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
-  std::string letter = {};  ///< of the panel: "a"
-  std::string note = {};    ///< a sentence of the caption, without its full stop
+  Text title = {};           ///< above the frame; figures have none
+  bool wide = false;         ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
+  std::string letter = {};   ///< of the panel: "a"
+  std::string note = {};     ///< a sentence of the caption, without its full stop
+  std::string sources = {};  ///< of published numbers; likewise
   /// What the bars and bands are, for the caption, where they are not standard errors over runs.
   std::string errors = {};
 };

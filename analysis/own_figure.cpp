@@ -333,9 +333,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
     chart.series.push_back(std::move(series));
     sources.push_back(fmt::format("{}: {}", plain_text(text_with_formulas(one.label)), one.source));
   }
-  if (sources.empty()) return;
-  chart.note +=
-      fmt::format("{}Published: {}", chart.note.empty() ? "" : ". ", fmt::join(sources, "; "));
+  if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }
 
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,

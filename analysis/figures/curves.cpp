@@ -197,6 +197,19 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
     if (!stated.colour.empty()) curve.style.colour = stated.colour;
     if (stated.point >= 0) curve.style.point = stated.point;
   }
+  // A colour that a manifest states is of that curve alone.
+  std::set<std::string> taken;
+  for (const CurveStyle& style : styles) taken.insert(style.of_manifest ? style.colour : "");
+  for (auto& [rank, curve] : ranked) {
+    if (rank < styles.size() && !styles[rank].colour.empty()) continue;
+    if (!taken.contains(curve.style.colour)) continue;
+    const auto free = std::ranges::find_if(safe_colours, [&](const char* colour) {
+      return !taken.contains(colour) && std::ranges::none_of(ranked, [&](const auto& other) {
+        return other.second.style.colour == colour;
+      });
+    });
+    if (free != safe_colours.end()) curve.style.colour = *free;
+  }
   std::ranges::stable_sort(ranked, {}, [&](const auto& entry) {
     return std::pair(entry.first, others.place(*entry.second.runs.front()));
   });

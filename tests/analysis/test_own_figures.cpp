@@ -174,7 +174,7 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
       .y = "phi",
       .x = "period_s",
       .by = "amplitude_rad",
-      .series = {{.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "green"},
+      .series = {{.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "vermilion"},
                  {.where = {{"amplitude_rad", 0.02}},
                   .colour = "#123456",
                   .marker = Marker::open_diamond}}};
@@ -182,9 +182,10 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
   EXPECT_EQ(titles_of(table),
             (std::vector<std::string>{"large A", "amplitude_rad=0.02", "amplitude_rad=0.04"}))
       << "in the order of the series, then the others";
-  EXPECT_EQ(table.chart.series[0].colour, "#009e73");
+  EXPECT_EQ(table.chart.series[0].colour, "#d55e00");
   EXPECT_EQ(table.chart.series[1].colour, "#123456");
   EXPECT_EQ(table.chart.series[1].point, 12);
+  EXPECT_EQ(table.chart.series[2].colour, "#0072b2") << "vermilion by its rank, which is taken";
   PlotSpec traces = plot;
   traces.show = Show::traces;
   traces.x = "cycle";
@@ -215,6 +216,9 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
   }
   const std::vector<FigureTable> tables = {table};
   EXPECT_TRUE(has(caption_of("A title", tables), " Published: Jin: S C; Smith: a book."));
+  const std::vector<FigureTable> twice = {table, table};
+  const std::string caption = caption_of("A title", twice);
+  EXPECT_EQ(caption.find("Published"), caption.rfind("Published")) << caption;
   EXPECT_EQ(drawing_of({.name = "own",
                         .y = "phi",
                         .published = {{.label = "exact", .source = "S C", .value = 0.05}}})
