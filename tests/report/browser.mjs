@@ -108,6 +108,14 @@ const checks = {
       headings: [...document.querySelectorAll("h2")].map((one) => one.textContent),
       spoiled: window.spoiled === true
     }));
+    const plot = page.locator('[data-chart="hostile.hostile_labels"]');
+    await plot.scrollIntoViewIfNeeded();
+    await plot.locator(".legendtext").first().waitFor();
+    const names = await plot.locator(".legendtext").allTextContents();
+    expect(names.join() === "<a href='https://example.org'>%{x}</a>,<img src=x onerror='spoiled=true'>",
+      `hostile: the legend is ${names}`);
+    expect(await plot.locator("a, img").count() === 0 && !(await page.evaluate(() => window.spoiled)),
+      "hostile: a label became markup");
     expect(!found.spoiled && found.images === 0 && found.scripts === 2,
       `hostile: ${found.images} images, ${found.scripts} scripts`);
     expect(found.headings.some((text) => text.includes("</script><img src=x")),
@@ -381,6 +389,21 @@ const checks = {
     expect(wide <= 375, `phone: it is ${wide} pixels wide: ${culprits.join(" | ")}`);
     await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = false)));
     await page.evaluate(() => document.querySelector(".figure").scrollIntoView());
+    // A finger scrolls the page over a plot as elsewhere, and a tap shows values.
+    const canvas = page.locator(".plot .canvas").first();
+    const touches = await page.context().newCDPSession(page);
+    const {x, y} = await canvas.locator(".nsewdrag").boundingBox();
+    const touch = (type, ...points) => touches.send("Input.dispatchTouchEvent", {type, touchPoints: points});
+    const before = await page.evaluate(() => scrollY);
+    await touch("touchStart", {x: x + 60, y: y + 100});
+    for (let k = 1; k <= 8; ++k) await touch("touchMove", {x: x + 60, y: y + 100 - 10 * k});
+    await touch("touchEnd");
+    await page.waitForTimeout(500);
+    expect(await page.evaluate(() => scrollY) > before + 30, "phone: a finger does not scroll over a plot");
+    const point = await canvas.locator(".point").first().boundingBox();
+    await page.touchscreen.tap(point.x + point.width / 2, point.y + point.height / 2);
+    await page.waitForTimeout(1000);
+    expect(/=/.test(await canvas.locator(".hoverlayer").textContent()), "phone: a tap shows no values");
     await page.screenshot({path: join(shots, "phone.png")});
   }
 };

@@ -18,7 +18,11 @@ experiment: hostile
 question: "</script><img src=x onerror='spoiled=true'>&lt;!-- <script>spoiled=true</script>"
 figures: [S2]
 base: {grains: 300, period_s: 1, steps_per_cycle: 10000, settle_time_step_s: 1.0e-4, cycles: 1}
+sweep: {grid: {fluid: [cell, still]}}
+labels: {"fluid=still": "<img src=x onerror='spoiled=true'>", "fluid=cell": "<a href='https://example.org'>%{x}</a>"}
+plots: [{name: hostile_labels, y: phi, x: cycle}]
+scales: {smoke: {}}
 MANIFEST
-"$program" run "$hostile" --store "$folder/store" >/dev/null 2>>"$folder/run.log"
+"$program" run "$hostile" --scale smoke --store "$folder/store" >/dev/null 2>>"$folder/run.log"
 
 "$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"

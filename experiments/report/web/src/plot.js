@@ -40,13 +40,15 @@ function valuesAt(chart, one, [x, y, xError, yError]) {
 
 // Entries of the legend are broken at spaces to fit the width.
 const lettersIn = (width) => Math.max(12, Math.floor((width - 60) / 7.4));
-const broken = (label, letters) =>
-  markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){12,${letters}}) `, "g"), "$1<br>");
+const broken = (label, letters) => plainText(label).length <= letters ? markup(label)
+  : markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){12,${letters}}) `, "g"), "$1<br>");
 
 function tracesOf(chart, width, dark) {
   return chart.series.flatMap((one, index) => {
     const color = dark ? onDark(one.colour) : one.colour;
-    const [x, y, xError, yError] = [0, 1, 2, 3].map((k) => one.points.map((point) => point[k]));
+    // Plotly leaves a series without points out of the legend.
+    const points = one.points.length > 0 ? one.points : [[null, null, null, null]];
+    const [x, y, xError, yError] = [0, 1, 2, 3].map((k) => points.map((point) => point[k]));
     const legendgroup = String(ownerOf(chart.series, index));
     const bars = (array, hidden) =>
       ({array, color, thickness: 1, width: 3, visible: !hidden && array.some((error) => error)});
@@ -89,7 +91,7 @@ function axisOf(axis, values, color) {
 function layoutOf(chart, width, color) {
   const titles = chart.series.map(({title}) => plainText(title)).filter(Boolean);
   const letters = Math.max(0, ...titles.map((title) => title.length));
-  const entry = 7 * Math.min(letters, lettersIn(width));
+  const entry = 7.4 * Math.min(letters, lettersIn(width));
   const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - 20) / (entry + 45))));
   const key = 20 * rows * Math.ceil(letters / lettersIn(width)) + 6;
   const points = chart.series.flatMap((one) => one.points);
@@ -190,8 +192,8 @@ export class Plot {
   }
 
   step(along, across) {
-    const curves = this.canvas.data.flatMap(({hoverinfo, visible, x}, curve) =>
-      hoverinfo === "text" && visible !== "legendonly" && x.length > 0 ? [curve] : []);
+    const curves = this.canvas.data.flatMap(({hoverinfo, visible, text}, curve) =>
+      hoverinfo === "text" && visible !== "legendonly" && text.length > 0 ? [curve] : []);
     if (curves.length === 0) return;
     const place = Math.max(0, curves.indexOf(this.at?.curve));
     const curve = curves[(place + across + curves.length) % curves.length];
