@@ -10,20 +10,11 @@
 namespace shearcell::cli {
 namespace {
 
-// A value for JSON. With a heading it is also a column of the printed table: as `text` if given,
-// else the value itself.
-struct Fact {
-  const char* key;
-  nlohmann::json value;
-  const char* heading = "";
-  std::string text = {};
-};
-
-std::vector<Fact> facts(const bench::SpeedResult& r) {
+Facts facts(const bench::SpeedResult& r) {
   const auto digits = [](double value, int count) { return fmt::format("{:.{}f}", value, count); };
   const auto percent = [&](double share) { return digits(100 * share, 1); };
   return {{"N", r.grains, "N"},
-          {"simd", r.simd, "SIMD", r.simd},
+          {"simd", r.simd, "SIMD"},
           {"threads", r.threads, "thr"},
           {"million_particle_steps_per_second", r.median_rate, "M/s", digits(r.median_rate, 1)},
           {"slowest", r.slowest_rate, "range",
@@ -40,27 +31,6 @@ std::vector<Fact> facts(const bench::SpeedResult& r) {
           {"steps_per_prune", r.steps_per_prune},
           {"multiplications_per_particle_step", r.multiplications},
           {"state_hash", r.state_hash}};
-}
-
-void print_speed(const std::vector<bench::SpeedResult>& results, std::size_t repeats) {
-  Row header;
-  std::vector<Row> rows;
-  for (const bench::SpeedResult& result : results) {
-    header.clear();
-    rows.emplace_back();
-    for (const Fact& fact : facts(result)) {
-      if (*fact.heading == '\0') continue;
-      header.emplace_back(fact.heading);
-      rows.back().push_back(fact.text.empty() ? fact.value.dump() : fact.text);
-    }
-  }
-  print_table(header, rows);
-  fmt::print(
-      "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
-      "never "
-      "idle.\nShares of one thread's time; search: building the outer neighbour list, prune: the "
-      "inner one.\n",
-      repeats);
 }
 
 void add_speed(CLI::App& bench, Context& context) {
@@ -85,13 +55,13 @@ void add_speed(CLI::App& bench, Context& context) {
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
   command->callback([options, &context] {
     options->report = [](const std::string& what) { print_stderr("{}\n", what); };
-    const std::vector<bench::SpeedResult> results = bench::measure_speed(*options);
-    if (!context.json) return print_speed(results, options->repeats);
-    print_json({{"sizes", json_list(results, [](const bench::SpeedResult& result) {
-                   nlohmann::json one;
-                   for (const Fact& fact : facts(result)) one[fact.key] = fact.value;
-                   return one;
-                 })}});
+    print_list("sizes", rows_of(bench::measure_speed(*options), facts), context);
+    if (context.json) return;
+    fmt::print(
+        "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
+        "never idle.\nShares of one thread's time; search: building the outer neighbour list, "
+        "prune: the inner one.\n",
+        options->repeats);
   });
 }
 

@@ -54,7 +54,7 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 // Each adds a subcommand to the parser; add_run also adds `resume`.
 using AddCommand = void(CLI::App& app, Context& context);
 AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
-    add_regenerate, add_submit, add_work, add_merge, add_table, add_figures, add_report, add_export,
+    add_regenerate, add_submit, add_merge, add_table, add_figures, add_report, add_export,
     add_bench, add_new, add_doctor, add_manual;
 
 /// Prints the result of a campaign and sets the exit code.
@@ -141,6 +141,32 @@ void print_table(const Row& header, const auto& items, const auto& row) {
   for (const auto& item : items) rows.push_back(row(item));
   print_table(header, rows);
 }
+
+/// One value of a result: a key of its JSON and, with a heading, a cell of its table.
+struct Fact {
+  const char* key;  ///< "" for a cell alone
+  nlohmann::json value;
+  const char* heading = nullptr;         ///< of the column; null for JSON alone
+  std::optional<std::string> text = {};  ///< of the cell; none: the value itself
+};
+using Facts = std::vector<Fact>;  ///< of one row
+
+/// The facts as one JSON object.
+nlohmann::json to_json(const Facts& facts);
+nlohmann::json to_json(const std::vector<Facts>& rows);
+
+/// Prints a row for each; all have the same headings.
+void print_table(const std::vector<Facts>& rows);
+
+/// facts(item) for each item.
+std::vector<Facts> rows_of(const auto& items, const auto& facts) {
+  std::vector<Facts> rows;
+  for (const auto& item : items) rows.push_back(facts(item));
+  return rows;
+}
+
+/// Prints {"NAME": [...]} or a table.
+void print_list(const char* name, const std::vector<Facts>& rows, const Context& context);
 
 /// "12.3 kB".
 std::string format_bytes(double bytes);

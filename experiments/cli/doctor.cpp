@@ -142,15 +142,14 @@ void doctor(Context& context, bool with_speed) {
   const std::vector<Check> findings = examine(context.store, with_speed);
   const auto no_store = [](const Check& f) { return f.what == "writing" && f.state == "missing"; };
   if (std::ranges::any_of(findings, no_store)) fail(context, kOtherError);
-  if (context.json) {
-    const auto facts = [](const Check& f) -> nlohmann::json {
-      return {{"what", f.what}, {"found", f.found}, {"state", f.state}, {"advice", f.advice}};
-    };
-    return print_json({{"findings", json_list(findings, facts)}});
-  }
-  print_table({"what", "", "found"}, findings, [](const Check& f) {
-    return Row{f.what, f.state, f.found};
-  });
+  const auto facts = [](const Check& f) -> Facts {
+    return {{"what", f.what, "what"},
+            {"state", f.state, ""},
+            {"found", f.found, "found"},
+            {"advice", f.advice}};
+  };
+  print_list("findings", rows_of(findings, facts), context);
+  if (context.json) return;
   fmt::print("\n");
   for (const Check& f : findings) {
     if (!f.advice.empty()) fmt::print("{}: {}\n", f.what, f.advice);

@@ -4,23 +4,26 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
-#include "experiments/figures/cycle_range.hpp"
 #include "experiments/figures/experiment_part.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/asks.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/ro_crate.hpp"
 #include "provenance/words.hpp"
 
@@ -66,6 +69,38 @@ const std::array kFormats = {
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
 
+struct CycleRange {
+  double first = 0;
+  double last = std::numeric_limits<double>::infinity();
+  double every = 0;  ///< 0: all checkpoints
+
+  /// `near` is half a time step [cycles], so that 3.3 selects the nearest step.
+  bool holds(double cycle, double near) const {
+    return cycle >= first - near && cycle <= last + near &&
+           (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
+  }
+};
+
+/// Reads --cycles. Throws std::invalid_argument.
+CycleRange parse_cycles(const std::string& text) {
+  CycleRange range;
+  std::istringstream parts(text);
+  double* const values[] = {&range.first, &range.last, &range.every};
+  std::size_t k = 0;
+  for (std::string part; std::getline(parts, part, ':'); ++k) {
+    if (part.empty() && k < 3) continue;
+    const auto value = read_number<double>(part);
+    const bool fits = value && std::isfinite(*value) && *value >= (k == 2 ? 1e-9 : 0);
+    if (k >= 3 || !fits || (k == 1 && *value < range.first)) {
+      throw std::invalid_argument(
+          "--cycles takes A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
+    }
+    *values[k] = *value;
+  }
+  if (k == 1 && text.find(':') == std::string::npos) range.last = range.first;
+  return range;
+}
+
 struct WantedRun : SelectedRun {
   std::vector<Membership> places = {};  // those selected; empty if the run was named by its id
 };
@@ -90,9 +125,8 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
                                      const ExportOptions& options) {
   const RunRecord& run = selected.run;
   const std::string& cycles = options.cycles;
-  const CycleRange range = parse_cycles(cycles, "--cycles");
+  const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
-  // Half a time step, so that 3.3 selects the nearest step.
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
@@ -195,7 +229,7 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
 
 /// The named runs, or else the selected newest_runs(), each once.
 std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) {
-  parse_cycles(options.cycles, "--cycles");  // throws here once, not for each run
+  parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<WantedRun> runs;
   std::map<std::string, std::size_t> known;  // index in `runs`, by id
   const auto add = [&](const SelectedRun& run) -> WantedRun& {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "provenance/json_text.hpp"
@@ -11,8 +12,7 @@ namespace shearcell::cli {
 namespace {
 
 // The most useful fact of an event.
-std::string gist(const Event& event) {
-  const nlohmann::json body = event.body();
+std::string gist(const nlohmann::json& body) {
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
     if (body.contains(key)) return fmt::format("{} {:.60}", key, short_text(body[key]));
   }
@@ -22,20 +22,18 @@ std::string gist(const Event& event) {
 void print_log(const std::string& run, Context& context) {
   const Store store(context.store, Access::read);
   const std::string stream = run.empty() ? "" : run_stream(store.find_run(run).id);
-  const std::vector<Event> events = store.events(stream);
-  if (context.json) {
-    const auto facts = [](const Event& event) -> nlohmann::json {
-      return {{"seq", event.seq},   {"stream", event.stream},           {"version", event.version},
-              {"type", event.type}, {"recorded_at", event.recorded_at}, {"payload", event.body()},
-              {"hash", event.hash}};
-    };
-    return print_json({{"events", json_list(events, facts)}});
-  }
-  print_table({"seq", "UTC", "stream", "event", ""}, events, [](const Event& event) -> Row {
-    const auto slash = event.stream.find('/');
-    return {std::to_string(event.seq), event.recorded_at.substr(0, 19),
-            event.stream.substr(0, slash + 9), event.type, gist(event)};
-  });
+  const auto facts = [](const Event& event) -> Facts {
+    nlohmann::json body = event.body();
+    std::string most_useful = gist(body);
+    return {{"seq", event.seq, "seq"},
+            {"recorded_at", event.recorded_at, "UTC", event.recorded_at.substr(0, 19)},
+            {"stream", event.stream, "stream", event.stream.substr(0, event.stream.find('/') + 9)},
+            {"version", event.version},
+            {"type", event.type, "event"},
+            {"payload", std::move(body), "", std::move(most_useful)},
+            {"hash", event.hash}};
+  };
+  print_list("events", rows_of(store.events(stream), facts), context);
 }
 
 }  // namespace

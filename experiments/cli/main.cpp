@@ -131,10 +131,9 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
   app.require_subcommand(0, 1);  // so that the error names a word that is no subcommand
-  for (const auto add :
-       {add_plan,   add_run,        add_status, add_log,  add_show,   add_verify, add_rebuild,
-        add_prune,  add_regenerate, add_submit, add_work, add_merge,  add_table,  add_figures,
-        add_report, add_export,     add_bench,  add_new,  add_doctor, add_manual}) {
+  for (const auto add : {add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild,
+                         add_prune, add_regenerate, add_submit, add_merge, add_table, add_figures,
+                         add_report, add_export, add_bench, add_new, add_doctor, add_manual}) {
     add(app, context);
   }
   try {

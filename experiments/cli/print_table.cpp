@@ -8,6 +8,7 @@
 #include <map>
 
 #include "experiments/cli/command.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -98,6 +99,38 @@ void print_table(const Row& header, const std::vector<Row>& given) {
   };
   print_row(header, true);
   for (const auto& row : rows) print_row(row, false);
+}
+
+nlohmann::json to_json(const Facts& facts) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const Fact& fact : facts) {
+    if (*fact.key != '\0') all[fact.key] = fact.value;
+  }
+  return all;
+}
+
+nlohmann::json to_json(const std::vector<Facts>& rows) {
+  return json_list(rows, [](const Facts& row) { return to_json(row); });
+}
+
+void print_table(const std::vector<Facts>& rows) {
+  Row header;
+  std::vector<Row> cells;
+  for (const Facts& row : rows) {
+    header.clear();
+    cells.emplace_back();
+    for (const Fact& fact : row) {
+      if (fact.heading == nullptr) continue;
+      header.emplace_back(fact.heading);
+      cells.back().push_back(fact.text ? *fact.text : short_text(fact.value));
+    }
+  }
+  print_table(header, cells);
+}
+
+void print_list(const char* name, const std::vector<Facts>& rows, const Context& context) {
+  if (context.json) return print_json({{name, to_json(rows)}});
+  print_table(rows);
 }
 
 }  // namespace shearcell::cli

@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `run` and `resume`: compute what is not done yet.
+// `run` and `resume`: compute what is not done yet; `resume --task` is a task of a cluster job.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/cluster/submission.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
+#include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/words.hpp"
@@ -17,13 +26,23 @@
 namespace shearcell::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct RunOptions {
   std::vector<std::string> inputs;  ///< manifests, or runs of `resume`
   ExpandOptions expand;
   std::size_t jobs = 0;
   Parallel parallel;
   bool quiet = false;
+  bool leave_failed = false;
+  bool task = false;    ///< of a job that `submit` queued
+  std::string scratch;  ///< see unfit_scratch()
 };
+
+// Intervals of a task's progress report, and of saving from a node's own disk. A node that fails
+// loses what it computed since the last save.
+constexpr std::chrono::seconds kReportEvery{10};
+constexpr std::chrono::seconds kSaveEvery{300};
 
 void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
   if (options.parallel.ranks == 1 || lammps) return;
@@ -38,11 +57,10 @@ std::size_t workers(const RunOptions& options) {
   return std::max<std::size_t>(1, usable_cores() / each);
 }
 
-void compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
-             Context& context) {
-  catch_stop_signals();
+CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options) {
+  if (!options.task) catch_stop_signals();
   Progress progress(jobs.size(), options.quiet);
-  print_result(run_campaign(store, jobs, workers(options), progress, options.parallel), context);
+  return run_campaign(store, jobs, workers(options), progress, options.parallel);
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -59,7 +77,102 @@ void run(const RunOptions& options, Context& context) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }
-  compute(store, jobs, options, context);
+  print_result(compute(store, jobs, options), context);
+}
+
+// Removes the jobs that failed and those that depend on them. Returns whether there were any.
+bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
+  std::set<std::string> left;
+  std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
+    const bool leave = left.contains(job.parent) || store.run(job.id).state == RunState::failed;
+    if (leave) left.insert(job.id);
+    return leave;
+  });
+  return !left.empty();
+}
+
+// Computes what is unfinished. `failed_before`: whether failed runs were left out.
+CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before) {
+  std::vector<StageJob> jobs = unfinished(store, options.inputs);
+  if (options.leave_failed) failed_before = leave_failed(store, jobs);
+  const auto by_lammps = [&](const StageJob& job) {
+    return engine_of(store.run(job.id).resolved) == EngineKind::lammps;
+  };
+  require_lammps_for_ranks(options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
+  return compute(store, jobs, options);
+}
+
+void resume_runs(const RunOptions& options, Context& context) {
+  Store store(context.store, Access::write);
+  bool failed_before = false;
+  print_result(compute_rest(store, options, failed_before), context);
+  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
+}
+
+// For Repeated: an action that prints its error instead of throwing. It is repeated next time.
+std::function<void()> tried(std::function<void()> action, std::chrono::seconds interval) {
+  return [interval, action = std::move(action)] {
+    try {
+      action();
+    } catch (const std::exception& problem) {
+      print_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
+    }
+  };
+}
+
+// Where the task works: its own store, or with `scratch` a copy on the node's disk. It is named
+// after submission and task, so that a restarted task continues its copy.
+fs::path working_folder(const fs::path& task, const std::string& scratch) {
+  if (scratch.empty()) return task;
+  const Store sound(task, Access::write);  // throws if it cannot be used, before it is copied
+  const fs::path whole = fs::absolute(task);
+  const fs::path copy = scratch_here(scratch) / fmt::format("shearcell-{}-{}",
+                                                            whole.parent_path().filename().string(),
+                                                            whole.filename().string());
+  Store store(copy, Access::create);
+  merge_stores(store, {task});
+  return copy;
+}
+
+// One task of an array job, on the store that `submit` made for it.
+void resume_task(const RunOptions& options, Context& context) {
+  catch_batch_signals();
+  // Without a slash at the end, since the names of the files beside it are derived from it.
+  const fs::path task = (fs::path(context.store) / "").parent_path();
+  const fs::path folder = working_folder(task, options.scratch);
+  const bool is_copy = folder != task;
+  std::optional<Store> store(std::in_place, folder, Access::write);
+  std::set<std::string> runs;  // of the task, which alone are merged back
+  for (const RunRecord& run : store->runs()) runs.insert(run.id);
+  const auto report = [&] { write_task_report(task, store->runs()); };
+  const auto save = [&] {
+    Store own(task, Access::write);
+    merge_stores(own, {folder}, runs);
+  };
+  CampaignResult result;
+  bool failed_before = false;
+  {
+    report();
+    const Repeated reports(kReportEvery, tried(report, kReportEvery));
+    std::optional<Repeated> saves;
+    if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
+    result = compute_rest(*store, options, failed_before);
+  }
+  report();
+  if (is_copy) {
+    save();
+    store.reset();
+    fs::remove_all(folder);
+  }
+  print_result(result, context);
+  if (stop_requested()) {
+    // If work is left, the task continues later, whatever else happened.
+    const bool work_left = result.interrupted + result.blocked > 0;
+    if (work_left || context.exit_code == kInterrupted) {
+      context.exit_code = work_left ? kInterrupted : kDone;
+    }
+  }
+  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
@@ -139,16 +252,26 @@ and merge their stores.)");
   resume->add_option("run", resume_options->inputs,
                      "Run ids, or unique beginnings of them (default: all)");
   add_worker_options(*resume, *resume_options);
+  resume->add_flag("--leave-failed", resume_options->leave_failed, "Do not try failed runs again");
+  CLI::Option* task =
+      resume->add_flag("--task", resume_options->task,
+                       "As a task of a job that `submit` queued: --store names the task's store");
+  resume
+      ->add_option("--scratch", resume_options->scratch,
+                   "Work on a copy of the store in this folder, on the node's own disk; $NAME and "
+                   "${NAME} are variables of the node")
+      ->needs(task)
+      ->type_name("DIR");
   add_common_options(*resume, context);
-  resume->footer("Examples:\n  shearcell resume\n  shearcell resume 3f9a");
+  resume->footer(
+      R"(A task reports its progress to `status`. On SIGTERM or SIGUSR1 it writes checkpoints and ends with
+code 85; started again, it continues bit for bit. With --scratch it copies the store back every
+five minutes and at the end.
+Examples:
+  shearcell resume
+  shearcell resume 3f9a)");
   resume->callback([resume_options, &context] {
-    Store store(context.store, Access::write);
-    const std::vector<StageJob> jobs = unfinished(store, resume_options->inputs);
-    const auto by_lammps = [&](const StageJob& job) {
-      return engine_of(store.run(job.id).resolved) == EngineKind::lammps;
-    };
-    require_lammps_for_ranks(*resume_options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
-    compute(store, jobs, *resume_options, context);
+    (resume_options->task ? resume_task : resume_runs)(*resume_options, context);
   });
 }
 

@@ -29,32 +29,33 @@
 namespace shearcell::cli {
 namespace {
 
-nlohmann::json checkpoint_facts(const CheckpointRecord& c) {
+Facts checkpoint_facts(const CheckpointRecord& c) {
   return {{"run", c.run},
-          {"cycle", c.cycle},
-          {"step", c.step},
+          {"cycle", c.cycle, "cycle", fmt::format("{:g}", c.cycle)},
+          {"step", c.step, "step"},
           {"time_s", c.time_s},
           {"file", c.file},
-          {"size", c.size},
-          {"sha256", c.sha256},
-          {"state_hash", c.state_hash},
-          {"state", name_of(c.state)},
+          {"sha256", c.sha256, "checkpoint", c.sha256.substr(0, 12)},
+          {"state_hash", c.state_hash, "state", c.state_hash.substr(0, 12)},
+          {"size", c.size, "size", format_bytes(static_cast<double>(c.size))},
+          {"state", name_of(c.state), "",
+           std::string(c.state == CheckpointState::recorded ? "" : name_of(c.state))},
           {"observables", c.observables}};
 }
 
 /// `asked_by`: indices of the memberships whose figures and tables have the checkpoint; empty if
 /// only an interruption or another experiment's cadence left it.
-nlohmann::json facts_of_all(const Store& store, const RunRecord& run,
-                            const std::vector<CheckpointRecord>& checkpoints) {
+std::vector<Facts> facts_of_all(const Store& store, const RunRecord& run,
+                                const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
   for (std::size_t k = 0; k < run.memberships.size(); ++k) {
     for (const CheckpointRecord& c : checkpoints_for(store, run, run.memberships[k], {})) {
       asked_by[c.step].push_back(k);
     }
   }
-  return json_list(checkpoints, [&](const CheckpointRecord& c) {
-    nlohmann::json facts = checkpoint_facts(c);
-    facts["asked_by"] = asked_by[c.step];
+  return rows_of(checkpoints, [&](const CheckpointRecord& c) {
+    Facts facts = checkpoint_facts(c);
+    facts.push_back({"asked_by", asked_by[c.step]});
     return facts;
   });
 }
@@ -125,7 +126,7 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
           {"attempts", run.attempts},
           {"engine", engine_of_run(store, run.id)},
           {"memberships", json_list(run.memberships, member)},
-          {"checkpoints", facts_of_all(store, run, checkpoints)},
+          {"checkpoints", to_json(facts_of_all(store, run, checkpoints))},
           {"measures", as_json(newest_measures(store, checkpoints, context))},
           {"error", run.error},
           {"ended", end_of(store, run)}};
@@ -172,15 +173,7 @@ void show_run(const Store& store, const RunRecord& run, Context& context) {
   print_text("\n");
   print_resolved(run.resolved);
   print_text("\n");
-  print_table({"cycle", "step", "checkpoint", "state", "size", ""}, checkpoints,
-              [](const CheckpointRecord& c) -> Row {
-                return {fmt::format("{:g}", c.cycle),
-                        std::to_string(c.step),
-                        c.sha256.substr(0, 12),
-                        c.state_hash.substr(0, 12),
-                        format_bytes(static_cast<double>(c.size)),
-                        c.state == CheckpointState::recorded ? "" : std::string(name_of(c.state))};
-              });
+  print_table(rows_of(checkpoints, checkpoint_facts));
   if (const CheckpointFacts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
     print_text("\nnewest checkpoint:\n");
     print(facts);
@@ -198,7 +191,7 @@ void print_head(const CheckpointRecord& record, const std::string& file) {
 
 // Prints the record of a checkpoint whose file was deleted.
 void show_pruned(const CheckpointRecord& record, Context& context) {
-  if (context.json) return print_json(checkpoint_facts(record));
+  if (context.json) return print_json(to_json(checkpoint_facts(record)));
   print_head(record,
              fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256));
   for (const auto& [name, value] : record.observables) print_text("{:<42} {:.6g}\n", name, value);
@@ -210,7 +203,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   const Eigen::Index grains = checkpoint.state.position.cols();
   const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
   if (context.json) {
-    nlohmann::json all = checkpoint_facts(record);
+    nlohmann::json all = to_json(checkpoint_facts(record));
     all["grains"] = grains;
     all["wall_grains"] = wall_grains;
     all["measures"] = as_json(facts_at(store, record, context));
@@ -327,7 +320,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
     }
   }
   print_attempts(run, makers);
-  print_text("  cycles      {}: {}, {}\n", cut(input.states.cycles, 40),
+  print_text("  cycles      {}: {}, {}\n", cut(to_text(input.states.cycles), 40),
              counted(input.checkpoints.size(), "checkpoint"),
              input.fault.empty() ? "with the states that the figure names" : input.fault);
   print_text("  last state  {}\n", cut(input.states.state_hash, 14));

@@ -42,32 +42,29 @@ struct Result {
 
 void print(const Result& result, const Context& context) {
   const Proposal& proposal = result.proposal;
+  std::size_t runs = 0, task = 0;
+  const std::vector<Facts> tasks = rows_of(proposal.shares, [&](const Share& share) -> Facts {
+    runs += share.runs.size();
+    const double seconds = proposal.seconds(share);
+    return {{"", ++task, "task"},
+            {"runs", share.runs, "runs", std::to_string(share.runs.size())},
+            {"packings", share.packings.size(), "packings"},
+            {"particle_steps", share.particle_steps, "particle-steps",
+             fmt::format("{:.3g}", share.particle_steps)},
+            {"seconds", seconds, "about", format_duration(seconds)}};
+  });
   if (context.json) {
-    const auto task = [&](const Share& share) -> json {
-      return {{"runs", share.runs},
-              {"packings", share.packings.size()},
-              {"particle_steps", share.particle_steps},
-              {"seconds", proposal.seconds(share)}};
-    };
-    json all = {{"tasks", json_list(proposal.shares, task)},
+    json all = {{"tasks", to_json(tasks)},
                 {"cpus_per_task", proposal.job.cpus},
                 {"left_out", proposal.left_out},
                 {"warnings", context.warnings}};
     all.update(result.facts);
     return print_json(all);
   }
-  if (!proposal.shares.empty()) {
-    std::size_t runs = 0, task = 0;
-    for (const Share& share : proposal.shares) runs += share.runs.size();
+  if (!tasks.empty()) {
     fmt::print("{} in {}; cores of each: {}\n\n", counted(runs, "run"),
-               counted(proposal.shares.size(), "task"), proposal.job.cpus);
-    print_table({"task", "runs", "packings", "particle-steps", "about"}, proposal.shares,
-                [&](const Share& share) -> Row {
-                  return {std::to_string(++task), std::to_string(share.runs.size()),
-                          std::to_string(share.packings.size()),
-                          fmt::format("{:.3g}", share.particle_steps),
-                          format_duration(proposal.seconds(share))};
-                });
+               counted(tasks.size(), "task"), proposal.job.cpus);
+    print_table(tasks);
     fmt::print("\n");
   }
   fmt::print("{}", result.text);

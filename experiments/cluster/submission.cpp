@@ -47,7 +47,7 @@ trap 'again=yes; pass_on USR1' USR1
 trap 'again= stopped=yes; pass_on TERM' TERM
 for start in 1 2 3 4; do
   program=
-  "$1" work --store "$2/task-$SLURM_ARRAY_TASK_ID" "${@:3}" $leave &
+  "$1" resume --task --store "$2/task-$SLURM_ARRAY_TASK_ID" "${@:3}" $leave &
   program=$!
   [ -z "$signalled" ] || pass_on "$signalled"  # it came before the number was known
   wait "$program"; code=$?
@@ -229,7 +229,7 @@ Job array_job(const Submission& submission, const fs::path& store, const JobOpti
   const std::size_t jobs = std::max<std::size_t>(1, options.cpus / options.threads);
   std::vector<std::string> arguments = {"--jobs", fmt::to_string(jobs), "--threads",
                                         fmt::to_string(options.threads)};
-  // `work` on the node replaces its variables.
+  // `resume --task` on the node replaces its variables.
   if (!options.scratch.empty()) arguments.push_back("--scratch=" + options.scratch);
   return complete({submission.name(), "job.sh", kTaskScript, {}}, options, submission.folder(store),
                   "task-%a.log",

@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <cmath>
 
-#include "experiments/figures/cycle_range.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -31,14 +30,36 @@ FigureInput read_input(const json& input) {
   return result;
 }
 
+/// How far two numbers of one cycle may differ: a cycle has many fewer than 1e9 time steps.
+constexpr double kSameCycle = 1e-9;
+
+Cycles cycles_of(const std::vector<CheckpointRecord>& checkpoints) {
+  Cycles ranges;
+  for (const CheckpointRecord& record : checkpoints) {
+    if (!ranges.empty()) {
+      auto& [first, last, every] = ranges.back();
+      if (first == last) every = record.cycle - first;
+      if (std::abs(record.cycle - last - every) < kSameCycle) {
+        last = record.cycle;
+        continue;
+      }
+    }
+    ranges.push_back({record.cycle, record.cycle, 1});
+  }
+  return ranges;
+}
+
 /// The checkpoints of these cycles. A rejected one counts where no other has its cycle.
-std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const std::string& cycles) {
-  const std::vector<CycleRange> ranges = read_cycles(cycles);
+std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cycles) {
   std::map<double, CheckpointRecord> found;
   for (const CheckpointHistory& c : run.checkpoints) {
     const double cycle = c.record.cycle;
-    const auto holds = [&](const CycleRange& range) { return range.holds(cycle, kSameCycle); };
-    if (std::ranges::none_of(ranges, holds)) continue;
+    const auto holds = [cycle](const auto& range) {
+      const auto& [first, last, every] = range;
+      return cycle > first - kSameCycle && cycle < last + kSameCycle &&
+             std::abs(std::remainder(cycle - first, every)) < kSameCycle;
+    };
+    if (std::ranges::none_of(cycles, holds)) continue;
     const auto [known, first] = found.try_emplace(cycle, c.record);
     if (!first && c.record.state != CheckpointState::rejected) known->second = c.record;
   }
@@ -124,12 +145,6 @@ json stage_json(const RunLineage& stage) {
       {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
 }
 
-StoreDamaged malformed(const FigureRecord& record, const std::exception& problem) {
-  return StoreDamaged(
-      fmt::format("event {} (FigureGenerated of {}): its payload is malformed: {}; run `verify`",
-                  record.seq, record.name, problem.what()));
-}
-
 // File name -> SHA-256, from JSON that is not trusted.
 std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
@@ -157,14 +172,18 @@ std::map<std::string, std::string> files_of(const FigureRecord& record) {
 
 }  // namespace
 
-States states_of(const std::vector<CheckpointRecord>& checkpoints) {
-  std::vector<double> cycles;
-  std::string hashes;
-  for (const CheckpointRecord& record : checkpoints) {
-    cycles.push_back(record.cycle);
-    hashes += record.state_hash + '\n';
+std::string to_text(const Cycles& cycles) {
+  std::string text;
+  for (const auto& [first, last, every] : cycles) {
+    text += fmt::format("{}{}:{}:{}", text.empty() ? "" : ", ", first, last, every);
   }
-  return {cycles_text(cycles), checkpoints.empty() ? "" : checkpoints.back().state_hash,
+  return text;
+}
+
+States states_of(const std::vector<CheckpointRecord>& checkpoints) {
+  std::string hashes;
+  for (const CheckpointRecord& record : checkpoints) hashes += record.state_hash + '\n';
+  return {cycles_of(checkpoints), checkpoints.empty() ? "" : checkpoints.back().state_hash,
           sha256_hex(hashes)};
 }
 
@@ -223,9 +242,9 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
       lineage.inputs.push_back(std::move(input));
     }
   } catch (const json::exception& problem) {
-    throw malformed(record, problem);
-  } catch (const std::invalid_argument& problem) {  // its cycles
-    throw malformed(record, problem);
+    throw StoreDamaged(
+        fmt::format("event {} (FigureGenerated of {}): its payload is malformed: {}; run `verify`",
+                    record.seq, record.name, problem.what()));
   } catch (const NotFound& problem) {
     throw StoreDamaged(fmt::format("event {} (FigureGenerated of {}): {}", record.seq, record.name,
                                    problem.what()));

@@ -2,6 +2,7 @@
 // The origin of a published figure: checkpoints, runs, manifests, builds and hosts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,10 +17,16 @@
 
 namespace shearcell {
 
+/// Rising cycles as ranges {first, last, every}: {{0, 120, 1}, {133.5, 133.5, 1}}.
+using Cycles = std::vector<std::array<double, 3>>;
+
+/// "0:120:1, 133.5:133.5:1".
+std::string to_text(const Cycles& cycles);
+
 /// States of a run, as a published lineage file names them. The hashes of states do not depend on
 /// the version of HDF5, as those of files do.
 struct States {
-  std::string cycles;      ///< of the states, as "0:120:1" (cycle_range.hpp)
+  Cycles cycles;           ///< of the states
   std::string state_hash;  ///< of the last one
   std::string sha256;      ///< of the text with one line for each state: its state_hash
 

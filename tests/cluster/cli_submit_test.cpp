@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `submit` and `work` without Slurm, and with a Slurm that rejects jobs.
+// `submit` and `resume --task` without Slurm, and with a Slurm that rejects jobs.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -221,7 +221,8 @@ TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
     fs::remove(programs_.path() / "queue");
     slurm_that_works();
     for (const auto& task : fs::recursive_directory_iterator(path(store) / "submissions")) {
-      if (task.path().filename() == "task-1") expect(0, {"work", "--store", task.path().string()});
+      if (task.path().filename() == "task-1")
+        expect(0, {"resume", "--task", "--store", task.path().string()});
     }
     EXPECT_TRUE(json({"submit", manifest_, "--json", "--store", store}).at("submission").is_null());
     EXPECT_EQ(hashes(store).size(), 3U);
@@ -252,12 +253,12 @@ TEST_F(Submit, MergesLeftTasksAndSubmitsTheRest) {
   slurm_that_works();
   const auto said = json({"submit", manifest_, "--seeds", "2", "--json"});
   const std::string folder = said.at("folder");
-  expect(0, {"work", "--store", folder + "/task-1"});
+  expect(0, {"resume", "--task", "--store", folder + "/task-1"});
   // The queue is empty: all was cancelled.
   const auto rest = json({"submit", manifest_, "--seeds", "2", "--json"});
   EXPECT_EQ(rest.at("tasks").size(), 1U);
   EXPECT_EQ(rest.at("tasks")[0].at("runs"), said.at("tasks")[1].at("runs"));
-  expect(0, {"work", "--store", rest.at("folder").get<std::string>() + "/task-1"});
+  expect(0, {"resume", "--task", "--store", rest.at("folder").get<std::string>() + "/task-1"});
   EXPECT_TRUE(json({"submit", manifest_, "--seeds", "2", "--json"}).at("submission").is_null());
   expect(0, {"run", manifest_, "--seeds", "2", "-q", "--store", "here"});
   EXPECT_EQ(hashes(), hashes("here"));
@@ -267,26 +268,27 @@ TEST_F(Submit, MergesLeftTasksAndSubmitsTheRest) {
 TEST_F(Submit, TasksRunWhatWasSubmitted) {
   const std::string folder = submitted();
   write("m.yaml", "changed: since\n");
-  expect(0, {"work", "--store", folder + "/task-1", "-j", "2"});
+  expect(0, {"resume", "--task", "--store", folder + "/task-1", "-j", "2"});
 }
 
 TEST_F(Submit, ATrailingSlashChangesNothing) {
   const std::string folder = submitted();
   fs::create_directory(path("scratch"));
-  expect(0, {"work", "--store", folder + "/task-1/", "--scratch", path("scratch").string()});
+  expect(0, {"resume", "--task", "--store", folder + "/task-1/", "--scratch",
+             path("scratch").string()});
   EXPECT_TRUE(fs::exists(folder + "/task-1.progress.json"));
   EXPECT_FALSE(fs::exists(folder + "/task-1/.progress.json"));
 }
 
 TEST_F(Submit, WorkStopsAfterAnyNumberOfWarningsAndContinues) {
   const std::string task = submitted({"--cycles", "16"}) + "/task-1";
-  const Running worker = start_beside({"work", "--store", task, "-j", "2"}, "worker");
+  const Running worker = start_beside({"resume", "--task", "--store", task, "-j", "2"}, "worker");
   wait_for_objects(4, task);
   for (const int signal : {SIGUSR1, SIGTERM, SIGTERM}) kill(worker.pid, signal);
   EXPECT_EQ(wait_for(worker).code, 85) << "the second signal does not kill";
   const std::size_t recorded = objects(task);
   ASSERT_LT(recorded, 30U);
-  expect(0, {"work", "--store", task, "-j", "2", "--leave-failed"});
+  expect(0, {"resume", "--task", "--store", task, "-j", "2", "--leave-failed"});
   expect(0, {"run", manifest_, "--cycles", "16", "-q", "--store", "here"});
   EXPECT_EQ(hashes(task), hashes("here"));
 }
@@ -295,8 +297,8 @@ TEST_F(Submit, WorkOnScratchCopiesEverythingBack) {
   const std::string folder = submitted({"--cycles", "16"});
   const std::string task = folder + "/task-1";
   fs::create_directory(path("scratch"));
-  const Arguments words = {
-      "work", "--store", task, "-j", "2", "--scratch", path("scratch").string()};
+  const Arguments words = {"resume", "--task", "--store",   task,
+                           "-j",     "2",      "--scratch", path("scratch").string()};
   const Running killed = start_beside(words, "killed");
   const std::string copy = "scratch/shearcell-" + fs::path(folder).filename().string() + "-task-1";
   wait_for_objects(4, copy);
@@ -320,11 +322,13 @@ TEST_F(Submit, WorkReplacesTheVariablesOfScratch) {
   fs::create_directory(path("node disk"));
   const Variable disk("NODE_DISK", path("node disk")), relative("RELATIVE", "node disk");
   const auto before = listing();
-  expect(2, {"work", "--store", task, "--scratch", "$NO_SUCH_VARIABLE/x"},
+  expect(2, {"resume", "--task", "--store", task, "--scratch", "$NO_SUCH_VARIABLE/x"},
          {"the variable NO_SUCH_VARIABLE is not set on this node"});
-  expect(2, {"work", "--store", task, "--scratch", "$RELATIVE"}, {"not an absolute path"});
+  expect(2, {"resume", "--task", "--store", task, "--scratch", "$RELATIVE"},
+         {"not an absolute path"});
   EXPECT_EQ(listing(), before) << "something was written";
-  expect(0, {"work", "--store", task, "-j", "2", "--scratch", "${NODE_DISK}/my $(touch x)"});
+  expect(0, {"resume", "--task", "--store", task, "-j", "2", "--scratch",
+             "${NODE_DISK}/my $(touch x)"});
   EXPECT_TRUE(fs::is_empty(path("node disk/my $(touch x)"))) << "used, and emptied";
   EXPECT_FALSE(fs::exists(path("x")));
   EXPECT_EQ(hashes(task).size(), 3U);
@@ -334,8 +338,9 @@ TEST_F(Submit, WorkDoesNotRepeatFailedRuns) {
   // No contact may overlap by this little: each run fails as soon as it is looked at.
   manifest_ = write("f.yaml", tiny_manifest("  max_overlap_diameters: 1.0e-6\n"));
   const std::string task = submitted() + "/task-1";
-  expect(3, {"work", "--store", task});
-  expect(3, {"work", "--store", task, "--leave-failed"}, {"nothing is left to compute"});
+  expect(3, {"resume", "--task", "--store", task});
+  expect(3, {"resume", "--task", "--store", task, "--leave-failed"},
+         {"nothing is left to compute"});
 }
 
 // Others may have put files beside a task's store.
@@ -348,7 +353,7 @@ TEST_F(Submit, IgnoresPipesAndLinksInPlaceOfProgressFiles) {
   write("precious", "mine");
   fs::create_symlink(path("precious"), progress);
   fs::create_symlink(path("precious"), progress.string() + ".new");
-  expect(0, {"work", "--store", task, "-j", "2"});
+  expect(0, {"resume", "--task", "--store", task, "-j", "2"});
   EXPECT_EQ(read_bytes(path("precious")), "mine");
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(progress)));
 }
@@ -364,15 +369,15 @@ TEST_F(Submit, GivesUpOnAQueueThatDoesNotAnswer) {
 TEST_F(Submit, CopiesCachedMeasuresToo) {
   manifest_ = write("u.yaml", tiny_manifest("", "until: {phi: 0.9, extra_cycles: 0}\n"));
   const std::string task = submitted() + "/task-1";
-  expect(0, {"work", "--store", task});
+  expect(0, {"resume", "--task", "--store", task});
   expect(0, {"merge", task});
   // There is no gnuplot in this PATH.
   expect(1, {"figures", "S2", "--out", "."}, {"3 checkpoints, 1 of them newly measured"});
 }
 
 TEST_F(Submit, WorkNeedsAStore) {
-  expect_refused({"work", "--store", "nowhere"}, {"nowhere"});
-  expect_refused({"work", "--store", "nowhere", "--scratch", "x"}, {"nowhere"});
+  expect_refused({"resume", "--task", "--store", "nowhere"}, {"nowhere"});
+  expect_refused({"resume", "--task", "--store", "nowhere", "--scratch", "x"}, {"nowhere"});
 }
 
 }  // namespace

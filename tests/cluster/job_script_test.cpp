@@ -185,7 +185,7 @@ class JobScript : public testing::Test {
   fs::path said() const { return folder_.path() / "said"; }
   std::string calls() const { return fs::exists(said()) ? read_bytes(said()) : ""; }
   std::string work(const std::string& more = "") const {
-    return "shearcell work --store " + store_of_task(3) + " --jobs 3 --threads 2" + more + "\n";
+    return "shearcell resume --task --store " + store_of_task(3) + " --jobs 3 --threads 2" + more + "\n";
   }
 
   Submission submission_{"0123456789ab", {{}, {}, {}, {}}, "", "", {}};
@@ -234,7 +234,7 @@ TEST_F(JobScript, ForwardsASignalWhileTheProgramStarts) {
 }
 
 TEST_F(JobScript, RestartsAKilledProgramAFewTimes) {
-  EXPECT_EQ(run_task("[ \"$(grep -c work \"$SAID\")\" -ge 3 ] && exit 0; kill -KILL $$"), 0);
+  EXPECT_EQ(run_task("[ \"$(grep -c resume \"$SAID\")\" -ge 3 ] && exit 0; kill -KILL $$"), 0);
   EXPECT_EQ(calls(), work() + work(" --leave-failed") + work(" --leave-failed")) << messages_;
   EXPECT_EQ(run_task("kill -KILL $$"), 137);
   EXPECT_EQ(calls().size(), 4 * work().size() + 3 * std::string(" --leave-failed").size());

@@ -91,7 +91,7 @@ class Campaign:
 
     def worker(self, task):
         """The task's program, when it runs."""
-        found = processes(PROGRAM, " work ", str(self.folder / f"task-{task} "))
+        found = processes(PROGRAM, " resume ", str(self.folder / f"task-{task} "))
         return found[0] if found else None
 
     def new_checkpoint(self, task):

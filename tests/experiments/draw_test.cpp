@@ -299,7 +299,7 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   for (const auto& input : lineage.at("inputs")) {
     const std::vector<CheckpointRecord> records = store_.checkpoints(input.at("run"));
     ASSERT_EQ(records.size(), 3U);
-    EXPECT_EQ(input.at("cycles"), "0:2:1");
+    EXPECT_EQ(input.at("cycles"), nlohmann::json::parse("[[0, 2, 1]]"));
     EXPECT_EQ(input.at("state_hash"), records[2].state_hash);
     EXPECT_EQ(input.at("states_sha256"),
               sha256_hex(records[0].state_hash + "\n" + records[1].state_hash + "\n" +

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "experiments/figures/cycle_range.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
@@ -178,8 +177,9 @@ TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
 
 TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
   nlohmann::json facts = figure_records(store_).at(0).provenance;
-  for (const auto& [key, value] :
-       {std::pair("cycles", "0"), {"state_hash", "another"}, {"states_sha256", "another"}}) {
+  const nlohmann::json others = {
+      {"cycles", Cycles{{0, 0, 1}}}, {"state_hash", "another"}, {"states_sha256", "another"}};
+  for (const auto& [key, value] : others.items()) {
     nlohmann::json changed = facts;
     changed["inputs"][1][key] = value;
     store_.record_figure("S2", changed);
@@ -191,25 +191,36 @@ TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
   }
 }
 
-TEST(CycleRanges, AreShortAndReadBack) {
-  for (const auto& [cycles, text] : std::vector<std::pair<std::vector<double>, std::string>>{
-           {{}, ""},
-           {{3}, "3"},
-           {{0, 1}, "0,1"},
-           {{0, 1, 2, 3}, "0:3:1"},
-           {{0, 0.25, 0.5, 0.75, 1, 1.25}, "0:1.25:0.25"},
-           {{0, 10, 20, 30, 33.5}, "0:30:10,33.5"},
-           {{0, 1, 2, 4, 6, 8, 9}, "0:2:1,4:8:2,9"}}) {
-    EXPECT_EQ(cycles_text(cycles), text);
-    const std::vector<CycleRange> ranges = read_cycles(text);
-    for (double cycle = 0; cycle < 40; cycle += 0.25) {
-      const bool held = std::ranges::any_of(
-          ranges, [&](const CycleRange& range) { return range.holds(cycle, kSameCycle); });
-      EXPECT_EQ(held, std::ranges::count(cycles, cycle) > 0) << text << ": " << cycle;
-    }
+TEST(Cycles, AreRanges) {
+  for (const auto& [cycles, ranges] : std::vector<std::pair<std::vector<double>, Cycles>>{
+           {{}, {}},
+           {{3}, {{3, 3, 1}}},
+           {{0, 1}, {{0, 1, 1}}},
+           {{0, 1, 2, 3}, {{0, 3, 1}}},
+           {{0, 0.25, 0.5, 0.75, 1, 1.25}, {{0, 1.25, 0.25}}},
+           {{0, 10, 20, 30, 33.5}, {{0, 30, 10}, {33.5, 33.5, 1}}},
+           {{0, 1, 2, 4, 6, 8, 9}, {{0, 2, 1}, {4, 8, 2}, {9, 9, 1}}}}) {
+    std::vector<CheckpointRecord> records;
+    for (const double cycle : cycles) records.emplace_back().cycle = cycle;
+    EXPECT_EQ(states_of(records).cycles, ranges);
   }
-  for (const char* bad : {"a", "1:0", "0:1:0", "0:1:2:3", "nan"}) {
-    EXPECT_THROW(read_cycles(bad), std::invalid_argument) << bad;
+}
+
+// Of the run's cycles 0 and 1 each record names those that it holds.
+TEST_F(FigureLineageTest, FindsTheCyclesOfTheRecord) {
+  nlohmann::json facts = figure_records(store_).at(0).provenance;
+  for (const auto& [cycles, held] :
+       std::vector<std::pair<Cycles, std::size_t>>{{{{0, 1, 1}}, 2},
+                                                   {{{0, 0, 1}, {1, 1, 1}}, 2},
+                                                   {{{1, 9, 1}}, 1},
+                                                   {{{0, 9, 2}}, 1},
+                                                   {{{0, 9, 0}}, 0},
+                                                   {{{-1, 1e300, 1e-300}}, 2},
+                                                   {{}, 0}}) {
+    facts["inputs"][1]["cycles"] = cycles;
+    store_.record_figure("S2", facts);
+    const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
+    EXPECT_EQ(lineage.inputs.at(1).checkpoints.size(), held) << to_text(cycles);
   }
 }
 
@@ -222,13 +233,13 @@ TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
   EXPECT_EQ(lineage.inputs.size(), 4U);
   EXPECT_TRUE(to_json(lineage).at("made").is_null());
-  const auto with_cycles = [&](const char* cycles) {
+  const auto with_cycles = [&](const nlohmann::json& cycles) {
     nlohmann::json facts = old;
     facts["inputs"][0]["cycles"] = cycles;
     return facts;
   };
   for (const nlohmann::json& broken :
-       {nlohmann::json{{"inputs", 3}}, with_cycles("1:0"),
+       {nlohmann::json{{"inputs", 3}}, with_cycles({"0"}),
         nlohmann::json{{"inputs", {{{"run", "x"}}}}}, nlohmann::json::object()}) {
     store_.record_figure("S2", broken);
     EXPECT_THROW(figure_lineage(store_, figure_records(store_).back()), StoreDamaged)

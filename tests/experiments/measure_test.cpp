@@ -112,8 +112,8 @@ TEST_F(Measure, CurvesAndMotionArePlotted) {
 const std::string kBothAmplitudes = "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n";
 
 /// The cycles of every run of a lineage file.
-std::vector<std::string> lineage_cycles(const std::string& lineage) {
-  std::vector<std::string> cycles;
+nlohmann::json lineage_cycles(const std::string& lineage) {
+  nlohmann::json cycles = nlohmann::json::array();
   const auto facts = nlohmann::json::parse(lineage);
   for (const auto& input : facts.at("inputs")) cycles.push_back(input.at("cycles"));
   return cycles;
@@ -129,10 +129,11 @@ TEST_F(Measure, EarlierCheckpointsAreInTheLineageAndMissedIfTheyAreGone) {
   compute(store_, tiny_manifest("", kBothAmplitudes + plots));
   for (const char* name : {"moved", "work", "same"}) draw("own", name);
   auto files = contents("own");
-  const std::vector<std::string> both = {"1,2", "1,2"};
+  const auto both = nlohmann::json::parse("[[[1, 2, 1]], [[1, 2, 1]]]");
   EXPECT_EQ(lineage_cycles(files.at("moved.lineage.json")), both);
   EXPECT_EQ(lineage_cycles(files.at("work.lineage.json")), both);
-  EXPECT_EQ(lineage_cycles(files.at("same.lineage.json")), (std::vector<std::string>{"1", "1"}))
+  EXPECT_EQ(lineage_cycles(files.at("same.lineage.json")),
+            nlohmann::json::parse("[[[1, 1, 1]], [[1, 1, 1]]]"))
       << "a claim has what it compares";
 
   for (const CheckpointRecord& record : records()) {
