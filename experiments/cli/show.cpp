@@ -63,7 +63,8 @@ std::vector<Facts> facts_of_all(const Store& store, const RunRecord& run,
 // The engine that the latest attempt recorded; null for our own.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
-  for (const Attempt& attempt : run_lineage(store, run).back().attempts) {
+  const RunLineage stage = run_lineage(store, run).back();
+  for (const Attempt& attempt : stage.attempts) {
     if (attempt.host.contains("engine")) engine = attempt.host["engine"];
   }
   return engine;

@@ -185,7 +185,8 @@ class JobScript : public testing::Test {
   fs::path said() const { return folder_.path() / "said"; }
   std::string calls() const { return fs::exists(said()) ? read_bytes(said()) : ""; }
   std::string work(const std::string& more = "") const {
-    return "shearcell resume --task --store " + store_of_task(3) + " --jobs 3 --threads 2" + more + "\n";
+    return "shearcell resume --task --store " + store_of_task(3) + " --jobs 3 --threads 2" + more +
+           "\n";
   }
 
   Submission submission_{"0123456789ab", {{}, {}, {}, {}}, "", "", {}};
