@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "analysis/error.hpp"
@@ -94,6 +95,44 @@ Text operator+(Text first, const Text& second) {
   return first;
 }
 
+Text text_with_formulas(std::string_view text) {
+  Text result;
+  const auto add = [&](std::string_view part, const char* style) {
+    if (part.empty()) return;
+    if (result.parts.empty() || result.parts.back().style != style) {
+      result.parts.push_back({"", style});
+    }
+    result.parts.back().text += part;
+  };
+  const auto take = [&](std::size_t length) {
+    const std::string_view part = text.substr(0, length);
+    text.remove_prefix(part.size());
+    return part;
+  };
+  for (bool formula = false; !text.empty();) {
+    const char c = text.front();
+    if (c == '$') {
+      formula = !formula;
+      take(1);
+    } else if (formula && (c == '_' || c == '^') && text.size() > 1) {
+      take(1);
+      const bool braces = text.front() == '{';
+      if (braces) take(1);
+      std::size_t length = 1;  // a character of UTF-8, or up to the brace
+      while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
+        ++length;
+      }
+      add(take(braces ? std::min(text.find('}'), text.size()) : length), c == '_' ? "sub" : "sup");
+      if (braces) take(1);
+    } else {
+      const bool latin = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+      const bool greek = (static_cast<unsigned char>(c) & 0xFE) == 0xCE;  // its first byte of two
+      add(take(greek ? 2 : 1), formula && (latin || greek) ? "i" : "");
+    }
+  }
+  return result;
+}
+
 std::string digits(double value) {
   return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
 }
@@ -150,6 +189,8 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
 }
 
 void name_run_counts(FigureTable& table) {
+  std::vector<Series*> means;
+  std::vector<std::string> counts;  // of each; "" if it is complete
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const ChartPoint& point : points_of(table, series)) {
@@ -158,12 +199,24 @@ void name_run_counts(FigureTable& table) {
       most = std::max(most, *point.runs);
     }
     const auto all = std::max(static_cast<double>(series.runs), most);
-    if (fewest >= all) continue;  // also without points
-    std::string counts = fmt::format("{}", fewest);
-    if (fewest < most) counts += fmt::format(" to {}", most);
-    if (most < all) counts += fmt::format(" of {}", all);
-    series.title = series.title.empty() ? Text(counts + " runs")
-                                        : series.title + Text(" (" + counts + " runs)");
+    if (most == 0) continue;
+    means.push_back(&series);
+    std::string& count = counts.emplace_back();
+    if (fewest >= all) continue;
+    count = fmt::format("{}", fewest);
+    if (fewest < most) count += fmt::format(" to {}", most);
+    if (most < all) count += fmt::format(" of {}", all);
+  }
+  const bool equal = std::ranges::all_of(counts, [&](const auto& c) { return c == counts[0]; });
+  if (counts.size() > 1 && equal && !counts[0].empty()) {
+    std::string& note = table.chart.note;
+    note += fmt::format("{}Means over {} runs each", note.empty() ? "" : ". ", counts[0]);
+    return;
+  }
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    if (counts[k].empty()) continue;
+    Text& title = means[k]->title;
+    title = title.empty() ? Text(counts[k] + " runs") : title + Text(" (" + counts[k] + " runs)");
   }
 }
 
@@ -182,16 +235,22 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + ".";
   bool bars = false, bands = false, own_errors = false;
-  std::vector<std::string> lines, notes;
+  std::vector<std::string> lines, notes, sources;
+  std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
   };
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
-    text += fmt::format(" {}{} against {}{}.",
-                        chart.letter.empty() ? "" : "(" + chart.letter + ") ", axis_text(chart.y),
-                        axis_text(chart.x), chart.errors.empty() ? "" : "; " + chart.errors);
+    // Panels that show the same share a sentence.
+    const std::string what = fmt::format("{} against {}{}.", axis_text(chart.y), axis_text(chart.x),
+                                         chart.errors.empty() ? "" : "; " + chart.errors);
+    std::string panel = chart.letter.empty() ? "" : "(" + chart.letter + ")";
+    if (!chart.title.empty()) panel += (panel.empty() ? "" : " ") + plain_text(chart.title);
+    if (panels.empty() || what != panels.back().second) panels.emplace_back("", what);
+    std::string& names = panels.back().first;
+    if (!panel.empty()) names += (names.empty() ? "" : ", ") + panel;
     own_errors = own_errors || !chart.errors.empty();
     std::size_t lost = 0;
     for (const Series& series : chart.series) {
@@ -201,9 +260,14 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
       }
     }
     add_once(notes, chart.note);
+    add_once(sources, chart.sources);
     if (lost > 0)
       add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
+  }
+  for (const auto& [names, what] : panels) {
+    const bool titled = names.size() > 3;  // more than "(a)"
+    text += " " + names + (names.empty() ? "" : titled ? ": " : " ") + what;
   }
   if (bars || bands) {
     text += fmt::format(" {}: standard errors over runs{}.",
@@ -212,6 +276,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                                       : "Bands",
                         own_errors ? ", except where stated" : "");
   }
+  std::ranges::move(sources, std::back_inserter(notes));
   for (const std::string& note : notes) text += " " + note + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
   return text;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -41,6 +42,10 @@ inline Text subscript(std::string text) {
 inline Text superscript(std::string text) {
   return {std::move(text), "sup"};
 }
+
+/// Text in which formulas stand between `$`, as in TeX: letters are italic there, and `_` and `^`
+/// lower and raise the next character or the text in the next braces: "drag $v_{fluid}$".
+Text text_with_formulas(std::string_view text);
 
 /// Empty (not measured, or no error from one run), a number, a whole number, or text.
 struct TableValue : std::variant<std::monostate, double, std::int64_t, std::string> {
@@ -120,10 +125,11 @@ struct Chart {
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> lines = {};
-  Text title = {};          ///< above the frame; figures have none
-  bool wide = false;        ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
-  std::string letter = {};  ///< of the panel: "a"
-  std::string note = {};    ///< a sentence of the caption, without its full stop
+  Text title = {};           ///< above the frame; figures have none
+  bool wide = false;         ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
+  std::string letter = {};   ///< of the panel: "a"
+  std::string note = {};     ///< a sentence of the caption, without its full stop
+  std::string sources = {};  ///< of published numbers; likewise
   /// What the bars and bands are, for the caption, where they are not standard errors over runs.
   std::string errors = {};
 };
@@ -163,8 +169,8 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 
 /// Adds to the title of each series how many runs its points are means of, as "(3 to 5 runs)", if
-/// that differs between the points or is less than Series::runs. A mean over other runs may differ
-/// for that reason alone.
+/// that differs between the points or is less than Series::runs; once in the caption if all series
+/// have the same. A mean over other runs may differ for that reason alone.
 void name_run_counts(FigureTable& table);
 
 /// Nine significant digits, as in the CSV.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/figure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +10,7 @@
 
 #include "analysis/figures/figures.hpp"
 #include "core/named.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 
@@ -61,6 +64,28 @@ std::string averaged_key(
     }
   }
   return "";
+}
+
+void require_told_apart(const std::string& figure, std::span<const FigureRun> runs,
+                        const std::vector<std::string>& keys, const std::string& remedy) {
+  std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
+  for (const FigureRun& run : runs) {
+    std::vector<nlohmann::json> group;
+    for (const std::string& key : keys) group.push_back(parameter_of(run, key));
+    variants.emplace_back(std::move(group), run.swept);
+  }
+  const std::string key = averaged_key(variants);
+  if (key.empty()) return;
+  const std::string& experiment = runs.front().experiment;
+  if (key == "manifest") {  // not swept
+    throw UsageError(
+        fmt::format("figure {} would average over several versions of the manifest of experiment "
+                    "{}; leave out --all-versions",
+                    figure, experiment));
+  }
+  throw UsageError(
+      fmt::format("figure {} would average over the values of {} that experiment {} sweeps; {}",
+                  figure, key, experiment, remedy));
 }
 
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first) {

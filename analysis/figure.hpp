@@ -99,6 +99,11 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 std::string averaged_key(
     std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants);
 
+/// Throws UsageError if curves of these keys' values would average over values of another swept
+/// key. Keys that change together with `keys` are allowed. The message ends with `remedy`.
+void require_told_apart(const std::string& figure, std::span<const FigureRun> runs,
+                        const std::vector<std::string>& keys, const std::string& remedy);
+
 /// The swept keys of the runs that distinguish their variants; `first` stays of those that advance
 /// together with it.
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first = "");

@@ -104,20 +104,39 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   return ticks;
 }
 
-/// Width and height [px]: the frame, and the rows of the key. A title that is too long for a row of
-/// one column takes two.
-std::pair<int, int> size_of(const Chart& chart) {
-  constexpr std::size_t row = 50, wide_row = 110, symbol = 8;  // letters
-  std::size_t entries = 0, longest = symbol;
+/// Width and height of a drawing [px]: the frame, and the rows of the key in its columns.
+struct Layout {
+  int width = column_width;
+  int height = chart_height;
+  std::size_t columns = 1;
+  std::size_t longest = 0;  ///< letters of the longest title in the key
+};
+
+/// A title that is too long for a row of one column of a journal, or a key of more than eight rows,
+/// takes two columns.
+Layout layout_of(const Chart& chart) {
+  constexpr double letter = 5.2, symbol = 32;  // [px]
+  constexpr std::size_t most_letters = 42;
+  constexpr int most_rows = 8;
+  Layout layout;
+  std::size_t entries = 0;
   for (const Series& series : chart.series) {
     const std::size_t length = plain_text(series.title).size();
     entries += length > 0 ? 1 : 0;
-    longest = std::max(longest, length + symbol);
+    layout.longest = std::max(layout.longest, length);
   }
-  const bool wide = chart.wide || longest > row;
-  const std::size_t in_a_row = std::max<std::size_t>(1, (wide ? wide_row : row) / longest);
-  return {wide ? double_width : column_width,
-          chart_height + key_row * static_cast<int>((entries + in_a_row - 1) / in_a_row)};
+  const auto rows_in = [&](int width) {
+    const double entry = letter * static_cast<double>(layout.longest) + symbol;
+    layout.columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - 65) / entry));
+    return static_cast<int>((entries + layout.columns - 1) / layout.columns);
+  };
+  int rows = rows_in(column_width);
+  if (chart.wide || layout.longest > most_letters || rows > most_rows) {
+    layout.width = double_width;
+    rows = rows_in(double_width);
+  }
+  layout.height += key_row * (rows + (chart.title.empty() ? 0 : 1));
+  return layout;
 }
 
 /// The commands for one chart. The data are written into the script, so that it draws the same
@@ -143,6 +162,9 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
+    // gnuplot takes letters for a quarter wider than most are, and so would use fewer columns.
+    const Layout layout = layout_of(chart_);
+    add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
     if (longest_ == 0) {
       add("set label 'no data' at graph 0.5, graph 0.5 center\nplot [0:1] [0:1] NaN notitle\n");
@@ -301,7 +323,7 @@ class Script {
       plots.push_back(fmt::format(
           "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "
           "0.7 notitle",
-          k, spacing(series), columns, digits(2.0 / size_of(chart_).first), series.colour));
+          k, spacing(series), columns, digits(2.0 / layout_of(chart_).width), series.colour));
     };
     if (has(k, &ChartPoint::x_error)) {
       const auto [low, length] = bar(1, 3, chart_.x, x_);
@@ -373,13 +395,13 @@ std::string text_table_commands(const TextTable& table) {
 
 std::string gnuplot_script(const FigureTable& table) {
   const bool words = !table.text.rows.empty();
-  const auto [width, height] =
-      words ? std::pair(width_of(table.text), height_of(table.text)) : size_of(table.chart);
+  const Layout layout =
+      words ? Layout{width_of(table.text), height_of(table.text)} : layout_of(table.chart);
   return fmt::format(
       "{}{},{} enhanced font 'Helvetica,{}' background '#ffffff'\n{}set output '{}.svg'\n{}set "
       "output\n",
-      gnuplot_script_beginning, width, height, words ? 14 : type_size, style, table.name,
-      words ? text_table_commands(table.text) : Script(table).text());
+      gnuplot_script_beginning, layout.width, layout.height, words ? 14 : type_size, style,
+      table.name, words ? text_table_commands(table.text) : Script(table).text());
 }
 
 }  // namespace shearcell

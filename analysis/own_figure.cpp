@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "analysis/expression.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
 #include "provenance/json_text.hpp"
@@ -27,10 +29,12 @@ MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity 
   return {std::move(name), std::move(unit), std::move(quantity)};
 }
 
-/// The column of a scalar measure, which must exist.
-MeasureColumn scalar_column(std::string_view name) {
-  const ScalarMeasure& measure = *find_measure(name);
-  return column_of(name, measure.unit, [&measure](const Measures& m) { return measure.of(m); });
+/// The column of a scalar measure, or of an expression.
+MeasureColumn scalar_column(const std::string& text) {
+  if (const ScalarMeasure* measure = find_measure(text)) {
+    return column_of(text, measure->unit, quantity_of(text));
+  }
+  return {is_expression(text) ? "(" + text + ")" : text, "", quantity_of(text)};
 }
 
 /// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
@@ -50,7 +54,7 @@ Axis axis_of(const std::string& key) {
   if (key == "mean_overlap_d") return overlap_axis();
   if (const ScalarMeasure* measure = find_measure(key)) return named_axis(key, measure->unit);
   if (const CurveMeasure* measure = find_curve_measure(key)) return named_axis(key, measure->unit);
-  return named_axis(key, "1");
+  return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
 
 /// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
@@ -60,6 +64,15 @@ std::string_view word_for_cycle(std::span<const FigureRun> runs) {
   };
   if (std::ranges::none_of(runs, stiffens)) return "cycle";
   return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
+}
+
+/// A logarithmic axis has no fixed lower end.
+void adapt(Axis& axis, const std::string& label, bool log) {
+  axis.log = log;
+  if (log) axis.low = {};
+  if (label.empty()) return;
+  axis.name = text_with_formulas(label);
+  axis.symbol = axis.unit = {};
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
@@ -99,7 +112,8 @@ const Measures* measures_at(const FigureRun& run, double cycle) {
 std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot,
                                 const NameVariants& name) {
   std::vector<std::string> keys = varied_keys(runs, plot.x);
-  std::erase(keys, plot.x);
+  for (const std::string& used : names_in(plot.x)) std::erase(keys, used);
+  std::erase(keys, plot.panel);
   if (!plot.by.empty()) keys = {plot.by};
   std::vector<FigureRun> found(runs.begin(), runs.end());
   std::map<std::string, std::set<std::string>> names;
@@ -117,36 +131,43 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
   for (const FigureRun& run : found) curves.push_back(run.swept);
   const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
-    if (names.at(run.variant).size() == 1 && !run.name.empty()) continue;
+    const bool of_one_variant = names.at(run.variant).size() == 1 && !run.name.empty();
+    if (of_one_variant && plot.panel.empty()) continue;
     run.name = name && !keys.empty() ? shared.at(run.swept) : run.variant;
   }
   return found;
 }
 
 /// Curves without symbols, which would hide them: each has its own colour, and dashes once these
-/// run out.
-void style_without_symbol(std::size_t curve, Series& series) {
-  series.colour = safe_colours[curve % safe_colours.size()];
+/// run out, unless the plot states its colours.
+void style_without_symbol(const PlotSpec& plot, std::size_t curve, Series& series) {
   series.point = 0;
+  if (!plot.series.empty()) return;
+  series.colour = safe_colours[curve % safe_colours.size()];
   if (curve / safe_colours.size() % 2 == 1) series.join = Join::dashes;
 }
 
-/// Every run against the cycle, or against a measure `x`.
+/// Every run against the cycle, or against a number `x` of the checkpoints.
 FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Quantity& y,
-                   const ScalarMeasure* x) {
+                   const Quantity& x) {
   FigureTable table{.name = plot.name, .columns = {"variant", "seed"}};
-  if (x != nullptr) table.columns.emplace_back("cycle");
+  if (x) table.columns.emplace_back("cycle");
   table.columns.insert(table.columns.end(), {plot.x, plot.y});
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
     for (const FigureRun* run : curve.runs) {
-      Series series = thin_line(std::exchange(title, Text()), curve.style.colour);
-      style_without_symbol(k, series);
+      Series series =
+          thin_line(std::exchange(title, Text()), curve.style.colour, curve.style.point);
+      if (plot.show == Show::scatter) {
+        series.join = Join::none;
+      } else {
+        style_without_symbol(plot, k, series);
+      }
       for (const CheckpointMeasures& c : run->checkpoints) {
-        const double at = x == nullptr ? c.cycle : x->of(c.measures), value = y(c.measures);
+        const double at = x ? x(c.measures) : c.cycle, value = y(c.measures);
         TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->seed});
-        if (x != nullptr) row.emplace_back(c.cycle);
+        if (x) row.emplace_back(c.cycle);
         row.insert(row.end(), {at, value});
         if (std::isfinite(at) && std::isfinite(value)) series.points.push_back({at, value});
       }
@@ -171,19 +192,18 @@ struct Points {
 /// Against a parameter: one number of each run, a trace for each seed. Of a curve measure: the
 /// curve of each run, a trace for each run. Checkpoints are those of `cycle`.
 Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
-  const RunMeasure* of_run = find_run_measure(plot.y);
   const CurveMeasure* of_curve = find_curve_measure(plot.y);
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
-    if (of_run != nullptr) {
-      points.add(run.seed, number_of(run, plot.x), of_run->of(run));
+    if (of_curve == nullptr && is_parameter(plot.y)) {
+      points.add(run.seed, number_of(run, plot.x), number_of(run, plot.y));
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
     if (of_curve == nullptr) {
-      points.add(run.seed, number_of(run, plot.x), find_measure(plot.y)->of(*measures));
+      points.add(run.seed, number_of(run, plot.x), scalar_column(plot.y).quantity(*measures));
       continue;
     }
     const MeasuredCurve measured = of_curve->of(*measures);
@@ -212,10 +232,9 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
   const CurveMeasure* of_curve = find_curve_measure(plot.y);
   const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
-  const bool of_whole_run = find_run_measure(plot.y) != nullptr;
-  const MeasureColumn y = of_curve != nullptr ? column_of(plot.y, of_curve->unit)
-                          : of_whole_run      ? column_of(plot.y, "1")
-                                              : scalar_column(plot.y);
+  const bool of_whole_run = of_curve == nullptr && is_parameter(plot.y);
+  const MeasureColumn y =
+      of_curve != nullptr ? column_of(plot.y, of_curve->unit) : scalar_column(plot.y);
   const double cycle = cycle_of(plot, runs);
   FigureTable table{.name = plot.name, .columns = {"variant", x}};
   add_columns(y, table.columns);
@@ -230,7 +249,8 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     for (const auto& [trace, values] : points.traces) {
       traces.push_back(
           thin_line(std::exchange(title, Text()), curve.style.colour, curve.style.point));
-      if (of_curve != nullptr) style_without_symbol(k, traces.back());
+      if (plot.show == Show::scatter) traces.back().join = Join::none;
+      if (of_curve != nullptr) style_without_symbol(plot, k, traces.back());
       for (const auto& [at, value] : values) traces.back().points.push_back({at, value});
     }
     for (const auto& [at, values] : points.values) {
@@ -244,11 +264,11 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   }
   table.chart.series = series_of(curves, columns_against(x, y));
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    if (of_curve != nullptr) style_without_symbol(k, table.chart.series[k]);
+    if (of_curve != nullptr) style_without_symbol(plot, k, table.chart.series[k]);
     table.chart.series[k].band = of_curve != nullptr;
     if (of_curve == nullptr) table.chart.series[k].runs = 0;  // those at each x are others
   }
-  if (plot.show == Show::traces) table.chart.series = std::move(traces);
+  if (plot.show != Show::mean) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
     if (curves.size() == 1) series.title = {};
   }
@@ -272,22 +292,167 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
   return table;
 }
 
+/// How the plot's curves are drawn, as far as it states it.
+std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
+  constexpr std::array<int, 11> points = {0, 5, 7, 9, 11, 13, 4, 6, 8, 10, 12};  // of a Marker
+  std::vector<CurveStyle> styles;
+  for (const SeriesSpec& one : plot.series) {
+    CurveStyle& stated = styles.emplace_back(CurveStyle{.where = one.where, .of_manifest = true});
+    stated.title = text_with_formulas(one.label);
+    const auto name = std::ranges::find(colour_names, one.colour);
+    stated.colour = name == colour_names.end()
+                        ? one.colour
+                        : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
+    if (one.marker) stated.point = points.at(static_cast<std::size_t>(*one.marker));
+  }
+  return styles;
+}
+
+/// Adds the published numbers in black: a dashed line, or two at the ends of an error, and points
+/// with open symbols. The caption names their sources.
+void add_published(const PlotSpec& plot, Chart& chart) {
+  std::vector<std::string> sources;
+  int point = 6;
+  for (const PublishedSpec& one : plot.published) {
+    Series series{.title = text_with_formulas(one.label), .colour = "#000000", .point = point};
+    if (one.value) {
+      series.point = 0;
+      series.join = Join::dashes;
+      for (const double end : {-one.error, one.error}) {
+        if (end != 0 || chart.lines.empty() || chart.lines.back().at != *one.value) {
+          chart.lines.push_back({.at = *one.value + end, .colour = "#000000"});
+        }
+      }
+    } else {
+      point = point == 12 ? 4 : point + 2;
+    }
+    for (const std::vector<double>& p : one.points) {
+      series.points.push_back({p[0], p[1]});
+      if (p.size() > 2) series.points.back().y_error = p[2];
+    }
+    chart.series.push_back(std::move(series));
+    sources.push_back(fmt::format("{}: {}", plain_text(text_with_formulas(one.label)), one.source));
+  }
+  if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
+}
+
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
-  const ScalarMeasure* x = find_measure(plot.x);
   const bool by_parameter = measured == nullptr && is_parameter(plot.x);
-  const bool grouped = by_parameter || !plot.by.empty();
+  const bool grouped = by_parameter || !plot.by.empty() || !plot.panel.empty();
   const std::vector<FigureRun> groups =
       grouped ? by_curve(given, plot, names) : std::vector<FigureRun>();
-  const std::vector<Curve> curves =
-      curves_by(grouped ? groups : given, {}, [](const FigureRun&) { return nullptr; }, {});
+  const std::vector<Curve> curves = curves_of(grouped ? groups : given, styles_of(plot));
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
-  const MeasureColumn column = scalar_column(plot.y);
-  if (plot.show == Show::traces) return traces(plot, curves, column.quantity, x);
-  if (plot.x == "cycle") return against_cycle(plot.name, curves, {&column, 1}, {});
-  if (plot.x == "phi") return against_phi(plot.name, curves, column, {});
+  std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
+  if (plot.show != Show::mean) {
+    return traces(plot, curves, columns[0].quantity,
+                  plot.x == "cycle" ? Quantity() : scalar_column(plot.x).quantity);
+  }
+  for (const std::string& measure : plot.also) columns.push_back(scalar_column(measure));
+  if (plot.x == "cycle") return against_cycle(plot.name, curves, columns, {});
+  if (plot.x == "phi") return against_phi(plot.name, curves, columns[0], {});
   return against_measure(plot, curves);
+}
+
+/// The runs of each value of the panels' parameter, in ascending order; all runs without one.
+std::map<nlohmann::json, std::vector<FigureRun>> runs_of_panels(const PlotSpec& plot,
+                                                                std::vector<FigureRun> runs) {
+  std::map<nlohmann::json, std::vector<FigureRun>> panels;
+  for (FigureRun& run : runs) {
+    const nlohmann::json value = plot.panel.empty() ? nullptr : parameter_of(run, plot.panel);
+    panels[value].push_back(std::move(run));
+  }
+  return panels;
+}
+
+/// Gives all panels the ranges of all their data.
+void share_ranges(std::vector<FigureTable>& tables) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<double, 2> low = {infinity, infinity}, high = {-infinity, -infinity};
+  for (const FigureTable& table : tables) {
+    for (const Series& series : table.chart.series) {
+      for (const ChartPoint& p : points_of(table, series)) {
+        if (!is_on_log_axes(table.chart, p)) continue;
+        const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
+        low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
+        high = {std::max(high[0], p.x), std::max(high[1], p.y + error)};
+      }
+    }
+  }
+  for (FigureTable& table : tables) {
+    Axis* const axes[] = {&table.chart.x, &table.chart.y};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!(low[k] < high[k])) continue;
+      const double room = 0.04 * (axes[k]->log ? std::log(high[k] / low[k]) : high[k] - low[k]);
+      const auto beyond = [&](double end, double by) {
+        return axes[k]->log ? end * std::exp(by) : end + by;
+      };
+      axes[k]->low = std::min(axes[k]->low.value_or(high[k]), beyond(low[k], -room));
+      axes[k]->high = beyond(high[k], room);
+    }
+  }
+}
+
+FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
+                       const NameVariants& names) {
+  if (!plot.by.empty()) {
+    std::vector<std::string> keys = names_in(plot.x);
+    keys.insert(keys.end(), {plot.by, plot.panel});
+    require_told_apart(plot.name, given, keys, "leave out its `by` for a curve of each variant");
+  }
+  std::vector<FigureRun> runs = with_values(given, {plot.y, plot.x});
+  FigureResult result;
+  std::vector<nlohmann::json> wheres;
+  const auto panels = runs_of_panels(plot, std::move(runs));
+  for (const auto& [value, members] : panels) {
+    FigureTable& table = result.tables.emplace_back(draw(plot, members, names));
+    table.chart.x = x_axis(plot, members);
+    table.chart.y = axis_of(plot.y);
+    adapt(table.chart.x, plot.xlabel, plot.log == LogAxes::x || plot.log == LogAxes::xy);
+    adapt(table.chart.y, plot.ylabel, plot.log == LogAxes::y || plot.log == LogAxes::xy);
+    add_published(plot, table.chart);
+    if (plot.panel.empty()) continue;
+    table.name += fmt::format("_{}", result.tables.size());
+    const nlohmann::json where = {{plot.panel, value}};
+    wheres.push_back(where);
+    table.chart.title = words_of(where);
+  }
+  if (names && !wheres.empty()) {
+    const auto named = names(wheres);
+    for (std::size_t k = 0; k < wheres.size(); ++k) {
+      result.tables[k].chart.title = named.at(wheres[k]);
+    }
+  }
+  if (result.tables.size() > 1) share_ranges(result.tables);
+  return result;
+}
+
+/// One figure of several: its panels and verdicts are theirs.
+Figure joined(const std::string& name, std::vector<Figure> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  Figure figure{name, parts.front().title, {}};
+  figure.within = parts.front().within;
+  for (const Figure& part : parts) {
+    figure.needs.insert(figure.needs.end(), part.needs.begin(), part.needs.end());
+    if (part.within != figure.within) figure.within = {};
+  }
+  if (std::ranges::all_of(parts, [](const Figure& part) { return bool(part.uses); })) {
+    figure.uses = [parts](const FigureRun& run) {
+      return std::ranges::any_of(parts, [&](const Figure& part) { return part.uses(run); });
+    };
+  }
+  figure.make = [parts = std::move(parts)](std::span<const FigureRun> runs) {
+    FigureResult result;
+    for (const Figure& part : parts) {
+      FigureResult more = part.make(runs);
+      std::ranges::move(more.tables, std::back_inserter(result.tables));
+      std::ranges::move(more.verdicts, std::back_inserter(result.verdicts));
+    }
+    return result;
+  };
+  return figure;
 }
 
 }  // namespace
@@ -301,7 +466,54 @@ std::string words_of(const nlohmann::json& values) {
 }
 
 bool is_parameter(std::string_view x) {
-  return x != "cycle" && find_measure(x) == nullptr;
+  return std::ranges::none_of(names_in(x), [](const std::string& name) {
+    return name == "cycle" || find_measure(name) != nullptr;
+  });
+}
+
+std::vector<FigureRun> with_values(std::span<const FigureRun> given,
+                                   const std::vector<std::string>& texts) {
+  std::vector<FigureRun> runs(given.begin(), given.end());
+  for (const std::string& text : texts) {
+    if (!is_expression(text) && find_run_measure(text) == nullptr) continue;
+    const Evaluate evaluate = evaluator_of(text);
+    for (FigureRun& run : runs) {
+      const auto of_run = [&run](const std::string& name) {
+        const RunMeasure* measure = find_run_measure(name);
+        return measure != nullptr ? measure->of(run) : number_of(run, name);
+      };
+      if (is_parameter(text)) {
+        run.parameters[text] = evaluate(of_run);
+        continue;
+      }
+      for (CheckpointMeasures& checkpoint : run.checkpoints) {
+        checkpoint.measures.numbers[text] = evaluate([&](const std::string& name) {
+          const ScalarMeasure* measure = find_measure(name);
+          return measure != nullptr ? measure->of(checkpoint.measures)
+                 : name == "cycle"  ? checkpoint.cycle
+                                    : of_run(name);
+        });
+      }
+    }
+  }
+  return runs;
+}
+
+Quantity quantity_of(const std::string& text) {
+  if (const ScalarMeasure* measure = find_measure(text)) {
+    return [measure](const Measures& m) { return measure->of(m); };
+  }
+  return [text](const Measures& m) { return m.numbers.at(text); };
+}
+
+std::vector<std::string> needs_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> needs;
+  for (const std::string& text : texts) {
+    for (const std::string& name : names_in(text)) {
+      if (const ScalarMeasure* one = find_measure(name)) needs.emplace_back(one->derived());
+    }
+  }
+  return needs;
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {
@@ -311,31 +523,42 @@ bool draws_every_cycle(const PlotSpec& plot) {
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   const CurveMeasure* measured = find_curve_measure(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
-  Figure figure{plot.name, plot.y + " against " + x,
-                [plot, names](std::span<const FigureRun> runs) {
-                  FigureTable table = draw(plot, runs, names);
-                  table.chart.x = x_axis(plot, runs);
-                  table.chart.y = axis_of(plot.y);
-                  table.chart.x.log = plot.log == LogAxes::x || plot.log == LogAxes::xy;
-                  table.chart.y.log = plot.log == LogAxes::y || plot.log == LogAxes::xy;
-                  for (Axis* axis : {&table.chart.x, &table.chart.y}) {
-                    if (axis->log) axis->low = {};
-                  }
-                  return FigureResult{{std::move(table)}, {}};
-                }};
+  Figure figure{
+      plot.name, plot.y + " against " + x,
+      [plot, names](std::span<const FigureRun> runs) { return plot_runs(plot, runs, names); }};
   if (measured != nullptr) figure.needs.emplace_back(measured->derived);
-  for (const std::string& name : {plot.x, plot.y}) {
-    if (const ScalarMeasure* one = find_measure(name)) figure.needs.emplace_back(one->derived());
-  }
+  std::vector<std::string> texts = plot.also;
+  texts.insert(texts.end(), {plot.x, plot.y});
+  for (const std::string& need : needs_of(texts)) figure.needs.push_back(need);
   figure.within = plot.cycles;
-  if (plot.cycle && !draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+  if (plot.cycle && !draws_every_cycle(plot) && !(measured == nullptr && is_parameter(plot.y))) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
-  if (!plot.by.empty()) {
-    figure.form = FigureForm::groups;
-    figure.keys = {plot.by, x};
-  }
   return figure;
+}
+
+std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
+                                const NameVariants& names) {
+  std::vector<Figure> parts;
+  std::vector<std::string> figures;  // of each part
+  for (const PlotSpec& plot : plots) {
+    parts.push_back(plot_figure(plot, names));
+    figures.push_back(plot.figure.empty() ? plot.name : plot.figure);
+  }
+  for (const ClaimSpec& claim : claims) {
+    parts.push_back(claim_figure(claim));
+    figures.push_back(claim.figure.empty() ? claim.name : claim.figure);
+  }
+  std::map<std::string, std::vector<Figure>> parts_of;
+  for (std::size_t k = 0; k < parts.size(); ++k) parts_of[figures[k]].push_back(parts[k]);
+  std::vector<Figure> found;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (std::find(figures.begin(), figures.begin() + static_cast<std::ptrdiff_t>(k), figures[k]) ==
+        figures.begin() + static_cast<std::ptrdiff_t>(k)) {
+      found.push_back(joined(figures[k], std::move(parts_of.at(figures[k]))));
+    }
+  }
+  return found;
 }
 
 }  // namespace shearcell

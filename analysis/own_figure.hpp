@@ -8,54 +8,112 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "analysis/figure.hpp"
 #include "core/named.hpp"
 
 namespace shearcell {
 
-struct Figure;
-
-/// What a plot draws: the mean over runs with its error, or every run.
-enum class Show : std::uint8_t { mean, traces };
+/// What a plot draws: the mean over runs with its error, every run, or every value as a point.
+enum class Show : std::uint8_t { mean, traces, scatter };
 template <>
-inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "traces");
+inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "traces", "scatter");
 
 /// Logarithmic axes of a plot.
 enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// What a claim says of the first variant: it has the same value, or a higher one.
-enum class Relation : std::uint8_t { same, higher };
+/// What a claim says of the first variant: it has the same value, a higher or a lower one.
+enum class Relation : std::uint8_t { same, higher, lower };
 template <>
-inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher");
+inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
+
+/// The symbol at the points of a curve.
+enum class Marker : std::uint8_t {
+  none,
+  square,
+  circle,
+  triangle,
+  triangle_down,
+  diamond,
+  open_square,
+  open_circle,
+  open_triangle,
+  open_triangle_down,
+  open_diamond
+};
+template <>
+inline constexpr auto kNames<Marker> = names_in_order<Marker>("none", "square", "circle",
+                                                              "triangle", "triangle_down",
+                                                              "diamond", "open_square",
+                                                              "open_circle", "open_triangle",
+                                                              "open_triangle_down", "open_diamond");
+
+/// How the curve of the variants with these parameters is drawn. What is not stated follows from
+/// what varies (analysis/figures/curves.hpp).
+struct SeriesSpec {
+  nlohmann::json where;     ///< parameters and their values
+  std::string label = {};   ///< with formulas (text_with_formulas)
+  std::string colour = {};  ///< "#rrggbb", or one of colour_names
+  std::optional<Marker> marker = {};
+
+  bool operator==(const SeriesSpec&) const = default;
+};
+
+/// Published numbers: one value, or points.
+struct PublishedSpec {
+  std::string label;  ///< in the key of a plot
+  std::string source;
+  std::optional<double> value = {};
+  double error = 0;                              ///< of the value; 0: not stated
+  std::vector<std::vector<double>> points = {};  ///< x, y and perhaps the error of y
+
+  bool operator==(const PublishedSpec&) const = default;
+};
 
 struct PlotSpec {
   std::string name;
-  std::string y;            ///< a scalar, curve (analysis/measures.hpp) or run measure (onset.hpp)
-  std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter; unused by curves
+  /// A scalar or curve measure (measures.hpp), a run measure (onset.hpp), or an expression of
+  /// scalar measures and parameters, or of run measures and parameters.
+  std::string y;
+  /// "cycle", a scalar measure, a parameter, or an expression of these; unused by curves.
+  std::string x = "cycle";
   std::string by = {};      ///< a curve for each value of it; "": for each variant
+  std::string figure = {};  ///< plots and claims of one figure are drawn together; "": alone
+  std::string panel = {};   ///< a panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
+  std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
+  std::vector<SeriesSpec> series = {};
+  std::vector<PublishedSpec> published = {};
+  std::vector<std::string> also = {};  ///< further scalar measures for the CSV, against the cycle
   /// Of curves, or with a parameter as x; default: the last one that all runs have.
   std::optional<std::uint64_t> cycle = {};
-  /// Cycles first to last, with the checkpoints at their phases; with traces only.
+  /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
-  std::string x_symbol = {}, x_unit = {};  ///< of that parameter; "" for none
+  std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
 
   bool operator==(const PlotSpec&) const = default;
 };
 
 struct ClaimSpec {
   std::string name;
-  std::string compare;  ///< a scalar measure or a run measure
+  std::string figure = {};  ///< as PlotSpec::figure
+  std::string compare;      ///< as PlotSpec::y, but no curve
   /// The measure's mean over these cycles, first to last; nothing for a run measure.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
-  std::array<nlohmann::json, 2> between;  ///< parameters and their values, of one variant each
-  double margin = 0;                      ///< of onset_size_cycle, of log2 of the ratio
+  /// Parameters and their values, of one variant each. The second one is empty if the first is
+  /// compared with published numbers.
+  std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
+  std::optional<PublishedSpec> published = {};
+  double margin = 0;           ///< of onset_size_cycle, of log2 of the ratio
+  bool relative = false;       ///< the margin is of the relative difference
+  std::string statement = {};  ///< what the claim says, for people; "": from its keys
   Relation is = Relation::same;
 
   bool operator==(const ClaimSpec&) const = default;
@@ -64,8 +122,20 @@ struct ClaimSpec {
 /// "fluid=still, walls=rough" of parameters and their values.
 std::string words_of(const nlohmann::json& values);
 
-/// Whether the x of a plot is a parameter: neither "cycle" nor a scalar measure.
+/// Whether the x of a plot is one number of a run: it names neither the cycle nor a measure of
+/// checkpoints.
 bool is_parameter(std::string_view x);
+
+/// A copy of the runs with the value of each expression, and of each run measure: of a number of
+/// the run, one of its parameters; else one of Measures::numbers of each checkpoint.
+std::vector<FigureRun> with_values(std::span<const FigureRun> runs,
+                                   const std::vector<std::string>& texts);
+
+/// A scalar measure of a checkpoint, or an expression of runs from with_values().
+Quantity quantity_of(const std::string& text);
+
+/// Names of the derived measures that measures and expressions need (Figure::needs).
+std::vector<std::string> needs_of(const std::vector<std::string>& texts);
 
 /// Whether the plot draws every cycle, not one of them.
 bool draws_every_cycle(const PlotSpec& plot);
@@ -74,11 +144,11 @@ bool draws_every_cycle(const PlotSpec& plot);
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
 
-/// One panel NAME: the measure against `x`, as the supplement's figures are drawn. Against phi,
-/// runs are averaged in bins; against another measure, at each cycle; a curve measure against its
-/// own x, at one cycle; against a parameter, at one cycle or a number of the whole run. `names`
-/// names curves that several variants share by what these have in common; without it they are
-/// called "fluid=still".
+/// The measure against `x`, as the supplement's figures are drawn: one panel NAME, or with
+/// PlotSpec::panel panels NAME_1, NAME_2, ... with equal ranges. Against phi, runs are averaged in
+/// bins; against another measure, at each cycle; a curve measure against its own x, at one cycle;
+/// against a parameter, at one cycle or a number of the whole run. `names` names curves that
+/// several variants share by what these have in common; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
 /// Why the sides of a claim cannot be compared, a sentence each. `variants`: how many variants have
@@ -89,5 +159,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
 /// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
 /// Its function throws UsageError with the first of problems_of_sides().
 Figure claim_figure(const ClaimSpec& claim);
+
+/// The figures of a manifest, in the order of their first plots and claims.
+std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
+                                const NameVariants& names);
 
 }  // namespace shearcell

@@ -33,7 +33,7 @@ Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {
 std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, Claimed claimed) {
   const bool within = claimed == Claimed::within;
   const bool may_be_zero = estimate.interval.low <= 0 && estimate.interval.high >= 0;
-  const std::optional<std::size_t> planned = runs_to_resolve(estimate, margin, within);
+  const std::optional<std::size_t> planned = runs_to_resolve(estimate, std::abs(margin), within);
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);

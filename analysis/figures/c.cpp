@@ -34,7 +34,7 @@ std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
 }
 
 struct AmplitudeGrowth {
-  CurveStyle style;  ///< its value is the amplitude
+  CurveStyle style;
   double amplitude;
   const PublishedAmplitude* published;
   std::vector<const FigureRun*> all_runs;
@@ -55,8 +55,10 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
     const PublishedAmplitude& published = published_nearest(amplitude);
     const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
     const std::size_t k = all.size();
-    all.push_back({.style = {amplitude, italic("A") + fmt::format(" = {}", amplitude),
-                             amplitude_colours[k % amplitude_colours.size()], curve_symbol(k)},
+    all.push_back({.style = {{{"amplitude_rad", amplitude}},
+                             italic("A") + fmt::format(" = {}", amplitude),
+                             amplitude_colours[k % amplitude_colours.size()],
+                             curve_symbol(k)},
                    .amplitude = amplitude,
                    .published = &published,
                    .all_runs = members,
@@ -225,7 +227,7 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
   const MeasureColumn largest{"largest_crystallite", "grains", [](const Measures& m) {
                                 return std::max(1.0, static_cast<double>(m.largest_crystallite));
                               }};
-  FigureTable table = against_phi("C_largest", curves_of(runs, "amplitude_rad", styles), largest,
+  FigureTable table = against_phi("C_largest", curves_of(runs, styles), largest,
                                   {.name = "largest crystallite", .unit = "grains", .log = true});
   for (const AmplitudeGrowth& one : all) table.chart.lines.push_back(critical_line(one));
   return table;

@@ -88,26 +88,6 @@ std::vector<Verdict> equal_physics(const std::string& what, RunGroup a, RunGroup
 constexpr double default_wall_mass = 10;    // [m/d^2]
 constexpr double default_wall_drag = 1000;  // [m/(d^2 s)]
 
-constexpr const char* unchanged = "default";
-constexpr const char* lifting = "bottom, under P alone";
-
-/// "wall mass ×3", "wall mass /3", or "".
-std::string times(const char* what, double ratio) {
-  if (!(std::abs(ratio - 1) > 1e-3)) return "";
-  return ratio > 1 ? fmt::format("{} ×{:.3g}", what, ratio)
-                   : fmt::format("{} /{:.3g}", what, 1 / ratio);
-}
-
-/// How the run differs from the default.
-nlohmann::json choice_of(const FigureRun& run) {
-  std::vector<std::string> parts = {
-      times("wall mass", number_of(run, "wall_mass_grains_per_d2") / default_wall_mass),
-      times("wall drag", number_of(run, "wall_drag_grains_per_d2_s") / default_wall_drag),
-      number_of(run, "wall_grain_draw") != 0 ? "other wall grains" : ""};
-  std::erase(parts, "");
-  return parts.empty() ? unchanged : fmt::format("{}", fmt::join(parts, ", "));
-}
-
 /// "v_fluid = ..."
 Text fluid_is(const Text& velocity) {
   return italic("v") + subscript("fluid") + " = " + velocity;
@@ -123,22 +103,26 @@ Text seconds(const char* mantissa) {
 
 FigureResult figure_s2(Runs runs) {
   const std::vector<CurveStyle> styles = {
-      {"still", fluid_is("0"), "#d55e00", 9},
-      {"cell", fluid_is(italic("v") + subscript("cell")), "#000000", 5}};
-  const auto curves = curves_of(runs, "fluid", styles);
+      {{{"fluid", "still"}}, fluid_is("0"), "#d55e00", 9},
+      {{{"fluid", "cell"}}, fluid_is(italic("v") + subscript("cell")), "#000000", 5}};
+  const auto curves = curves_of(runs, styles);
   return {{phi_against_cycle("S2a", curves), crystallinity_against_phi("S2b", curves)},
-          similar("B.3", "both drags", runs_with(curves, "cell"), runs_with(curves, "still"))};
+          similar("B.3", "both drags", runs_with(curves, styles[1].where),
+                  runs_with(curves, styles[0].where))};
 }
 
 FigureResult figure_s3(Runs runs) {
   // By the number of steps in a cycle of 2 s. The last two are ours: 0.81 and 0.90 of the largest
   // stable step.
   const std::vector<CurveStyle> styles = {
-      {76923, seconds("2.6"), "#000000", 5},   {57143, seconds("3.5"), "#d55e00", 7},
-      {45600, seconds("4.4"), "#0072b2", 9},   {28571, seconds("7.0"), "#009e73", 11},
-      {20000, seconds("10.0"), "#cc79a7", 13}, {18000, seconds("11.1"), "#e69f00", 4}};
-  const auto curves = curves_of(runs, "steps_per_cycle", styles);
-  const RunGroup main_text = runs_with(curves, 45600);
+      {{{"steps_per_cycle", 76923}}, seconds("2.6"), "#000000", 5},
+      {{{"steps_per_cycle", 57143}}, seconds("3.5"), "#d55e00", 7},
+      {{{"steps_per_cycle", 45600}}, seconds("4.4"), "#0072b2", 9},
+      {{{"steps_per_cycle", 28571}}, seconds("7.0"), "#009e73", 11},
+      {{{"steps_per_cycle", 20000}}, seconds("10.0"), "#cc79a7", 13},
+      {{{"steps_per_cycle", 18000}}, seconds("11.1"), "#e69f00", 4}};
+  const auto curves = curves_of(runs, styles);
+  const RunGroup main_text = runs_with(curves, {{"steps_per_cycle", 45600}});
   std::vector<Verdict> verdicts;
   const auto add = [&](std::vector<Verdict> more) {
     std::ranges::move(more, std::back_inserter(verdicts));
@@ -148,7 +132,7 @@ FigureResult figure_s3(Runs runs) {
   };
   for (const auto& [steps, step] :
        {std::pair(76923, "2.6e-5"), std::pair(57143, "3.5e-5"), std::pair(28571, "7.0e-5")}) {
-    if (const RunGroup other = runs_with(curves, steps); !other.empty()) {
+    if (const RunGroup other = runs_with(curves, {{"steps_per_cycle", steps}}); !other.empty()) {
       add(similar("B.4", steps_of(step), other, main_text));
     }
   }
@@ -156,7 +140,7 @@ FigureResult figure_s3(Runs runs) {
       {"B.4: at 4.4e-5 s the average overlap is less than 1e-3", published_overlap, Claimed::below},
       over_cycles("mean overlap [d]", &Measures::mean_overlap, 1, early_cycles), main_text, 0));
   for (const auto& [steps, step] : {std::pair(20000, "1.0e-4"), std::pair(18000, "1.11e-4")}) {
-    if (const RunGroup other = runs_with(curves, steps); !other.empty()) {
+    if (const RunGroup other = runs_with(curves, {{"steps_per_cycle", steps}}); !other.empty()) {
       add(equal_physics(steps_of(step), other, main_text));
     }
   }
@@ -164,21 +148,17 @@ FigureResult figure_s3(Runs runs) {
           std::move(verdicts)};
 }
 
-/// The wall that moves; `lifting` if the pressure alone also lifts the grains.
-nlohmann::json load_of(const FigureRun& run) {
-  nlohmann::json moves = parameter_of(run, "moving_wall");
-  if (moves == "bottom" && parameter_of(run, "pressure_at") == "moving_wall") moves = lifting;
-  return moves;
-}
-
 FigureResult figure_s4(Runs runs) {
   const std::vector<CurveStyle> styles = {
-      {"bottom", "top fixed", "#d55e00", 9},
-      {"top", "top moves vertically", "#000000", 5},
-      {lifting, Text("top fixed, ") + italic("P") + " on the bottom wall", "#0072b2", 11}};
-  const auto curves = curves_by(runs, find_figure("S4")->keys, load_of, styles);
-  const RunGroup top = runs_with(curves, "top");
-  const RunGroup bottom = runs_with(curves, "bottom");
+      {{{"moving_wall", "bottom"}, {"pressure_at", "top"}}, "top fixed", "#d55e00", 9},
+      {{{"moving_wall", "top"}}, "top moves vertically", "#000000", 5},
+      {{{"moving_wall", "bottom"}, {"pressure_at", "moving_wall"}},
+       Text("top fixed, ") + italic("P") + " on the bottom wall",
+       "#0072b2",
+       11}};
+  const auto curves = curves_of(runs, styles);
+  const RunGroup top = runs_with(curves, styles[1].where);
+  const RunGroup bottom = runs_with(curves, styles[0].where);
   std::vector<Verdict> verdicts = similar("B.6", "both moving walls", top, bottom);
   verdicts.push_back(same_contacts("B.6", "both moving walls", "mean overlap",
                                    &Measures::mean_overlap, top, bottom));
@@ -189,11 +169,12 @@ FigureResult figure_s4(Runs runs) {
 }
 
 FigureResult figure_b5(Runs runs) {
-  const std::vector<CurveStyle> styles = {{"continuous", "continuous shear", "#000000", 5},
-                                          {"paused", "periodically paused shear", "#d55e00", 7}};
-  const auto curves = curves_of(runs, "protocol", styles);
-  const RunGroup paused = runs_with(curves, "paused");
-  const RunGroup continuous = runs_with(curves, "continuous");
+  const std::vector<CurveStyle> styles = {
+      {{{"protocol", "continuous"}}, "continuous shear", "#000000", 5},
+      {{{"protocol", "paused"}}, "periodically paused shear", "#d55e00", 7}};
+  const auto curves = curves_of(runs, styles);
+  const RunGroup paused = runs_with(curves, styles[1].where);
+  const RunGroup continuous = runs_with(curves, styles[0].where);
   return {
       {phi_against_cycle("B5a", curves), crystallinity_against_cycle("B5b", curves),
        crystallinity_against_phi("B5c", curves)},
@@ -207,11 +188,11 @@ FigureResult figure_b5(Runs runs) {
 
 // Not in the supplement, which says only that crystallites appear away from the walls (E).
 FigureResult figure_walls(Runs runs) {
-  const std::vector<CurveStyle> styles = {{"rough", "rough walls", "#000000", 5},
-                                          {"smooth", "smooth walls", "#d55e00", 7}};
-  const auto curves = curves_of(runs, "walls", styles);
-  const RunGroup rough = runs_with(curves, "rough");
-  const RunGroup smooth = runs_with(curves, "smooth");
+  const std::vector<CurveStyle> styles = {{{{"walls", "rough"}}, "rough walls", "#000000", 5},
+                                          {{{"walls", "smooth"}}, "smooth walls", "#d55e00", 7}};
+  const auto curves = curves_of(runs, styles);
+  const RunGroup rough = runs_with(curves, styles[0].where);
+  const RunGroup smooth = runs_with(curves, styles[1].where);
   const auto fifth = [](RunGroup group) {
     return waits_for(group, &Measures::crystalline_percent, 20);
   };
@@ -231,19 +212,23 @@ FigureResult figure_walls(Runs runs) {
 }
 
 FigureResult figure_choices(Runs runs) {
-  const std::vector<CurveStyle> styles = {{unchanged, "default", "#000000", 5},
-                                          {"wall mass ×3", "wall mass ×3", "#d55e00", 9},
-                                          {"wall mass /3", "wall mass /3", "#d55e00", 8},
-                                          {"wall drag ×3", "wall drag ×3", "#0072b2", 11},
-                                          {"wall drag /3", "wall drag /3", "#0072b2", 10},
-                                          {"other wall grains", "other wall grains", "#009e73", 7}};
-  const auto curves = curves_by(runs, find_figure("choices")->keys, choice_of, styles);
+  const auto choice = [](double mass, double drag, int draw) {
+    return nlohmann::json{{"wall_mass_grains_per_d2", mass * default_wall_mass},
+                          {"wall_drag_grains_per_d2_s", drag * default_wall_drag},
+                          {"wall_grain_draw", draw}};
+  };
+  const std::vector<CurveStyle> styles = {{choice(1, 1, 0), "default", "#000000", 5},
+                                          {choice(3, 1, 0), "wall mass ×3", "#d55e00", 9},
+                                          {choice(1. / 3, 1, 0), "wall mass /3", "#d55e00", 8},
+                                          {choice(1, 3, 0), "wall drag ×3", "#0072b2", 11},
+                                          {choice(1, 1. / 3, 0), "wall drag /3", "#0072b2", 10},
+                                          {choice(1, 1, 1), "other wall grains", "#009e73", 7}};
+  const auto curves = curves_of(runs, styles);
   std::vector<Verdict> verdicts;
-  const RunGroup reference = runs_with(curves, unchanged);
+  const RunGroup reference = runs_with(curves, styles[0].where);
   for (std::size_t k = 1; k < styles.size(); ++k) {
-    verdicts.push_back(same_early_phi("choice",
-                                      "the default and " + styles[k].value.get<std::string>(),
-                                      runs_with(curves, styles[k].value), reference));
+    verdicts.push_back(same_early_phi("choice", "the default and " + plain_text(styles[k].title),
+                                      runs_with(curves, styles[k].where), reference));
   }
   return {{phi_against_cycle("choices", curves)}, std::move(verdicts)};
 }

@@ -18,13 +18,13 @@
 namespace shearcell {
 namespace {
 
-bool matches(const nlohmann::json& a, const nlohmann::json& b) {
-  if (a.is_number() && b.is_number()) {
-    const auto x = a.get<double>();
-    const auto y = b.get<double>();
-    return std::abs(x - y) <= 0.03 * std::abs(y);
-  }
-  return a == b;
+bool matches(const FigureRun& run, const nlohmann::json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    const nlohmann::json value = parameter_of(run, stated.key());
+    if (!value.is_number() || !stated.value().is_number()) return value == stated.value();
+    const auto wanted = stated.value().template get<double>();
+    return std::abs(value.get<double>() - wanted) <= 0.03 * std::abs(wanted);
+  });
 }
 
 /// A variant as one field without quotes, for readers that do not know RFC 4180. Variants of
@@ -65,8 +65,10 @@ class StylesOfOthers {
     // would need a style twice: that gives 70 styles.
     if (rests_.size() == 1 || firsts_.size() > safe_colours.size() || rests_.size() > curve_symbols)
       first = rest = first * rests_.size() + rest;
-    return {nullptr, run.name.empty() ? run.variant : run.name,
-            safe_colours[first % safe_colours.size()], curve_symbol(rest)};
+    return {{},
+            run.name.empty() ? run.variant : run.name,
+            safe_colours[first % safe_colours.size()],
+            curve_symbol(rest)};
   }
   const std::vector<std::string>& keys() const { return keys_; }
 
@@ -163,33 +165,22 @@ SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
           .runs = "runs"};
 }
 
-std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
-                             std::span<const CurveStyle> styles) {
-  return curves_by(
-      runs, std::span(&parameter, 1),
-      [&](const FigureRun& run) { return parameter_of(run, parameter); }, styles);
-}
-
-std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const std::string> keys,
-                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
-                             std::span<const CurveStyle> styles) {
+std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
   for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
   const StylesOfOthers others(runs);
   const bool own = std::ranges::all_of(others.keys(), [&](const std::string& key) {
-    return std::ranges::find(keys, key) != keys.end();
+    return std::ranges::any_of(styles, [&](const CurveStyle& s) { return s.where.contains(key); });
   });
   std::vector<std::size_t> used(styles.size() + 1);
   std::vector<std::pair<std::size_t, Curve>> ranked;  // by style
   for (auto& [variant, members] : variants) {
-    Curve curve;
-    curve.variant = plain_field(variant);
-    curve.value = value_of(*members.front());
-    curve.points = points_of(members);
-    curve.runs = std::move(members);
+    Curve curve{plain_field(variant), {}, std::move(members), {}};
+    curve.points = points_of(curve.runs);
     if (curve.points.empty()) continue;
-    const auto style = std::ranges::find_if(
-        styles, [&](const CurveStyle& s) { return own && matches(curve.value, s.value); });
+    const auto style = std::ranges::find_if(styles, [&](const CurveStyle& s) {
+      return (own || s.of_manifest) && matches(*curve.runs.front(), s.where);
+    });
     const auto rank = static_cast<std::size_t>(style - styles.begin());
     ++used[rank];
     ranked.emplace_back(rank, std::move(curve));
@@ -199,11 +190,25 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
     curve.style = others.style(run);
     if (used[rank] > 1) rank = styles.size();
     if (rank == styles.size()) continue;
-    if (run.named) {
-      curve.style.colour = styles[rank].colour, curve.style.point = styles[rank].point;
-    } else {
-      curve.style = styles[rank];
+    const CurveStyle& stated = styles[rank];
+    if (!stated.title.empty() && (stated.of_manifest || !run.named)) {
+      curve.style.title = stated.title;
     }
+    if (!stated.colour.empty()) curve.style.colour = stated.colour;
+    if (stated.point >= 0) curve.style.point = stated.point;
+  }
+  // A colour that a manifest states is of that curve alone.
+  std::set<std::string> taken;
+  for (const CurveStyle& style : styles) taken.insert(style.of_manifest ? style.colour : "");
+  for (auto& [rank, curve] : ranked) {
+    if (rank < styles.size() && !styles[rank].colour.empty()) continue;
+    if (!taken.contains(curve.style.colour)) continue;
+    const auto free = std::ranges::find_if(safe_colours, [&](const char* colour) {
+      return !taken.contains(colour) && std::ranges::none_of(ranked, [&](const auto& other) {
+        return other.second.style.colour == colour;
+      });
+    });
+    if (free != safe_colours.end()) curve.style.colour = *free;
   }
   std::ranges::stable_sort(ranked, {}, [&](const auto& entry) {
     return std::pair(entry.first, others.place(*entry.second.runs.front()));
@@ -213,10 +218,10 @@ std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const st
   return curves;
 }
 
-RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& value) {
+RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& where) {
   std::vector<const Curve*> found;
   for (const Curve& curve : curves) {
-    if (matches(curve.value, value)) found.push_back(&curve);
+    if (matches(*curve.runs.front(), where)) found.push_back(&curve);
   }
   if (found.size() > 1) {
     std::erase_if(found, [](const Curve* curve) { return sweeps_engine(*curve->runs.front()); });

@@ -16,16 +16,18 @@
 
 namespace shearcell {
 
-/// How a curve is drawn, following the supplement: that of the runs in which the figure's parameter
-/// has this value. Numbers match within 3 %, because a time step is a whole fraction of a cycle. A
-/// style is used only if the runs differ in the figure's parameters alone and one curve fits it.
-/// Other curves are named by what varies, with a colour for each value of the first parameter and a
-/// symbol for the others.
+/// How the curve of the runs with these parameters is drawn. Numbers match within 3 %, because a
+/// time step is a whole fraction of a cycle. A style is used only if one curve fits it. What a
+/// style does not state, and other curves, follow from what varies: its names, a colour for each
+/// value of the first parameter and a symbol for the others.
 struct CurveStyle {
-  nlohmann::json value;
-  Text title;
-  std::string colour;  ///< "#rrggbb"
-  int point;           ///< as in Series
+  nlohmann::json where;     ///< parameters and their values
+  Text title = {};          ///< empty: not stated
+  std::string colour = {};  ///< "#rrggbb"; empty: not stated
+  int point = -1;           ///< as in Series; -1: not stated
+  /// Stated in a manifest. Others are used only if the runs differ in the parameters of styles
+  /// alone, and their titles only if no label of the manifest names the variant.
+  bool of_manifest = false;
 };
 
 /// All checkpoints of one variant at the end of one cycle, one per run.
@@ -35,27 +37,20 @@ struct CurvePoint {
 };
 
 struct Curve {
-  std::string variant;   ///< as the manifest names it, with ';' for ','
-  nlohmann::json value;  ///< of the figure's parameter; null if the runs have no such key
-  CurveStyle style = {};
+  std::string variant;    ///< as the manifest names it, with ';' for ','
+  CurveStyle style = {};  ///< complete, without `where`
   std::vector<const FigureRun*> runs;
   std::vector<CurvePoint> points;  ///< by cycle
 };
 
-/// `value_of` a run decides its style, where the runs differ in `keys` alone. Checkpoints inside a
-/// cycle are left out. Curves come in the order of the styles, then any others by their values.
-/// Throws AnalysisError if one run has two checkpoints of one cycle. Points into `runs`.
-std::vector<Curve> curves_by(std::span<const FigureRun> runs, std::span<const std::string> keys,
-                             const std::function<nlohmann::json(const FigureRun&)>& value_of,
-                             std::span<const CurveStyle> styles);
+/// One curve for each variant, in the order of the styles, then any others by their values.
+/// Checkpoints inside a cycle are left out. Throws AnalysisError if one run has two checkpoints of
+/// one cycle. Points into `runs`.
+std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const CurveStyle> styles);
 
-/// The same where one parameter decides the style.
-std::vector<Curve> curves_of(std::span<const FigureRun> runs, const std::string& parameter,
-                             std::span<const CurveStyle> styles);
-
-/// Runs of the one curve in which the parameter has that value; empty if there is no such curve, or
-/// several. A curve of another engine counts only if there is no other.
-RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& value);
+/// Runs of the one curve with these parameters; empty if there is no such curve, or several. A
+/// curve of another engine counts only if there is no other.
+RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& where);
 
 // The axes that several figures share.
 Axis cycle_axis();
@@ -68,9 +63,12 @@ Axis onset_axis();      ///< phi at the onset
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
 std::vector<ReferenceLine> onset_lines();
 
-/// Colours that readers with any colour vision tell apart (Okabe and Ito, jfly.uni-koeln.de/color).
+/// Colours that readers with any colour vision tell apart (Okabe and Ito, jfly.uni-koeln.de/color),
+/// and their names in manifests.
 inline constexpr std::array<const char*, 7> safe_colours = {
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+inline constexpr std::array<std::string_view, 7> colour_names = {
+    "blue", "vermilion", "green", "purple", "orange", "sky", "black"};
 
 /// The five filled symbols, then the open ones.
 inline int curve_symbol(std::size_t k) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "analysis/figures/curves.hpp"
@@ -112,11 +113,6 @@ Verdict methods_agree(double amplitude, RunGroup runs) {
                       shift, runs, 0);
 }
 
-/// The values in which the curves of S6 differ.
-nlohmann::json amplitude_and_gravity(double amplitude, bool gravity) {
-  return nlohmann::json::array({amplitude, gravity});
-}
-
 bool has_gravity(const FigureRun& run) {
   return number_of(run, "gravity_m_per_s2") != 0;
 }
@@ -129,11 +125,17 @@ std::vector<CurveStyle> styles_for(std::span<const FigureRun> runs) {
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const char* colour = colours[k % colours.size()];
     const int open = 4 + 2 * static_cast<int>(k % 4);
-    for (const bool gravity : {true, false}) {
+    std::set<double> gravities;
+    for (const FigureRun* run : members) gravities.insert(number_of(*run, "gravity_m_per_s2"));
+    for (const bool has : {true, false}) {
+      const auto fits = [has](double gravity) { return (gravity != 0) == has; };
+      if (std::ranges::count_if(gravities, fits) != 1) continue;
       styles.push_back(
-          {amplitude_and_gravity(amplitude, gravity),
-           italic("A") + fmt::format(" = {}, {}", amplitude, gravity ? "gravity" : "no gravity"),
-           colour, gravity ? open + 1 : open});
+          {{{"amplitude_rad", amplitude},
+            {"gravity_m_per_s2", *std::ranges::find_if(gravities, fits)}},
+           italic("A") + fmt::format(" = {}, {}", amplitude, has ? "gravity" : "no gravity"),
+           colour,
+           has ? open + 1 : open});
     }
     ++k;
   }
@@ -280,12 +282,8 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
 }
 
 FigureResult figure_s6(std::span<const FigureRun> runs) {
-  const std::vector<Curve> curves = curves_by(
-      runs, find_figure("S6")->keys,
-      [](const FigureRun& run) {
-        return amplitude_and_gravity(number_of(run, "amplitude_rad"), has_gravity(run));
-      },
-      styles_for(runs));
+  const std::vector<CurveStyle> styles = styles_for(runs);
+  const std::vector<Curve> curves = curves_of(runs, styles);
   const std::vector<CurveOnset> onsets = onsets_of(curves);
   FigureTable phi = phi_against_cycle("S6", curves);
   phi.chart.lines = onset_lines();
@@ -301,8 +299,11 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
           o.curve->runs,
           fmt::format("D: without gravity the onset at A = {} rad is phi = 0.646", o.amplitude)));
     }
-    const RunGroup with = runs_with(curves, amplitude_and_gravity(o.amplitude, true));
-    std::ranges::move(same_without_gravity(o.amplitude, o.curve->runs, with),
+    const auto with = std::ranges::find_if(onsets, [&](const CurveOnset& other) {
+      return other.gravity && other.amplitude == o.amplitude;
+    });
+    std::ranges::move(same_without_gravity(o.amplitude, o.curve->runs,
+                                           with == onsets.end() ? RunGroup() : with->curve->runs),
                       std::back_inserter(result.verdicts));
   }
   if (!small) {

@@ -166,8 +166,9 @@ manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.capti
 NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
 DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. A table of all experiments
 goes into DIR/SCALE. Where the number of runs of a mean changes along a curve, the key of the
-drawing names the fewest and the most. Caches measures in the store's derived.sqlite. If you delete
-that file, they are measured again, except those of pruned checkpoints (see `regenerate`).
+drawing names the fewest and the most (the caption, if all curves have the same). Caches measures
+in the store's derived.sqlite. If you delete that file, they are measured again, except those of
+pruned checkpoints (see `regenerate`).
 Figures and the keys that they compare (some have a curve for each value of other keys too):
 )" + list_of_figures() +
       "Examples:\n  shearcell figures S2 --out figures\n"

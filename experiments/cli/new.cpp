@@ -41,8 +41,7 @@ std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
   about += fmt::format("; {}", expected_values(field));
-  return commented(about) +
-         fmt::format("  # {}: {}\n", field.name, value_text(get_value(field, {})));
+  return commented(about) + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
 }
 
 /// The figures and the keys that they compare, as comments.

@@ -141,15 +141,14 @@ std::string unknown_name(const char* what, const std::string& name,
 }
 
 std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
-  std::vector<Figure> figures;
   const std::optional<Manifest> read_one = parsed(manifest);
-  if (!read_one) return figures;
+  if (!read_one) return {};
   const auto names = [labels = read_one->labels](const std::vector<nlohmann::json>& variants) {
     return variant_names(variants, labels);
   };
-  for (const PlotSpec& plot : read_one->plots) figures.push_back(plot_figure(plot, names));
-  for (const ClaimSpec& claim : read_one->claims) figures.push_back(claim_figure(claim));
-  return figures;
+  const std::vector<PlotSpec> plots(read_one->plots.begin(), read_one->plots.end());
+  const std::vector<ClaimSpec> claims(read_one->claims.begin(), read_one->claims.end());
+  return own_figures(plots, claims, names);
 }
 
 /// Names the variants of the runs, which may be of several versions of a manifest.

@@ -114,27 +114,6 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record_figure(name, facts);
 }
 
-/// Throws UsageError if the figure would average over values of a parameter other than its keys.
-/// Parameters that change together with its keys are allowed.
-void require_told_apart(const WantedFigure& wanted, const std::vector<FigureRun>& runs) {
-  if (wanted.figure.form != FigureForm::groups) return;
-  std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
-  for (const FigureRun& run : runs) {
-    std::vector<nlohmann::json> group;
-    for (const std::string& key : wanted.figure.keys) group.push_back(parameter_of(run, key));
-    variants.emplace_back(std::move(group), run.swept);
-  }
-  const std::string key = averaged_key(variants);
-  if (key.empty()) return;
-  const bool of_manifest = find_figure(wanted.figure.name) == nullptr;
-  throw UsageError(fmt::format(
-      "figure {} would average over the values of {} that experiment {} sweeps; {}",
-      wanted.figure.name, key, wanted.experiment,
-      of_manifest
-          ? "leave out its `by` for a curve of each variant"
-          : "give each an experiment of its own, or state a plot in the manifest (`plots`)"));
-}
-
 /// "drag/desk", or "desk" for a figure of all experiments: the path of its files in the folder for
 /// figures, and of its record. Checks both names, since the store is not trusted.
 std::string place_of(const FigureSummary& figure) {
@@ -172,8 +151,18 @@ bool has_no_value(const FigureTable& table) {
 /// Also says which runs were selected and what was left out.
 std::string caption(const FigureSummary& summary, const std::map<std::string, std::size_t>& runs,
                     const std::vector<FigureTable>& tables, const RunSelection& selected) {
-  std::vector<std::string> counts;
-  for (const auto& [variant, count] : runs) counts.push_back(fmt::format("{}: {}", variant, count));
+  std::vector<std::string> variants, counts;
+  std::set<std::size_t> distinct;
+  for (const auto& [variant, count] : runs) {
+    variants.push_back(variant);
+    counts.push_back(fmt::format("{}: {}", variant, count));
+    distinct.insert(count);
+  }
+  if (runs.size() > 1 && distinct.size() == 1) {
+    counts = {fmt::format("{} each of {}", *distinct.begin(),
+                          runs.size() > 6 ? fmt::format("{} variants", runs.size())
+                                          : fmt::format("{}", fmt::join(variants, "; ")))};
+  }
   // The title of an own plot says what its axes say.
   const std::string title = find_figure(summary.name) == nullptr ? "" : ". " + summary.title;
   std::string text =
@@ -228,7 +217,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   measuring.also = wanted.also;
   const std::vector<FigureRun> runs =
       figure_runs(store, figure, collected.runs, measuring, summary);
-  require_told_apart(wanted, runs);
+  if (figure.form == FigureForm::groups) {
+    require_told_apart(
+        figure.name, runs, figure.keys,
+        "give each an experiment of its own, or state a plot in the manifest (`plots`)");
+  }
   summary.title = title_of(figure, runs);
   summary.runs = runs.size();
   for (const FigureRun& run : runs) {

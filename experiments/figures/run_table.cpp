@@ -167,7 +167,7 @@ json swept_value(const Field& field, const SelectedRun& selected) try {
   if (value != selected.membership.swept.end()) return *value;
   const StageRecord record = read_stage(selected.run.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
-  return has_effect ? get_value(field, record.parameters) : json();
+  return has_effect ? field.get(record.parameters) : json();
 } catch (const UnreadableRecord&) {
   return nullptr;
 }

@@ -16,7 +16,8 @@ set(licences
   "brotli=MIT" "boost=BSL-1.0" "cgal=GPL-3.0-or-later AND LGPL-3.0-or-later" "cli11=BSD-3-Clause"
   "curl=curl" "eigen3=MPL-2.0" "fmtlib=MIT" "gcc=GPL-3.0-or-later WITH GCC-exception-3.1"
   "glibc=LGPL-2.1-or-later" "gmp=LGPL-3.0-or-later OR GPL-2.0-or-later" "hdf5=BSD-3-Clause"
-  "highway=Apache-2.0" "libaec=BSD-2-Clause" "libkainjow-mustache=BSL-1.0" "mpfr=LGPL-3.0-or-later" "nlohmann-json=MIT" "openssl=Apache-2.0"
+  "highway=Apache-2.0" "libaec=BSD-2-Clause" "libkainjow-mustache=BSL-1.0" "mpfr=LGPL-3.0-or-later"
+  "muparser=BSD-2-Clause" "nlohmann-json=MIT" "openssl=Apache-2.0"
   "sqlite3=blessing" "yaml-cpp=MIT" "zlib=Zlib")
 
 # TEXT as a JSON string, quotes included.

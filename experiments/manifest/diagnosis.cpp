@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
@@ -355,9 +356,19 @@ std::uint64_t length_of(const Variant& variant) {
   return target_cycles(variant.parameters);
 }
 
-std::uint64_t cycles_back(string_view measure) {
-  const ScalarMeasure* found = find_measure(measure);
-  return found == nullptr ? 0 : found->cycles_back();
+/// To the earliest checkpoint that a measure or expression needs besides its own.
+std::uint64_t cycles_back(string_view text) {
+  std::uint64_t most = 0;
+  for (const string& name : names_in(text)) {
+    if (const ScalarMeasure* found = find_measure(name))
+      most = std::max(most, found->cycles_back());
+  }
+  return most;
+}
+
+/// Whether the y of the plot is one number of a run.
+bool is_of_run(const PlotSpec& plot) {
+  return is_parameter(plot.y) && find_curve_measure(plot.y) == nullptr;
 }
 
 /// "a checkpoint at cycle 3 with another one 1 cycle before it".
@@ -410,7 +421,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+  } else if (!draws_every_cycle(plot) && !is_of_run(plot)) {
     if (!plot.cycle && scale.until->until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(length_of(shortest)));
     where = format(" at cycle {}", cycles[0]);
@@ -449,10 +460,33 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
   return "";
 }
 
+bool has_values(const Variant& variant, const json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& item) {
+    return find_field(item.key())->get(variant.parameters) == item.value();
+  });
+}
+
+/// The number of the plot's curves that the entry of `series` fits.
+std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
+                      std::span<const Variant> variants) {
+  std::set<json> curves;
+  for (const Variant& variant : variants) {
+    if (!has_values(variant, series.where)) continue;
+    json curve = variant.swept_values();
+    for (const string& name : names_in(plot.x)) curve.erase(name);
+    curve.erase(plot.panel);
+    if (!plot.by.empty()) curve = find_field(plot.by)->get(variant.parameters);
+    curves.insert(std::move(curve));
+  }
+  return curves.size();
+}
+
 std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                                 std::span<const Variant> variants, std::size_t) {
   std::vector<string> found;
-  const string key = plot.by.empty() ? "" : averaged_over({plot.by, plot.x}, variants);
+  std::vector<string> keys = names_in(plot.x);
+  keys.insert(keys.end(), {plot.by, plot.panel});
+  const string key = plot.by.empty() ? "" : averaged_over(keys, variants);
   if (!key.empty()) {
     found.push_back(format(
         "it would average over the values of {}. Leave out `by` for a curve of each variant.",
@@ -465,7 +499,14 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
-  if (plot.cycle && find_run_measure(plot.y) != nullptr) {
+  for (const SeriesSpec& one : plot.series) {
+    const std::size_t curves = curves_of(one, plot, variants);
+    if (curves < 2) continue;
+    found.push_back(
+        format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
+               words_of(one.where), curves));
+  }
+  if (plot.cycle && is_of_run(plot)) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
@@ -480,15 +521,13 @@ std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
   std::array<std::vector<const Variant*>, 2> sides;
   for (const Variant& variant : variants) {
     for (std::size_t k = 0; k < 2; ++k) {
-      const bool fits = std::ranges::all_of(claim.between[k].items(), [&](const auto& item) {
-        return find_field(item.key())->get(variant.parameters) == item.value();
-      });
-      if (fits) sides[k].push_back(&variant);
+      if (has_values(variant, claim.between[k])) sides[k].push_back(&variant);
     }
   }
   const auto run_of = [](const Variant& variant) {
     return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).id;
   };
+  if (claim.published) sides[1].clear();
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
   std::vector<string> found =
       problems_of_sides(claim, {sides[0].size(), sides[1].size()},

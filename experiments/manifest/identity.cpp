@@ -36,7 +36,7 @@ RunRecord stage_of(Stage stage, const Parameters& given, std::uint64_t seed,
   const Parameters parameters = without_ineffective(given);
   json values = json::object();
   for (const Field& field : schema()) {
-    json value = field.identity.recorded_as.empty() ? get_value(field, parameters)
+    json value = field.identity.recorded_as.empty() ? field.get(parameters)
                                                     : as_json(field, field.identity.recorded_as);
     if (enters(field.identity, stage, parameters.protocol, value)) {
       values[std::string(field.name)] = std::move(value);
@@ -92,12 +92,6 @@ std::string text_member(const json& object, const char* key) {
   return value.get<std::string>();
 }
 
-// An empty object if the record has none.
-json stated_parameters(const json& resolved) {
-  json values = member_of(resolved, "parameters");
-  return values.is_object() ? values : json::object();
-}
-
 std::optional<ProtocolKind> protocol_in(const json& values) {
   const auto found = values.find("protocol");
   if (found == values.end() || !found->is_string()) return std::nullopt;
@@ -118,10 +112,10 @@ Parameters read_parameters(Stage stage, const json& values) {
       }
       const std::string_view constant = field.identity.recorded_as;
       const bool is_constant = !constant.empty() && *found == as_json(field, constant);
-      set_value(field, is_constant ? get_value(field, Parameters{}) : *found, parameters);
+      field.set(parameters, is_constant ? field.get(Parameters{}) : *found);
     } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
       if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
-      set_value(field, as_json(field, field.identity.omitted_at), parameters);
+      field.set(parameters, as_json(field, field.identity.omitted_at));
     } else if (found != values.end()) {
       throw damaged(field.name, "does not belong there");
     }
@@ -130,23 +124,6 @@ Parameters read_parameters(Stage stage, const json& values) {
     if (find_field(key) == nullptr) throw damaged(key.substr(0, 64), "is unknown");
   }
   return parameters;
-}
-
-// The parameters that the record states, and those that it omits at the value of all older runs.
-// Throws json::exception if the record or its parameters are not a JSON object.
-json recorded_parameters(const json& resolved) {
-  json values = resolved.value("parameters", json::object());
-  const json name = member_of(resolved, "stage");
-  const auto stage = name.is_string() ? value_of<Stage>(name.get<std::string>()) : std::nullopt;
-  if (!stage) return values;
-  const auto protocol = protocol_in(values);
-  for (const Field& field : schema()) {
-    const std::string_view omitted = field.identity.omitted_at;
-    if (omitted.empty() || values.contains(field.name)) continue;
-    if (!enters(field.identity, *stage, protocol, nullptr)) continue;
-    values[std::string(field.name)] = as_json(field, omitted);
-  }
-  return values;
 }
 
 }  // namespace
@@ -197,12 +174,17 @@ StageRecord read_stage(const json& resolved) {
 }
 
 json effective_parameters(const json& resolved) {
-  json values;
+  json values = json::object();
   try {
-    values = recorded_parameters(resolved);
-    if (!depends_on_pressure_at(read_stage(resolved).parameters)) values.erase("pressure_at");
-  } catch (const std::exception&) {  // damaged
-    values = stated_parameters(resolved);
+    const auto [stage, parent, seed, parameters] = read_stage(resolved);
+    for (const Field& field : schema()) {
+      if (!enters(field.identity, stage, parameters.protocol, nullptr)) continue;
+      values[std::string(field.name)] = field.get(parameters);
+    }
+    if (!depends_on_pressure_at(parameters)) values.erase("pressure_at");
+  } catch (const UnreadableRecord&) {  // damaged
+    values = member_of(resolved, "parameters");
+    if (!values.is_object()) values = json::object();
   }
   for (const Field& field : schema()) {
     if (!field.identity.recorded_as.empty()) values.erase(std::string(field.name));

@@ -12,7 +12,9 @@
 #include <set>
 #include <utility>
 
+#include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
+#include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
@@ -30,6 +32,7 @@ using std::string;
 using std::string_view;
 using Names = std::vector<string_view>;
 
+constexpr std::size_t kLongestLabel = 120;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kCycles = {1, StoreLimits::cycles};
 // A double holds it exactly, so readers in any language can.
@@ -46,6 +49,15 @@ Names parameters() {
   Names names;
   for (const Field& field : schema()) {
     if (field.identity.distinguishes_runs()) names.push_back(field.name);
+  }
+  return names;
+}
+
+// The parameters that are numbers.
+Names numbers() {
+  Names names;
+  for (const Field& field : schema()) {
+    if (!field.is_choice()) names.push_back(field.name);
   }
   return names;
 }
@@ -102,33 +114,138 @@ void fields(Scale& scale, const auto& visit) {
          .example = "{crystalline_percent: 10, extra_cycles: 15}"});
 }
 
+void fields(SeriesSpec& series, const auto& visit) {
+  visit(series.label, {.name = "label", .longest = kLongestLabel});
+  visit(series.colour, {.name = "colour", .names = colour_names});
+  visit(series.marker, {.name = "marker"});
+}
+
+void fields(PublishedSpec& published, const auto& visit) {
+  constexpr Range any = {-1e15, 1e15};
+  visit(published.label, {.name = "label", .longest = kLongestLabel});
+  visit(published.source, {.name = "source", .required = true, .longest = kLongestLabel});
+  visit(published.value, {.name = "value", .range = any});
+  visit(published.error, {.name = "error", .range = {0, any.max}});
+  visit(published.points, {.name = "points", .range = any, .example = "[[0.05, 0.646, 0.001]]"});
+}
+
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
-  static const Names can_be_x = joined({"cycle"}, names_of(all_scalar_measures()), parameters());
-  static const Names can_be_y =
-      joined({}, names_of(all_scalar_measures()), names_of(all_curve_measures()),
-             names_of(all_run_measures()));
-  static const Names can_be_by = parameters();
-  visit(plot.name, {.name = "name", .required = true});
-  visit(plot.y, {.name = "y", .names = can_be_y, .required = true});
-  visit(plot.x, {.name = "x", .names = can_be_x});
-  visit(plot.by, {.name = "by", .names = can_be_by});
-  visit(plot.show, {.name = "show"});
-  visit(plot.log, {.name = "log"});
-  visit(plot.cycle, {.name = "at_cycle", .range = kCycles});
-  visit(plot.cycles, {.name = "cycles", .range = kCycles, .example = "[20, 21]"});
+  static const Names scalars = names_of(all_scalar_measures()), runs = names_of(all_run_measures());
+  static const Names can_be_by = parameters(), can_be_x = joined({"cycle"}, scalars, can_be_by);
+  static const Names can_be_y = joined({}, scalars, names_of(all_curve_measures()), runs);
+  static const Names x_terms = joined({"cycle"}, scalars, numbers());
+  static const Names y_terms = joined(x_terms, runs);
+  visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
+  visit(plot.y,
+        {.name = "y",
+         .doc = "required; a [measure](#measures), a number of each run such as `onset_size_phi`, "
+                "or an expression of measures and parameters: `stress_xy_Pa/contact_pressure_Pa`. "
+                "Runs that end before their onset are counted in the caption",
+         .names = can_be_y,
+         .terms = y_terms,
+         .required = true});
+  visit(plot.x,
+        {.name = "x",
+         .doc = "`cycle` (default), a measure, a parameter, or an expression: `1/period_s`. A "
+                "number of the run takes `y` at `at_cycle`",
+         .names = can_be_x,
+         .terms = x_terms});
+  visit(plot.by, {.name = "by",
+                  .doc = "one curve for each value of this parameter; averaging over another swept "
+                         "parameter is refused. Default: one for each variant or, with a parameter "
+                         "as `x`, for each combination of the other swept values",
+                  .names = can_be_by});
+  visit(plot.figure,
+        {.name = "figure",
+         .doc = "plots and claims with the same `figure` are its panels (a), (b), ... and its "
+                "claims, with one caption; default: a figure of its own"});
+  visit(plot.panel, {.name = "panel",
+                     .doc = "one panel, NAME_1, NAME_2, ..., for each value of this parameter, "
+                            "with equal ranges",
+                     .names = can_be_by});
+  visit(plot.show, {.name = "show",
+                    .doc = "the mean (default) with its standard error, every run as a line, or "
+                           "every value as a point. The CSV of a curve measure or against a number "
+                           "of the run has the means"});
+  visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
+  visit(
+      plot.xlabel,
+      {.name = "xlabel",
+       .doc = "label of the axis, formulas between `$`: `drag $b$ [kg/s]`. For another unit, take "
+              "an expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
+       .longest = kLongestLabel});
+  visit(plot.ylabel, {.name = "ylabel", .doc = "likewise", .longest = kLongestLabel});
+  visit(
+      plot.series,
+      {.name = "series",
+       .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or `\"#rrggbb\"`) "
+              "and marker of curves: by the value of `by`, or by `\"KEY=VALUE\"` as in `labels`. "
+              "Curves come in this order",
+       .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
+  visit(plot.published,
+        {.name = "published",
+         .doc = "published numbers that the plot shows: a `value` with an `error`, or `points` [x, "
+                "y] or [x, y, error], each with its `source`",
+         .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
+  visit(plot.also, {.name = "also",
+                    .doc = "further measures in the CSV of a plot of means against the cycle",
+                    .names = scalars,
+                    .example = "[phi_uncorrected]"});
+  visit(plot.cycle,
+        {.name = "at_cycle",
+         .range = kCycles,
+         .doc = "the cycle of a curve measure, or of `y` against a number of the run; default: the "
+                "last one that all runs have, named in the CSV and the caption"});
+  visit(plot.cycles,
+        {.name = "cycles",
+         .range = kCycles,
+         .doc = "with `show: traces` or `scatter`: only these cycles, first to last, with the "
+                "checkpoints at `phases`; other plots are of whole cycles",
+         .example = "[20, 21]"});
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
-  static const Names can_be_compared =
-      joined({}, names_of(all_scalar_measures()), names_of(all_run_measures()));
-  visit(claim.name, {.name = "name", .required = true});
-  visit(claim.compare, {.name = "compare", .names = can_be_compared, .required = true});
+  static const Names scalars = names_of(all_scalar_measures()), runs = names_of(all_run_measures());
+  static const Names can_be_compared = joined({}, scalars, runs);
+  static const Names terms = joined({"cycle"}, scalars, runs, numbers());
+  visit(claim.name, {.name = "name", .doc = "required", .required = true});
+  visit(claim.figure, {.name = "figure", .doc = "as of a plot"});
+  visit(claim.compare, {.name = "compare",
+                        .doc = "required; as `y` of a plot, but no curve",
+                        .names = can_be_compared,
+                        .terms = terms,
+                        .required = true});
   visit(claim.between,
-        {.name = "between", .example = "[{fluid: still}, {fluid: cell}]", .required = true});
-  visit(claim.margin, {.name = "margin", .range = {0, kInfinity, true}, .required = true});
-  visit(claim.cycles, {.name = "at_cycle", .range = kCycles});
-  visit(claim.cycles, {.name = "cycles", .range = kCycles, .example = "[1, 15]"});
-  visit(claim.is, {.name = "is"});
+        {.name = "between",
+         .doc = "swept values that single out a variant, for the first and for the second. The "
+                "difference is the first less the second",
+         .example = "[{fluid: still}, {fluid: cell}]"});
+  visit(claim.published, {.name = "published",
+                          .doc = "instead of `between`: the mean over the runs less this number",
+                          .example = "{value: 0.646, error: 0.001, source: S C}"});
+  visit(claim.between[0], {.name = "of",
+                           .doc = "with `published`: swept values that single out the variant",
+                           .example = "{fluid: still}"});
+  visit(claim.margin,
+        {.name = "margin",
+         .range = {0, kInfinity, true},
+         .doc = "in the unit of the measure; of `onset_size_cycle`, of log2 of the ratio of both "
+                "waiting times (log-rank test, which counts runs without an onset): 1 is a factor "
+                "of 2"});
+  visit(claim.margin, {.name = "relative_margin",
+                       .range = {0, kInfinity, true},
+                       .doc = "instead of `margin`: of the relative difference; 0.03 is 3 %"});
+  visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
+  visit(claim.cycles, {.name = "cycles",
+                       .range = kCycles,
+                       .doc = "or first and last of the cycles whose mean is compared",
+                       .example = "[1, 15]"});
+  visit(claim.is, {.name = "is",
+                   .doc = "`same` (default): the difference is within the margin; `higher`, "
+                          "`lower`: the first is so by more than the margin"});
+  visit(claim.statement, {.name = "statement",
+                          .doc = "what the claim says, for people; default: from its keys",
+                          .longest = 300});
 }
 
 void fields(Manifest& manifest, const auto& visit) {
@@ -143,7 +260,7 @@ void fields(Manifest& manifest, const auto& visit) {
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
   visit(manifest.labels,
         {.name = "labels",
-         .doc = "names of variants in drawings, captions, progress, `status` and `table`",
+         .doc = "names of variants in drawings, captions, claims, progress, `status` and `table`",
          .example = "{\"fluid=still\": fluid at rest}",
          .wanted = "a map of names"});
   visit(manifest.plots, {.name = "plots",
@@ -310,6 +427,39 @@ std::vector<Entry> items_of(const Entry& in, string_view example) {
   return {};
 }
 
+// Whether the expression can be evaluated, and has known terms.
+bool check_expression(const Entry& in, const Field& about) {
+  if (const string wrong = wrong_in_expression(in.node.text); !wrong.empty()) {
+    in.reject_value(wrong, string(expression_syntax));
+    return false;
+  }
+  bool of_run = false, of_checkpoint = false;
+  for (const string& name : names_in(in.node.text)) {
+    if (std::ranges::find(about.terms, name) == about.terms.end()) {
+      in.reject_value(
+          with_nearest(
+              fmt::format("uses {}, which is not a number of a run or checkpoint", printable(name)),
+              name, about.terms),
+          "`shearcell manual --markdown` lists measures and parameters.");
+      return false;
+    }
+    of_run = of_run || find_run_measure(name) != nullptr;
+    of_checkpoint = of_checkpoint || !is_parameter(name);
+  }
+  if (of_run && of_checkpoint) {
+    in.reject_value("combines a number of the whole run with one of its checkpoints",
+                    "Take measures of one kind.");
+  }
+  return !(of_run && of_checkpoint);
+}
+
+// Formulas stand between two `$`.
+void check_formulas(const std::optional<Entry>& in) {
+  if (in && std::ranges::count(in->node.text, '$') % 2 == 1) {
+    in->reject_value("has a $ without its partner", "A formula stands between two $.");
+  }
+}
+
 // Reads a parameter and its value into `where`.
 void read_where(const Entry& in, json& where) {
   const Field* field = find_field(in.key.text);
@@ -401,17 +551,15 @@ struct Reader {
     return known;
   }
 
-  static void read(const Entry& in, const Field& about, std::uint64_t& value) {
-    if (const auto read = read_scalar(in, about)) read->get_to(value);
-  }
-  static void read(const Entry& in, const Field& about, double& value) {
-    if (const auto read = read_scalar(in, about)) read->get_to(value);
-  }
-  template <class Enum>
-  requires std::is_enum_v<Enum>
-  static void read(const Entry& in, const Field& about, Enum& value) {
-    if (const auto read = read_scalar(in, about)) {
-      value = value_of<Enum>(read->get_ref<const string&>()).value();
+  template <class T>
+  requires(std::is_arithmetic_v<T> ||
+           std::is_enum_v<T>) static void read(const Entry& in, const Field& about, T& value) {
+    const auto read = read_scalar(in, about);
+    if (!read) return;
+    if constexpr (std::is_enum_v<T>) {
+      value = value_of<T>(read->get_ref<const string&>()).value();
+    } else {
+      read->get_to(value);
     }
   }
   template <class T>
@@ -419,20 +567,27 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // One of the names, a text, or a name.
+  // One of the names or an expression of terms, a text, or a name.
   static void read(const Entry& in, const Field& about, string& value) {
     const bool scalar = in.is_scalar();
-    if (about.is_choice()) {
+    const string& text = in.node.text;
+    const bool colour = about.names.data() == colour_names.data() && text.starts_with('#');
+    if (scalar && !about.terms.empty() && is_expression(text)) {
+      if (check_expression(in, about)) value = text;
+    } else if (scalar && colour && text.size() == 7 &&
+               text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos) {
+      value = text;
+    } else if (about.is_choice()) {
       if (const auto read = read_scalar(in, about)) read->get_to(value);
     } else if (about.longest > 0) {
-      if (scalar && in.node.text.size() <= about.longest) {
-        value = in.node.text;
+      if (scalar && text.size() <= about.longest && (about.lines || text.find('\n') == text.npos)) {
+        value = text;
       } else {
         in.reject_type("a plain text",
                        fmt::format("It takes one text of at most {} bytes.", about.longest));
       }
-    } else if (scalar && is_name(in.node.text)) {
-      value = in.node.text;
+    } else if (scalar && is_name(text)) {
+      value = text;
     } else {
       in.reject_type("a name",
                      fmt::format("It takes ASCII letters, digits, - and _, at most {} of them, and "
@@ -467,6 +622,37 @@ struct Reader {
     for (const Entry& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
+  // The curves of a plot. A key without `=` is a value of `by`, which check() replaces.
+  static void read(const Entry& in, const Field& about, std::vector<SeriesSpec>& series) {
+    if (!in.is_map()) in.reject_type("a map", remedy_of(about));
+    for (const Entry& entry : in.entries()) {
+      const bool selects = entry.key.text.find('=') != string::npos;
+      series.push_back({selects ? read_selector(entry) : json{{"", entry.key.text}}});
+      read(entry, {.example = "{label: a name, colour: blue, marker: circle}"}, series.back());
+      check_formulas(entry.find("label"));
+    }
+  }
+
+  // Points [x, y] or [x, y, error].
+  static void read(const Entry& in, const Field& about, std::vector<std::vector<double>>& points) {
+    for (const Entry& item : items_of(in, about.example)) {
+      std::vector<double>& point = points.emplace_back();
+      for (const Entry& number : items_of(item, "[0.05, 0.646]")) {
+        read(number, {.range = about.range}, point.emplace_back());
+      }
+      if (point.size() != 2 && point.size() != 3) {
+        item.reject("is not a point", "It takes [x, y], or [x, y, error].");
+      }
+    }
+  }
+
+  // Parameters and their values.
+  static void read(const Entry& in, const Field& about, json& where) {
+    where = json::object();
+    if (!in.is_map()) in.reject_type("a map", remedy_of(about));
+    for (const Entry& entry : in.entries()) read_where(entry, where);
+  }
+
   // Phases of a cycle.
   static void read(const Entry& in, const Field& about, std::vector<double>& phases) {
     for (const Entry& item : items_of(in, about.example)) {
@@ -484,9 +670,14 @@ struct Reader {
     }
   }
 
+  // Measures, or figures of the supplement.
   static void read(const Entry& in, const Field& about, std::vector<string>& figures) {
     for (const Entry& item : items_of(in, about.example)) {
       string figure;
+      if (about.is_choice()) {
+        read(item, about, figures.emplace_back());
+        continue;
+      }
       read(item, {}, figure);
       if (figure.empty()) continue;
       if (std::ranges::find(figures, figure) != figures.end()) {
@@ -656,7 +847,7 @@ struct Reader {
   // Any other map.
   template <HasFields T>
   static void read(const Entry& in, const Field& about, T& value) {
-    value.at = in.node.at;
+    if constexpr (requires { value.at; }) value.at = in.node.at;
     if (!in.is_map()) {
       return in.reject_type(about.wanted.empty() ? "a map" : about.wanted, remedy_of(about));
     }
@@ -679,6 +870,8 @@ struct Reader {
     if (const auto phases = in.find("phases")) checkpoints.at = phases->node.at;
   }
 
+  static void check(const Entry&, const Field&, const auto&) {}
+
   static void check(const Entry& in, const Field&, Placed<PlotSpec>& plot) {
     const auto x = in.find("x"), cycles = in.find("cycles");
     if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
@@ -686,13 +879,20 @@ struct Reader {
                       fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
     }
     if (x && plot.y == plot.x) x->reject_value("is also the y of this plot", "Name another one.");
-    const bool against_parameter = is_parameter(plot.x);
-    if (find_run_measure(plot.y) != nullptr && !against_parameter) {
+    const bool of_run =
+        !plot.y.empty() && is_parameter(plot.y) && find_curve_measure(plot.y) == nullptr;
+    if (of_run && !is_parameter(plot.x)) {
       in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }
-    if (cycles && (plot.show != Show::traces || against_parameter)) {
+    if (cycles && (plot.show == Show::mean || is_parameter(plot.x))) {
       cycles->reject("draws each run along its cycles",
                      "It takes `show: traces`, and `cycle` or a measure as x.");
+    }
+    if (cycles && !plot.figure.empty()) {
+      cycles->reject("does not go with figure", "Give the plot a figure of its own.");
+    }
+    if (const auto also = in.find("also"); also && (plot.x != "cycle" || plot.show != Show::mean)) {
+      also->reject("goes with means against the cycle", "Leave it out.");
     }
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;
@@ -701,40 +901,104 @@ struct Reader {
         x->reject_value("is not a number", "Take `by` for a curve of each of its values.");
       }
     }
+    for (const char* label : {"xlabel", "ylabel"}) check_formulas(in.find(label));
+    if (const auto series = in.find("series")) name_series(*series, plot);
+    if (const auto published = in.find("published")) {
+      const std::vector<Entry> items = published->items();
+      for (std::size_t k = 0; k < std::min(items.size(), plot.published.size()); ++k) {
+        check_published(items[k], plot.published[k]);
+      }
+    }
   }
 
-  static void check(const Entry& in, const Field& about, const Placed<ClaimSpec>& claim) {
+  // Replaces the values of `by` in the keys of `series`.
+  static void name_series(const Entry& in, Placed<PlotSpec>& plot) {
+    const std::vector<Entry> entries = in.entries();
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (!plot.series[k].where.contains("")) continue;
+      if (plot.by.empty()) {
+        entries[k].reject_key("names no parameter",
+                              "Write `\"KEY=VALUE\"`, or name the parameter with `by`.");
+        continue;
+      }
+      Node text = entries[k].key;
+      text.quoted = false;
+      const Entry plain{text, text, entries[k].path, in.problems};
+      plot.series[k].where = json::object();
+      if (auto read = read_scalar(plain, *find_field(plot.by))) {
+        plot.series[k].where[plot.by] = std::move(*read);
+      }
+    }
+  }
+
+  static void check_published(const Entry& in, const PublishedSpec& published) {
+    check_formulas(in.find("label"));
+    if (published.label.empty()) in.reject("lacks label", "Name it for the key of the plot.");
+    if (published.value.has_value() == !published.points.empty()) {
+      in.reject("does not have either a value or points", "State one of them.");
+    }
+  }
+
+  static void check(const Entry& in, const Field& about, Placed<ClaimSpec>& claim) {
     const auto at_cycle = in.find("at_cycle"), cycles = in.find("cycles");
+    const auto between = in.find("between"), published = in.find("published");
+    if (!between && !published) in.reject("lacks between", remedy_of(about));
+    if (between && published) published->reject("does not go with between", "State one of them.");
+    if (published && claim.published && !claim.published->value) {
+      published->reject("lacks value", "State the published number.");
+    }
+    if (const auto of = in.find("of"); of && !published) {
+      of->reject("goes with published", "Take `between` for two variants.");
+    }
+    const auto relative = in.find("relative_margin");
+    if (relative && in.find("margin")) {
+      relative->reject("does not go with margin", "State one of them.");
+    } else if (!relative && !in.find("margin")) {
+      in.reject("lacks margin", remedy_of(about));
+    }
+    claim.relative = relative.has_value();
     if (at_cycle && cycles) cycles->reject("does not go with at_cycle", "State one of them.");
-    const bool of_run = find_run_measure(claim.compare) != nullptr;
+    const bool of_run = !claim.compare.empty() && is_parameter(claim.compare);
     if (of_run && (at_cycle || cycles)) {
       (at_cycle ? at_cycle : cycles)
           ->reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
-    } else if (!of_run && !at_cycle && !cycles) {
+    } else if (!claim.compare.empty() && !of_run && !at_cycle && !cycles) {
       in.reject("lacks at_cycle or cycles", remedy_of(about));
     }
   }
 };
 
-// Names of plots and claims differ from each other and from those of the supplement's figures and
-// panels.
+// Names of plots and claims, of their figures and of the panels of a plot differ from each other
+// and from those of the supplement's figures and panels.
 void check_own_names(const Entry& document) {
-  std::set<string> taken;
+  std::vector<Entry> items;
   for (const char* list : {"plots", "claims"}) {
     const auto own = document.find(list);
-    for (const Entry& item : own ? own->items() : std::vector<Entry>()) {
-      const auto name = item.find("name");
-      if (!name || !is_name(name->node.text)) continue;
-      const string_view text = name->node.text;
+    for (const Entry& item : own ? own->items() : std::vector<Entry>()) items.push_back(item);
+  }
+  std::set<string> taken;
+  const auto is_taken = [&](const string& text) {
+    return std::ranges::any_of(items, [&](const Entry& other) {
+      const auto name = other.find("name");
+      return other.find("panel") && name && text.starts_with(name->node.text + "_") &&
+             text.find_first_not_of("0123456789", name->node.text.size() + 1) == text.npos;
+    });
+  };
+  for (const char* key : {"name", "figure"}) {
+    for (const Entry& item : items) {
+      const auto own = item.find(key);
+      if (!own || !is_name(own->node.text)) continue;
+      const string& text = own->node.text;
       const auto is_panel = [&](const Figure& figure) {
         if (!text.starts_with(figure.name)) return false;
-        const string_view rest = text.substr(figure.name.size());
+        const string_view rest = string_view(text).substr(figure.name.size());
         return rest.size() < 2 || rest.front() == '_';
       };
+      const bool names_it = key == string_view("name");
       if (std::ranges::any_of(all_figures(), is_panel)) {
-        name->reject_value("is the name of a figure of the supplement", "Choose another one.");
-      } else if (!taken.insert(name->node.text).second) {
-        name->reject_value("is the name of another plot or claim", "Choose another one.");
+        own->reject_value("is the name of a figure of the supplement", "Choose another one.");
+      } else if (is_taken(text) || (names_it ? !taken.insert(text).second : taken.contains(text))) {
+        own->reject_value("is the name of another plot or claim", "Choose another one.");
       }
     }
   }
@@ -772,12 +1036,30 @@ Manifest read_manifest(string_view text, string_view file) {
   return manifest;
 }
 
-string manifest_markdown() {
-  string text = "| key | example | meaning |\n|---|---|---|\n";
-  for (const Field& key : keys_of<Manifest>()) {
-    text += fmt::format("| `{}` | `{}` | {} |\n", key.name, key.example, key.doc);
+namespace {
+
+// What a key takes, for a table.
+string takes_markdown(const Field& key) {
+  if (key.is_choice() && key.names.size() <= 12)
+    return fmt::format("{}", fmt::join(key.names, ", "));
+  return key.example.empty() ? "" : fmt::format("`{}`", key.example);
+}
+
+template <HasFields T>
+string keys_markdown(string_view head) {
+  string text = fmt::format("| key | {} | meaning |\n|---|---|---|\n", head);
+  for (const Field& key : keys_of<T>()) {
+    text += fmt::format("| `{}` | {} | {} |\n", key.name, takes_markdown(key), key.doc);
   }
   return text;
+}
+
+}  // namespace
+
+string manifest_markdown() {
+  return keys_markdown<Manifest>("example") + "\nOf a plot:\n\n" +
+         keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
+         keys_markdown<Placed<ClaimSpec>>("takes");
 }
 
 }  // namespace shearcell

@@ -300,8 +300,8 @@ std::string schema_markdown() {
       "|---|---|---|---|---|---|---|\n";
   for (const Field& field : schema()) {
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.name, field.symbol,
-                        field.unit, value_text(get_value(field, Parameters{})),
-                        range_markdown(field), identity_markdown(field.identity), field.doc);
+                        field.unit, value_text(field.get(Parameters{})), range_markdown(field),
+                        identity_markdown(field.identity), field.doc);
   }
   return text;
 }

@@ -54,11 +54,13 @@ struct Field {
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< of a choice: the values
   bool whole = false;                            ///< takes whole numbers alone
+  std::span<const std::string_view> terms = {};  ///< numbers of which it takes expressions too
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};                  ///< "a map of settings"
   bool required = false;
-  std::size_t longest = 0;  ///< of a free text [bytes]
-  /// One parameter as JSON, and back; null for other keys.
+  std::size_t longest = 0;  ///< of a free text [bytes]; one line, unless `lines`
+  bool lines = false;
+  /// A parameter as JSON, and back from a value that has passed check_value; null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 
@@ -98,14 +100,6 @@ std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::s
 
 /// Checks type and range. nullopt if the value may be used.
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
-
-/// One parameter as JSON, and back. `value` must have passed check_value.
-inline nlohmann::json get_value(const Field& field, const Parameters& parameters) {
-  return field.get(parameters);
-}
-inline void set_value(const Field& field, const nlohmann::json& value, Parameters& parameters) {
-  field.set(parameters, value);
-}
 
 /// Whether the record of a stage holds the parameter when it has that value.
 bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,

@@ -119,7 +119,7 @@ std::set<std::string> parts_of(const std::string& list) {
 }
 
 void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
-  set_value(*find_field(key), setting.value, parameters);
+  find_field(key)->set(parameters, setting.value);
 }
 
 }  // namespace
@@ -151,8 +151,7 @@ std::vector<Scale> whole_scales(const Manifest& manifest) {
 
 json value_at(const Scale& scale, std::string_view key) {
   const auto stated = scale.settings.find(key);
-  return stated == scale.settings.end() ? get_value(*find_field(key), Parameters{})
-                                        : stated->second.value;
+  return stated == scale.settings.end() ? find_field(key)->get(Parameters{}) : stated->second.value;
 }
 
 std::string Variant::name() const {

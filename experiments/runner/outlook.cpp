@@ -64,7 +64,10 @@ End end_for(const RunRecord& stage, const Membership& ask,
   for (const SeenCheckpoint& one : checkpoints) {
     if (std::fmod(one.record.cycle, every) != 0) continue;
     if (!one.measures) {
-      end.reached = recorded_reach(stage, *until, every);
+      // A longer end is unknown until it has been asked for.
+      if (ask.target_cycles <= stage.target_cycles) {
+        end.reached = recorded_reach(stage, *until, every);
+      }
       if (!end.reached) end.undecided = &one.record;
       break;
     }

@@ -262,7 +262,9 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
       6)
       << "each variant once in the key";
   EXPECT_TRUE(table({.name = "own", .y = "phi", .log = LogAxes::y}).chart.y.log);
-  EXPECT_EQ(table({.name = "own", .y = "phi", .by = "fluid"}).chart.series.size(), 2U);
+  const PlotSpec by_fluid{.name = "own", .y = "phi", .by = "fluid"};
+  EXPECT_THROW(table(by_fluid), UsageError) << "it would average over the drags";
+  EXPECT_EQ(plot_figure(by_fluid).make(two_variants()).tables.at(0).chart.series.size(), 2U);
 }
 
 TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
@@ -362,7 +364,8 @@ TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
   const std::vector<FigureRun> runs = {rising_run("still", 1, 3, 0)};
   for (const char* y : {"phi", "pair_correlation"}) {
     const FigureTable table =
-        plot_figure({.name = "own", .y = y, .x = "amplitude_rad", .show = Show::traces, .cycle = 99})
+        plot_figure(
+            {.name = "own", .y = y, .x = "amplitude_rad", .show = Show::traces, .cycle = 99})
             .make(runs)
             .tables.at(0);
     EXPECT_TRUE(table.rows.empty() && table.chart.series.empty()) << y;
@@ -382,8 +385,9 @@ TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   claim.is = Relation::higher;
   EXPECT_EQ(verdict().ruling, Ruling::agrees);
   EXPECT_EQ(verdict().claim,
-            "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for drag_kg_per_s=0.004, "
-            "fluid=still than for drag_kg_per_s=0.001, fluid=still");
+            "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for fluid=still, b=0.004 "
+            "kg/s than for fluid=still, b=0.001 kg/s")
+      << "names for people";
   claim.between = {nlohmann::json{{"fluid", "still"}}, hard};
   EXPECT_THROW(verdict(), UsageError) << "three variants";
   claim.between = {hard, nlohmann::json{{"drag_kg_per_s", 0.004}, {"fluid", "still"}}};

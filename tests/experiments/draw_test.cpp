@@ -140,10 +140,10 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   EXPECT_EQ(files.at("overlap.csv").substr(0, 33), "variant,seed,cycle,mean_overlap_d");
   EXPECT_TRUE(has(files.at("overlap.gp"), "title 'water at rest'"));
   EXPECT_TRUE(has(files.at("S2a.gp"), "title 'water at rest'"));
-  EXPECT_TRUE(has(files.at("S2.caption.txt"), "Runs: fluid=cell: 1; water at rest: 1."));
+  EXPECT_TRUE(has(files.at("S2.caption.txt"), "Runs: 1 each of fluid=cell; water at rest."));
   const auto verdict = nlohmann::json::parse(files.at("same.verdict.json"));
   EXPECT_EQ(verdict.at("claims").at(0).at("claim"),
-            "same: phi at cycle 2 is the same for fluid=still and fluid=cell");
+            "same: phi at cycle 2 is the same for water at rest and fluid=cell");
   EXPECT_EQ(
       verdict.at("claims").at(0).at("note").get<std::string>().find("1 pair of runs that shares"),
       0U);

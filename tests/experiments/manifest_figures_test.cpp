@@ -124,5 +124,47 @@ TEST(FigureWarnings, OfAClaimBetweenVariantsThatAreTheSameRuns) {
   EXPECT_EQ(found(top + ", {gravity_m_per_s2: 9.81, pressure_at: top}").size(), 1U);
 }
 
+TEST(FigureWarnings, OfASeriesThatFitsSeveralCurves) {
+  const auto found = [](const std::string& own) {
+    return plan_of(
+               "cycles: 4",
+               "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.1]}}\n" + plot(own))
+        .warnings;
+  };
+  const std::string series = ", series: {\"fluid=still\": {colour: black}}";
+  const Strings several = found("y: phi" + series);
+  ASSERT_EQ(several.size(), 1U);
+  EXPECT_TRUE(has(several[0], "plot own: the style of fluid=still fits 2 curves")) << several[0];
+  EXPECT_EQ(found("y: phi, x: amplitude_rad" + series), Strings{});
+  EXPECT_EQ(found("y: phi, x: 2*amplitude_rad" + series), Strings{});
+  EXPECT_EQ(found("y: phi, panel: amplitude_rad" + series), Strings{});
+  EXPECT_EQ(found("y: phi, by: fluid, panel: amplitude_rad" + series), Strings{});
+  EXPECT_EQ(found("y: phi, series: {\"fluid=still,amplitude_rad=0.1\": {colour: black}}"),
+            Strings{});
+}
+
+TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {
+  for (const auto& [bad, says] :
+       {std::pair{plot("y: phi*msd_10_cycles_d2"), "so phi*msd_10_cycles_d2 has no value"},
+        {plot("y: 2*onset_size_phi, x: drag_kg_per_s, at_cycle: 2"),
+         "at_cycle has no effect on 2*"},
+        {plot("y: phi, x: 1/drag_kg_per_s, at_cycle: 3"), "no run has a checkpoint at cycle 3"},
+        {std::string(
+             "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, of: {walls: rough}, "
+             "published: {value: 1, source: a}}]\n"),
+         "2 variants have walls=rough; `of` must name one."},
+        {std::string(
+             "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, published: {value: "
+             "1, source: a}}]\n"),
+         "there are 2 variants; `of` must name one."},
+        {std::string("claims: [{name: own, margin: 1, compare: phi/2, at_cycle: 3, of: {fluid: "
+                     "still}, published: {value: 1, source: a}}]\n"),
+         "it needs a checkpoint at cycle 3"}}) {
+    const Strings found = warnings(4, bad);
+    ASSERT_EQ(found.size(), 1U) << bad;
+    EXPECT_TRUE(has(found[0], says)) << found[0];
+  }
+}
+
 }  // namespace
 }  // namespace shearcell::test

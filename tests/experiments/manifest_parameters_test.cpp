@@ -25,7 +25,7 @@ TEST(Schema, NamesAreUniqueAndDefaultsAllowed) {
   std::set<std::string_view> names;
   for (const Field& field : schema()) {
     EXPECT_TRUE(names.insert(field.name).second) << field.name;
-    EXPECT_EQ(check_value(field, get_value(field, Parameters{})), std::nullopt) << field.name;
+    EXPECT_EQ(check_value(field, field.get(Parameters{})), std::nullopt) << field.name;
     EXPECT_FALSE(field.doc.empty()) << field.name;
     if (const std::string_view omitted = field.identity.omitted_at; !omitted.empty()) {
       const auto value = read_value(field, omitted, false);
@@ -60,7 +60,7 @@ TEST(Conversion, StaysFiniteAtTheEndsOfTheRanges) {
     for (std::size_t k = 0; k < keys.size(); ++k) {
       const Field& field = *find_field(keys[k]);
       const double end = (ends >> k & 1U) != 0 ? field.range.max : field.range.min;
-      set_value(field, field.whole ? json(static_cast<std::uint64_t>(end)) : json(end), p);
+      field.set(p, field.whole ? json(static_cast<std::uint64_t>(end)) : json(end));
     }
     const Scene scene = shear_scene(p);
     for (const double value : {scene.stiffness, scene.time_step, scene.pressure,

@@ -132,7 +132,7 @@ std::vector<std::string> combinations(const Written& written) {
 std::string described(const PlannedRun& run) {
   Strings parts = {fmt::format("seed={}", run.seed)};
   for (const auto& [key, label] : run.swept.items()) {
-    const json value = get_value(*find_field(key), run.parameters);
+    const json value = find_field(key)->get(run.parameters);
     RC_ASSERT(value == label);
     parts.push_back(key + "=" + value_text(value.is_string() ? std::string(value) : value.dump()));
   }
@@ -295,7 +295,7 @@ json any_value(const Field& field) {
 Parameters any_parameters() {
   Parameters parameters;
   for (const Field& field : schema()) {
-    if (*rc::gen::arbitrary<bool>()) set_value(field, any_value(field), parameters);
+    if (*rc::gen::arbitrary<bool>()) field.set(parameters, any_value(field));
   }
   return parameters;
 }
@@ -313,7 +313,7 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
   const RunRecord prepare = prepare_stage(before, 1);
   const RunRecord last = last_stage(before, 1, prepare);
   for (const Field& field : schema()) {
-    const json value = get_value(field, before);
+    const json value = field.get(before);
     json other = any_value(field);
     if (value.is_number_float() && *rc::gen::arbitrary<bool>().as("by one bit")) {
       other = std::nextafter(value.get<double>(),
@@ -321,7 +321,7 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
     }
     if (other == value) continue;
     Parameters after = before;
-    set_value(field, other, after);
+    field.set(after, other);
     const RunRecord other_prepare = prepare_stage(after, 1);
     const bool settling = field.identity.stage == Stage::prepare &&
                           field.identity.distinguishes_runs() &&

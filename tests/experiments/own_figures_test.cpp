@@ -145,5 +145,67 @@ TEST_F(OwnFigures, AClaimSaysNothingOfOtherRuns) {
   EXPECT_EQ(draw("own", "same").notes, std::vector<std::string>());
 }
 
+// A 3 x 3 sweep against the frequency in Hz, a figure with two panels, panels of a parameter, and a
+// claim with a published number (experiments/RECIPES.md).
+TEST_F(OwnFigures, OfASweepAgainstFrequencyWithPublishedNumbers) {
+  compute(store_, tiny_manifest("  steps_per_cycle: auto\n  cycles: 1\n", R"(
+sweep: {grid: {period_s: [0.25, 0.5, 1], amplitude_rad: [0.05, 0.0833, 0.1]}}
+seeds: 3
+labels: {"amplitude_rad=0.1": "a large amplitude"}
+plots:
+  - name: phi_of_f
+    figure: drive
+    y: phi
+    x: 1/period_s
+    xlabel: "driving frequency $f$ [Hz]"
+    by: amplitude_rad
+    series: {0.05: {label: "$A_{min}$", colour: purple, marker: open_circle}}
+    published:
+      - {label: random close packing, value: 0.637, error: 0.001, source: a journal}
+  - {name: pressure, figure: drive, y: contact_pressure_Pa/pressure_Pa, x: 1/period_s, by: amplitude_rad}
+  - {name: by_period, y: contacts_per_grain, by: amplitude_rad, panel: period_s}
+claims:
+  - name: close
+    figure: drive
+    compare: phi
+    at_cycle: 1
+    of: {period_s: 1, amplitude_rad: 0.1}
+    published: {value: 0.637, error: 0.001, source: a journal}
+    margin: 0.1
+)"));
+  draw("own", "drive");
+  draw("own", "by_period");
+  const auto files = contents("own");
+  const std::string& csv = files.at("phi_of_f.csv");
+  EXPECT_TRUE(csv.starts_with("variant,1/period_s,phi_mean,phi_standard_error,runs,cycle\n"))
+      << csv;
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 10) << "nine variants";
+  for (const char* row : {"\namplitude_rad=0.05,1,", "\namplitude_rad=0.1,4,"}) {
+    EXPECT_TRUE(has(csv, row)) << csv;
+  }
+  const std::string& script = files.at("phi_of_f.gp");
+  for (const char* part :
+       {"set xlabel 'driving frequency {/:Italic f} [Hz]'",
+        "lc rgb '#cc79a7' lw 1.2 pt 6 ps 0.4 title '{/:Italic A}_{min}'",
+        "title 'a large amplitude'", "title 'random close packing'", "first 0.636 to graph 1"}) {
+    EXPECT_TRUE(has(script, part)) << script;
+  }
+  const std::string& caption = files.at("drive.caption.txt");
+  for (const char* part :
+       {"(a) volume fraction ϕ against driving frequency f [Hz].",
+        "(b) contact_pressure_Pa/pressure_Pa against 1/period_s.", "At cycle 1",
+        "Published: random close packing: a journal.", "Runs: 3 each of 9 variants."}) {
+    EXPECT_TRUE(has(caption, part)) << caption;
+  }
+  EXPECT_TRUE(has(files.at("pressure.csv"), "(contact_pressure_Pa/pressure_Pa)_mean"));
+  EXPECT_TRUE(files.contains("by_period_3.csv") && !files.contains("by_period_4.csv"));
+  EXPECT_TRUE(has(files.at("by_period_1.gp"), "set title 'T=0.25 s'"));
+  const auto verdict = nlohmann::json::parse(files.at("drive.verdict.json"));
+  EXPECT_EQ(verdict.at("verdict"), "agrees");
+  EXPECT_EQ(verdict.at("claims").at(0).at("claim"),
+            "close: phi at cycle 1 is as published, 0.637 ± 0.001 (a journal), for a large "
+            "amplitude, T=1 s");
+}
+
 }  // namespace
 }  // namespace shearcell::test

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plot language of manifests: expressions, series, axis labels, published numbers, panels, and
+// claims with published numbers.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "analysis/expression.hpp"
+#include "analysis/own_figure.hpp"
+#include "analysis/plot.hpp"
+#include "provenance/errors.hpp"
+#include "tests/analysis/made_up_runs.hpp"
+#include "tests/support/text.hpp"
+
+namespace shearcell::test {
+namespace {
+
+/// Three amplitudes and two periods with three seeds each; phi = amplitude + period/1000.
+std::vector<FigureRun> runs_of_sweep() {
+  std::vector<FigureRun> runs;
+  for (const double amplitude : {0.02, 0.04, 0.08}) {
+    for (const double period : {0.5, 2.0}) {
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 3, [&](int n, Measures& m) {
+          m.phi = amplitude + period / 1000 + 1e-6 * static_cast<double>(seed);
+          m.mean_overlap = n;
+        });
+        run.swept["period_s"] = period;
+        run.variant = fmt::format("amplitude_rad={},period_s={}", amplitude, period);
+        run.name = fmt::format("A={} rad, T={} s", amplitude, period);
+        run.run_id = fmt::format("{}/{}", run.variant, seed);
+        runs.push_back(std::move(run));
+      }
+    }
+  }
+  return runs;
+}
+
+FigureTable drawing_of(const PlotSpec& plot) {
+  return plot_figure(plot).make(runs_of_sweep()).tables.at(0);
+}
+
+std::vector<std::string> titles_of(const FigureTable& table) {
+  std::vector<std::string> titles;
+  for (const Series& one : table.chart.series) titles.push_back(plain_text(one.title));
+  return titles;
+}
+
+double result_of(const std::string& text, const ValueOf& names = {}) {
+  return evaluator_of(text)(names);
+}
+
+TEST(Expression, IsArithmetic) {
+  const auto a_is = [](double a) {
+    return [a](const std::string& name) { return name == "a" ? a : std::nan(""); };
+  };
+  EXPECT_EQ(result_of("1/a_s", [](const std::string&) { return 4.0; }), 0.25);
+  EXPECT_EQ(result_of("-a^2 + 2*(a - 1)", a_is(3)), -5);
+  EXPECT_EQ(result_of("sqrt(16) + max(1, a, 2) + ln(exp(1))", a_is(7)), 12);
+  EXPECT_NEAR(result_of("2*pi/a", a_is(2)), std::acos(-1.0), 1e-15);
+  EXPECT_EQ(result_of("1e-3*2.5E+2"), 0.25);
+  EXPECT_EQ(names_in("stress_xy_Pa/(2*pi*max(phi, phi)) + 1e5"),
+            (std::vector<std::string>{"stress_xy_Pa", "phi"}));
+  EXPECT_EQ(names_in("phi"), std::vector<std::string>{"phi"});
+  EXPECT_FALSE(is_expression("msd_1_cycle_d2"));
+  EXPECT_TRUE(is_expression("-phi") && is_expression("1/phi") && is_expression("2"));
+}
+
+TEST(Expression, WithoutAFiniteResultIsNotANumber) {
+  for (const char* text : {"1/0", "0/0", "sqrt(-1)", "ln(0)", "exp(1000)", "10^400", "asin(2)"}) {
+    EXPECT_TRUE(std::isnan(result_of(text))) << text;
+  }
+  for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    EXPECT_TRUE(std::isnan(result_of("0*a", [&](const std::string&) { return value; }))) << value;
+  }
+}
+
+TEST(Expression, OfAnyTextIsSoundOrRefused) {
+  for (const std::string& bad :
+       {std::string("1+"),          std::string(" "),         std::string("(1"),
+        std::string("1)"),          std::string("1,2"),       std::string("min()"),
+        std::string("a b"),         std::string("2a"),        std::string("a=1"),
+        std::string("a;1"),         std::string("\"a\""),     std::string("a?1:2"),
+        std::string("a&&1"),        std::string("system(1)"), std::string("sin 1"),
+        std::string("1e"),          std::string("1..2"),      std::string("0x10"),
+        std::string("1e999"),       std::string("2^^3"),      std::string("a[0]"),
+        std::string("phi\xC2\xA0"), std::string("rint(1)"),   std::string("1,5*a"),
+        std::string(201, '('),      std::string("\0", 1)}) {
+    EXPECT_NE(wrong_in_expression(bad), "") << bad;
+  }
+  EXPECT_EQ(wrong_in_expression("exec(1)"), "uses the unknown function exec");
+  EXPECT_EQ(wrong_in_expression(std::string(99, '(') + "1" + std::string(99, ')')), "");
+  // Every short text of these characters: no crash, and what is accepted can be evaluated.
+  const std::string characters = "1a.(),+-^e ";
+  std::size_t sound = 0, refused = 0;
+  for (std::size_t code = 0; code < 14641; ++code) {
+    std::string text;
+    for (std::size_t rest = code, k = 0; k < 4; ++k, rest /= 11) text += characters[rest % 11];
+    if (!wrong_in_expression(text).empty()) {
+      ++refused;
+    } else {
+      result_of(text, [](const std::string&) { return 2.0; });
+      ++sound;
+    }
+  }
+  std::printf("%zu sound, %zu refused\n", sound, refused);
+  EXPECT_GT(sound, 500U);
+  EXPECT_GT(refused, 5000U);
+}
+
+TEST(Expression, DoesNotDependOnTheLocale) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"}) {
+    std::setlocale(LC_ALL, locale);
+    EXPECT_EQ(result_of("1.5*2"), 3) << locale;
+    EXPECT_NE(wrong_in_expression("1,5*2"), "") << locale;
+  }
+  std::setlocale(LC_ALL, before.c_str());
+}
+
+TEST(Formula, IsItalicWithLoweredAndRaisedText) {
+  const auto parts = [](const char* text) {
+    std::string all;
+    for (const TextPart& part : text_with_formulas(text).parts) {
+      all += part.style.empty() ? part.text : "<" + part.style + ":" + part.text + ">";
+    }
+    return all;
+  };
+  EXPECT_EQ(parts("shear cycle $n$"), "shear cycle <i:n>");
+  EXPECT_EQ(parts("$v_{fluid} = v_0$"), "<i:v><sub:fluid> = <i:v><sub:0>");
+  EXPECT_EQ(parts("2.6×10$^{−5}$ s"), "2.6×10<sup:−5> s");
+  EXPECT_EQ(parts("$ϕ_−$ a_b"), "<i:ϕ><sub:−> a_b");
+  for (const char* odd : {"$", "$$", "$_$", "$_", "$^{", "$x_{y", "_{}", ""}) {
+    EXPECT_NO_THROW(text_with_formulas(odd)) << odd;
+  }
+}
+
+TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
+  const FigureTable by_frequency = drawing_of(
+      {.name = "own", .y = "phi", .x = "1/period_s", .xlabel = "frequency $f$ [Hz]", .cycle = 2});
+  EXPECT_EQ(by_frequency.chart.series.size(), 3U) << "a curve for each amplitude";
+  EXPECT_EQ(plain_text(by_frequency.chart.x.name), "frequency f [Hz]");
+  EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,0.5,0.022002,"))
+      << to_csv(by_frequency);
+  EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,2,0.020502,"));
+  const FigureTable both =
+      drawing_of({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
+  EXPECT_EQ(both.chart.series.size(), 6U);
+  for (const Series& series : both.chart.series) {
+    for (const ChartPoint& p : points_of(both, series)) EXPECT_NEAR(p.y, 1, 0.005);
+  }
+  const FigureTable strange = drawing_of(
+      {.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
+  ASSERT_EQ(strange.chart.series.size(), 18U) << "every run";
+  EXPECT_EQ(strange.chart.series[0].points.size(), 3U) << "1/0 at cycle 2";
+  EXPECT_EQ(strange.chart.series[0].points[2].x, 6);
+  EXPECT_EQ(strange.chart.series[0].join, Join::none);
+  EXPECT_NE(strange.chart.series[0].point, 0);
+}
+
+TEST(OwnPlot, TakesTheNeedsOfItsExpression) {
+  const Figure figure = plot_figure({.name = "own", .y = "stress_xy_Pa/msd_1_cycle_d2"});
+  EXPECT_EQ(figure.needs, needs_of({"stress_xy_Pa", "msd_1_cycle_d2"}));
+  EXPECT_EQ(figure.needs.size(), 2U);
+}
+
+TEST(OwnPlot, DrawsSeriesAsStated) {
+  const PlotSpec plot{
+      .name = "own",
+      .y = "phi",
+      .x = "period_s",
+      .by = "amplitude_rad",
+      .series = {{.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "vermilion"},
+                 {.where = {{"amplitude_rad", 0.02}},
+                  .colour = "#123456",
+                  .marker = Marker::open_diamond}}};
+  const FigureTable table = drawing_of(plot);
+  EXPECT_EQ(titles_of(table),
+            (std::vector<std::string>{"large A", "amplitude_rad=0.02", "amplitude_rad=0.04"}))
+      << "in the order of the series, then the others";
+  EXPECT_EQ(table.chart.series[0].colour, "#d55e00");
+  EXPECT_EQ(table.chart.series[1].colour, "#123456");
+  EXPECT_EQ(table.chart.series[1].point, 12);
+  EXPECT_EQ(table.chart.series[2].colour, "#0072b2") << "vermilion by its rank, which is taken";
+  PlotSpec traces = plot;
+  traces.show = Show::traces;
+  traces.x = "cycle";
+  traces.by.clear();
+  traces.series = {{.where = {{"amplitude_rad", 0.08}, {"period_s", 2.0}}, .colour = "purple"}};
+  EXPECT_EQ(drawing_of(traces).chart.series[0].colour, "#cc79a7");
+}
+
+TEST(OwnPlot, ShowsPublishedNumbers) {
+  const FigureTable table = drawing_of(
+      {.name = "own",
+       .y = "phi",
+       .x = "amplitude_rad",
+       .published = {
+           {.label = "Jin", .source = "S C", .value = 0.05, .error = 0.01},
+           {.label = "Smith", .source = "a book", .points = {{0.02, 0.03, 0.001}, {0.08, 0.04}}}}});
+  const std::vector<ReferenceLine>& lines = table.chart.lines;
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NEAR(lines[0].at, 0.04, 1e-12);
+  EXPECT_NEAR(lines[1].at, 0.06, 1e-12);
+  const Series& points = table.chart.series.back();
+  ASSERT_EQ(points.points.size(), 2U);
+  EXPECT_EQ(points.points[0].y_error, 0.001);
+  EXPECT_EQ(points.points[1].y_error, std::nullopt);
+  const std::string script = gnuplot_script(table);
+  for (const char* entry : {"title 'Jin'", "title 'Smith'", "0.03,,0.001", "first 0.04"}) {
+    EXPECT_TRUE(has(script, entry)) << script;
+  }
+  const std::vector<FigureTable> tables = {table};
+  EXPECT_TRUE(has(caption_of("A title", tables), " Published: Jin: S C; Smith: a book."));
+  const std::vector<FigureTable> twice = {table, table};
+  const std::string caption = caption_of("A title", twice);
+  EXPECT_EQ(caption.find("Published"), caption.rfind("Published")) << caption;
+  EXPECT_EQ(drawing_of({.name = "own",
+                        .y = "phi",
+                        .published = {{.label = "exact", .source = "S C", .value = 0.05}}})
+                .chart.lines.size(),
+            1U);
+}
+
+TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
+  const PlotSpec plot{.name = "own", .y = "phi", .x = "cycle", .panel = "period_s"};
+  const NameVariants names = [](const std::vector<nlohmann::json>& variants) {
+    std::map<nlohmann::json, std::string> named;
+    for (const auto& variant : variants) named[variant] = "<" + words_of(variant) + ">";
+    return named;
+  };
+  const FigureResult result = plot_figure(plot, names).make(runs_of_sweep());
+  ASSERT_EQ(result.tables.size(), 2U);
+  EXPECT_EQ(result.tables[0].name, "own_1");
+  EXPECT_EQ(result.tables[1].name, "own_2");
+  EXPECT_EQ(plain_text(result.tables[0].chart.title), "<period_s=0.5>");
+  EXPECT_EQ(titles_of(result.tables[1]),
+            (std::vector<std::string>{"<amplitude_rad=0.02>", "<amplitude_rad=0.04>",
+                                      "<amplitude_rad=0.08>"}));
+  EXPECT_EQ(result.tables[0].rows.size(), 12U);
+  for (const FigureTable& table : result.tables) {  // from 0.0205 to 0.082, and some room
+    const double low = table.chart.y.low.value(), high = table.chart.y.high.value();
+    EXPECT_TRUE(low < 0.0205 && low > 0.015) << low;
+    EXPECT_TRUE(high > 0.082 && high < 0.087) << high;
+    EXPECT_EQ(low, result.tables[0].chart.y.low);
+    EXPECT_EQ(high, result.tables[0].chart.y.high);
+  }
+  EXPECT_THROW(
+      plot_figure({.name = "own", .y = "phi", .by = "amplitude_rad"}).make(runs_of_sweep()),
+      UsageError)
+      << "it would average over the periods";
+  EXPECT_NO_THROW(
+      plot_figure({.name = "own", .y = "phi", .by = "amplitude_rad", .panel = "period_s"})
+          .make(runs_of_sweep()));
+}
+
+TEST(OwnPlot, OfOneFigureAreItsPanels) {
+  const std::vector<PlotSpec> plots = {{.name = "a", .y = "phi", .figure = "pair"},
+                                       {.name = "alone", .y = "phi"},
+                                       {.name = "b", .y = "mean_overlap_d", .figure = "pair"}};
+  const std::vector<ClaimSpec> claims = {
+      {.name = "c",
+       .figure = "pair",
+       .compare = "phi",
+       .cycles = {{1, 2}},
+       .between = {{{{"amplitude_rad", 0.02}, {"period_s", 2.0}}, nlohmann::json::object()}},
+       .published = PublishedSpec{.label = "", .source = "S C", .value = 0.022},
+       .margin = 0.001}};
+  const std::vector<Figure> figures = own_figures(plots, claims, {});
+  ASSERT_EQ(figures.size(), 2U);
+  EXPECT_EQ(figures[0].name, "pair");
+  EXPECT_EQ(figures[1].name, "alone");
+  EXPECT_EQ(figures[0].within, std::nullopt);
+  const FigureResult pair = figures[0].make(runs_of_sweep());
+  ASSERT_EQ(pair.tables.size(), 2U);
+  EXPECT_EQ(pair.tables[1].name, "b");
+  ASSERT_EQ(pair.verdicts.size(), 1U);
+  EXPECT_EQ(pair.verdicts[0].ruling, Ruling::agrees);
+}
+
+TEST(OwnClaim, ComparesWithAPublishedNumber) {
+  ClaimSpec claim{
+      .name = "own",
+      .compare = "1000*phi",
+      .cycles = {{2, 2}},
+      .between = {{{{"amplitude_rad", 0.02}, {"period_s", 2.0}}, nlohmann::json::object()}},
+      .published = PublishedSpec{.label = "", .source = "S C", .value = 22.0, .error = 0.1},
+      .margin = 0.01};
+  const auto verdict = [&] { return claim_figure(claim).make(runs_of_sweep()).verdicts.at(0); };
+  EXPECT_EQ(verdict().ruling, Ruling::agrees);
+  EXPECT_NEAR(verdict().estimate.value(), 0.002, 1e-9);
+  EXPECT_EQ(verdict().claim,
+            "own: 1000*phi at cycle 2 is as published, 22 ± 0.1 (S C), for A=0.02 rad, T=2 s");
+  claim.published->value = 23;
+  EXPECT_EQ(verdict().ruling, Ruling::differs);
+  claim.relative = true;
+  claim.margin = 0.1;
+  EXPECT_EQ(verdict().ruling, Ruling::agrees) << "within 10 %";
+  EXPECT_NEAR(verdict().estimate.value(), 22.002 / 23 - 1, 1e-9);
+  claim.is = Relation::lower;
+  EXPECT_EQ(verdict().ruling, Ruling::differs);
+  EXPECT_TRUE(verdict().claim.starts_with(
+      "own: 1000*phi at cycle 2 is lower by more than 10 % than published, 23 ± 0.1 (S C), for "));
+  claim.margin = 0.01;
+  EXPECT_EQ(verdict().ruling, Ruling::agrees);
+  claim.statement = "B.9: they are equal";
+  EXPECT_EQ(verdict().claim, "B.9: they are equal");
+  claim.between[0] = nlohmann::json::object();
+  const std::string refusal = message_of<UsageError>([&] { verdict(); });
+  EXPECT_EQ(refusal, "claim own: there are 6 variants; `of` must name one.");
+  claim.between[0] = {{"amplitude_rad", 0.06}};
+  EXPECT_EQ(verdict().note, "no run with amplitude_rad=0.06 has a checkpoint of cycle 2");
+}
+
+}  // namespace
+}  // namespace shearcell::test
