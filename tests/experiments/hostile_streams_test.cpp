@@ -209,7 +209,7 @@ TEST_F(Messages, NumbersOfOptionsAreDecimal) {
         "bench speed --seconds 0x1", "bench speed --seconds nan", "report --frames 010",
         "report --runs-per-experiment 0x1", "report --packings-mb 0x9", "report --packings-mb -1",
         "run m.yaml --cycles 010", "run m.yaml --seeds 0x2", "run m.yaml -j 01", "run m.yaml -t +2",
-        "work -j 0x1", "prune --keep-every 010", "verify --replay 0x1"}) {
+        "resume -j 0x1", "prune --keep-every 010", "verify --replay 0x1"}) {
     expect_refused(split(words), {"decimal digits"});
   }
 }
