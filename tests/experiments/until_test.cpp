@@ -256,6 +256,15 @@ TEST_F(UntilTest, EndsRunsInFiguresToo) {
   EXPECT_EQ(compute_figure(store_, s2, {}).lineage, alone) << "measured again";
 }
 
+TEST_F(UntilTest, FiguresEndAtTheNumberOfCyclesWhereUntilIsNotReached) {
+  compute(store_, tiny_manifest("  cycles: 3\n", "until: {phi: 0.99}\n"));
+  compute(store_, renamed(manifest(""), "twin"));
+  const CollectedRuns collected = collect_runs(store_, {*find_figure("S2"), "tiny"}, {});
+  EXPECT_EQ(collected.runs.at(0).run.cycle, 6);
+  EXPECT_EQ(collected.runs.at(0).end, 3);
+  EXPECT_EQ(collected.runs.at(0).checkpoints.back().cycle, 3);
+}
+
 // A checkpoint that may decide the end is neither readable nor cached. The recorded end is known.
 TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
   compute(store_, manifest(until()));
