@@ -77,12 +77,6 @@ void require_told_apart(const std::string& figure, std::span<const FigureRun> ru
   const std::string key = averaged_key(variants);
   if (key.empty()) return;
   const std::string& experiment = runs.front().experiment;
-  if (key == "manifest") {  // not swept
-    throw UsageError(
-        fmt::format("figure {} would average over several versions of the manifest of experiment "
-                    "{}; leave out --all-versions",
-                    figure, experiment));
-  }
   throw UsageError(
       fmt::format("figure {} would average over the values of {} that experiment {} sweeps; {}",
                   figure, key, experiment, remedy));

@@ -169,9 +169,8 @@ std::optional<Estimate> estimate(const View& view) {
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
     made.at_most = made.at_most ||
-                   std::ranges::any_of(stage.memberships, [](const Membership& ask) {
-                     return !ask.until.is_null();
-                   });
+                   std::ranges::any_of(stage.memberships,
+                                       [](const Membership& ask) { return !ask.until.is_null(); });
     made.work.add(stage, look.particle_steps, rates);
   }
   if (made.work.stages == 0) return std::nullopt;

@@ -273,8 +273,8 @@ TEST_F(UnusualStore, HasTenThousandRuns) {
       "i), "
       "state, grains, target_cycles, attempts, cycle, step, state_hash, wall_seconds, "
       "particle_steps, "
-      "error, updated_at FROM n, runs WHERE kind = 'shear' AND length(id) = 64 AND ordinal < 100")(
-      path("shearcell-store"));
+      "error, updated_at, ends FROM n, runs WHERE kind = 'shear' AND length(id) = 64 AND ordinal < "
+      "100")(path("shearcell-store"));
   write("many.yaml", tiny_manifest("  grains: 200\n", "seeds: 5000\n"));
   const Stopwatch watch;
   const nlohmann::json plan = json({"plan", "many.yaml", "--json"});

@@ -155,7 +155,8 @@ std::vector<Case> damaged_tables() {
                sql("UPDATE runs SET error = char(27) || ']0;owned' || char(7) || char(155)"),
                "\\x1b]0;owned\\x07\\x9b"),
       reported("terminal_escapes_in_a_figure", "figures S2", 4,
-               sql("UPDATE memberships SET scale = char(27) || '[2J'"),
+               sql("UPDATE memberships SET scale = char(27) || '[2J';"
+                   "UPDATE newest SET scale = char(27) || '[2J'"),
                "'\\x1b[2J', which cannot name a folder"),
       reported("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
                "S2 ("),

@@ -152,7 +152,7 @@ const checks = {
         `plots: labels of ${name}: ${labels}`);
     }
     console.log(`  ${plots.length} plots, ${plots.reduce((sum, p) => sum + p.symbols, 0)} points`);
-    await page.screenshot({path: join(shots, "report.png"), fullPage: true});
+    await page.screenshot({path: join(shots, "report.png"), fullPage: true, timeout: 120_000});
     await page.evaluate(() => scrollTo(0, 0));
     await page.screenshot({path: join(shots, "top.png")});
   },
@@ -402,8 +402,12 @@ const checks = {
     expect(await page.evaluate(() => scrollY) > before + 30, "phone: a finger does not scroll over a plot");
     const point = await canvas.locator(".point").first().boundingBox();
     await page.touchscreen.tap(point.x + point.width / 2, point.y + point.height / 2);
-    await page.waitForTimeout(1000);
-    expect(/=/.test(await canvas.locator(".hoverlayer").textContent()), "phone: a tap shows no values");
+    let values = "";
+    for (let k = 0; k < 40 && !/=/.test(values); ++k) {
+      await page.waitForTimeout(500);
+      values = await canvas.locator(".hoverlayer").textContent();
+    }
+    expect(/=/.test(values), "phone: a tap shows no values");
     await page.screenshot({path: join(shots, "phone.png")});
   }
 };
