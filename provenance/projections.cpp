@@ -157,8 +157,8 @@ class Projector {
                      "SELECT DISTINCT experiment, scale FROM memberships JOIN runs ON run = id "
                      "WHERE manifest = ? AND kind <> 'prepare'",
                      id_);
-    for (const auto& [experiment, scale] :
-         places.all([](const Statement& row) { return std::pair(row.text(0), row.text(1)); })) {
+    const auto place = [](const Statement& row) { return std::pair(row.text(0), row.text(1)); };
+    for (const auto& [experiment, scale] : places.all(place)) {
       show_newest(experiment, scale, id_);
     }
   }

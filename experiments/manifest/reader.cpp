@@ -636,13 +636,16 @@ struct Reader {
   // Points [x, y] or [x, y, error].
   static void read(const Entry& in, const Field& about, std::vector<std::vector<double>>& points) {
     for (const Entry& item : items_of(in, about.example)) {
-      std::vector<double>& point = points.emplace_back();
+      std::vector<double> point;
       for (const Entry& number : items_of(item, "[0.05, 0.646]")) {
-        read(number, {.range = about.range}, point.emplace_back());
+        double value = 0;
+        read(number, {.range = about.range}, value);
+        point.push_back(value);
       }
       if (point.size() != 2 && point.size() != 3) {
         item.reject("is not a point", "It takes [x, y], or [x, y, error].");
       }
+      points.push_back(std::move(point));
     }
   }
 
