@@ -2,6 +2,7 @@
 #include "analysis/expression.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 #include <algorithm>
@@ -80,6 +81,13 @@ std::vector<std::string> names_in(std::string_view text) {
     if (next == text.npos || text[next] != '(') names.push_back(name);
   }
   return names;
+}
+
+std::string expression_syntax() {
+  return fmt::format(
+      "An expression takes numbers, names, + - * / ^ ( ), pi, and the functions {} and {}.",
+      fmt::join(expression_functions.begin(), expression_functions.end() - 1, ", "),
+      expression_functions.back());
 }
 
 std::string wrong_in_expression(const std::string& text) {

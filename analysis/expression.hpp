@@ -17,13 +17,10 @@ bool is_expression(std::string_view text);
 std::vector<std::string> names_in(std::string_view text);
 
 /// What an expression may contain, for messages.
-inline constexpr std::string_view expression_syntax =
-    "An expression takes numbers, names, + - * / ^ ( ), pi, and the functions abs, acos, asin, "
-    "atan, "
-    "cos, exp, ln, log10, max, min, sin, sqrt and tan.";
+std::string expression_syntax();
 
 /// What is wrong with the expression, whatever its names mean, as in "is no expression: ..."; ""
-/// if it can be evaluated. Anything but `expression_syntax` is wrong, and more than 200 bytes.
+/// if it can be evaluated. Anything but expression_syntax() is wrong, and more than 200 bytes.
 std::string wrong_in_expression(const std::string& text);
 
 /// The value of a name.

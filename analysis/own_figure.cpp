@@ -552,11 +552,9 @@ std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const
   std::map<std::string, std::vector<Figure>> parts_of;
   for (std::size_t k = 0; k < parts.size(); ++k) parts_of[figures[k]].push_back(parts[k]);
   std::vector<Figure> found;
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (std::find(figures.begin(), figures.begin() + static_cast<std::ptrdiff_t>(k), figures[k]) ==
-        figures.begin() + static_cast<std::ptrdiff_t>(k)) {
-      found.push_back(joined(figures[k], std::move(parts_of.at(figures[k]))));
-    }
+  for (const std::string& figure : figures) {
+    std::vector<Figure> together = std::exchange(parts_of.at(figure), {});
+    if (!together.empty()) found.push_back(joined(figure, std::move(together)));
   }
   return found;
 }

@@ -26,7 +26,7 @@ namespace {
 
 using Line = PlannedStage;
 
-// What the store has of the stage, and what becomes of it.
+// The recorded state of the stage, and what `run` does with it.
 std::string state_of(const Line& line) {
   if (line.look.done) return "done";
   if (line.stage.attempts == 0) return "to do";
@@ -116,10 +116,6 @@ std::vector<std::string> notes_of(const Plan& plan) {
     notes.emplace_back(missing.what());
   }
   return notes;
-}
-
-bool has_until(const Membership& ask) {
-  return !ask.until.is_null();
 }
 
 // Particle-steps that are left if runs end where others with the same `until` ended; null without

@@ -168,9 +168,7 @@ std::optional<Estimate> estimate(const View& view) {
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
-    made.at_most = made.at_most ||
-                   std::ranges::any_of(stage.memberships,
-                                       [](const Membership& ask) { return !ask.until.is_null(); });
+    made.at_most = made.at_most || std::ranges::any_of(stage.memberships, has_until);
     made.work.add(stage, look.particle_steps, rates);
   }
   if (made.work.stages == 0) return std::nullopt;

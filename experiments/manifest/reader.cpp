@@ -430,7 +430,7 @@ std::vector<Entry> items_of(const Entry& in, string_view example) {
 // Whether the expression can be evaluated, and has known terms.
 bool check_expression(const Entry& in, const Field& about) {
   if (const string wrong = wrong_in_expression(in.node.text); !wrong.empty()) {
-    in.reject_value(wrong, string(expression_syntax));
+    in.reject_value(wrong, expression_syntax());
     return false;
   }
   bool of_run = false, of_checkpoint = false;

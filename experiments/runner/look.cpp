@@ -140,7 +140,7 @@ Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membe
 double end_for(const Store& store, const RunRecord& stage, const Membership& ask,
                const MeasureOptions& options) {
   // With one ask no other experiment can have continued it.
-  if (stage.memberships.size() < 2 || ask.until.is_null()) {
+  if (stage.memberships.size() < 2 || !has_until(ask)) {
     return static_cast<double>(ask.target_cycles);
   }
   std::vector<SeenCheckpoint> checkpoints = seen_checkpoints(store, stage.id);

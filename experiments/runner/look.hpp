@@ -66,7 +66,7 @@ nlohmann::json end_of(const RunRecord& stage);
 /// "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
-/// Mean cycle at which stages with this `until` ended by it; nothing if there are none.
+/// Mean cycle at which this `until` ended stages; nothing if it ended none.
 std::optional<double> expected_end(std::span<const RunRecord> stages, const nlohmann::json& until);
 
 }  // namespace shearcell

@@ -27,7 +27,7 @@ constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not
 constexpr double kMostCounted = 10'000;         // one by one; more are extrapolated
 
 std::optional<Until> until_of(const Membership& ask) try {
-  if (ask.until.is_null()) return std::nullopt;
+  if (!has_until(ask)) return std::nullopt;
   return until_from_json(ask.until);
 } catch (const std::runtime_error& problem) {
   throw StoreDamaged(fmt::format("a record of experiment {}: {}", ask.experiment, problem.what()));
@@ -85,7 +85,7 @@ End end_for(const RunRecord& stage, const Membership& ask,
 
 /// Whether what the completed stage has recorded meets the ask.
 bool is_covered(const RunRecord& stage, const Membership& ask) {
-  return stage.state == RunState::completed && !ask.until.is_null() &&
+  return stage.state == RunState::completed && has_until(ask) &&
          std::ranges::any_of(stage.memberships, [&](const Membership& recorded) {
            return recorded.until == ask.until && recorded.target_cycles >= ask.target_cycles &&
                   recorded.checkpoint_every % ask.checkpoint_every == 0;
@@ -198,6 +198,10 @@ Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
   }
   look.done = completed && long_enough && look.missing.empty();
   return look;
+}
+
+bool has_until(const Membership& ask) {
+  return !ask.until.is_null();
 }
 
 std::optional<Drive> shear_drive(const RunRecord& stage) {

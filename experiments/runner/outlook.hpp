@@ -57,6 +57,9 @@ struct Outlook {
 Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
                 std::span<const SeenCheckpoint> checkpoints);
 
+/// Whether `until` may end the stage before the number of cycles that is asked for.
+bool has_until(const Membership& ask);
+
 /// The motion of the walls in a shear; nothing for another kind of stage, and for a record that
 /// this program cannot read (`verify` names it).
 std::optional<Drive> shear_drive(const RunRecord& stage);

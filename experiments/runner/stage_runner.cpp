@@ -160,7 +160,6 @@ class StageAttempt {
   // that declared it meanwhile.
   bool ends_early() {
     const RunRecord now = store_.run(id());
-    const auto has_until = [](const Membership& ask) { return !ask.until.is_null(); };
     if (seen_.empty() || std::ranges::none_of(now.memberships, has_until)) return false;
     const nlohmann::json ended = decide(store_, now, now.memberships, seen_, {}).ended;
     recorded_.restart();  // measuring is not computing

@@ -205,6 +205,12 @@ class Plot : public ::testing::Test {
     write_csv(table, folder_.path());
     return draw_svg(table, folder_.path());
   }
+  /// What visible_points.py finds in a drawing; nothing if it ran out of time.
+  std::optional<ProgramOutcome> look_at(const fs::path& svg) const {
+    return run_program({"/usr/bin/python3", SHEARCELL_TEST_DATA "/../analysis/visible_points.py",
+                        svg, fs::path(svg).replace_extension(".gp")},
+                       folder_.path());
+  }
   /// What it says when it cannot draw; the data must stay.
   std::string trouble_with(const FigureTable& table) const {
     const std::string message = message_of<AnalysisError>([&] { draw(table); });
@@ -316,10 +322,7 @@ TEST_F(Plot, EveryPointAndEndOfAnErrorBarIsVisible) {
   for (const FigureTable& table : tables) {
     const std::string svg = draw(table);
     EXPECT_EQ(read_bytes(svg).find("color='#FFFFFF'/>"), std::string::npos) << "a disc";
-    const auto seen =
-        run_program({"/usr/bin/python3", SHEARCELL_TEST_DATA "/../analysis/visible_points.py", svg,
-                     fs::path(svg).replace_extension(".gp")},
-                    folder_.path());
+    const auto seen = look_at(svg);
     if (!seen || seen->code == 77) GTEST_SKIP() << "needs rsvg-convert and python3-pil";
     EXPECT_EQ(seen->code, 0) << seen->output << seen->messages;
     std::printf("%s", seen->output.c_str());
@@ -333,10 +336,7 @@ TEST_F(Plot, AnErrorBarThatReachesZeroIsDrawnOnALogarithmicAxis) {
   one.y = 1.5, one.y_error = 1.5;
   other.y = 1.6, other.y_error = 1.7;
   const std::string svg = draw(table);
-  const auto seen =
-      run_program({"/usr/bin/python3", SHEARCELL_TEST_DATA "/../analysis/visible_points.py", svg,
-                   fs::path(svg).replace_extension(".gp")},
-                  folder_.path());
+  const auto seen = look_at(svg);
   if (!seen || seen->code == 77) GTEST_SKIP() << "needs rsvg-convert and python3-pil";
   EXPECT_EQ(seen->code, 0) << seen->output << seen->messages;
 }

@@ -161,7 +161,7 @@ class JobScript : public testing::Test {
     return array_job(submission_, root_ / "store", options);
   }
 
-  /// As Slurm runs the script, but for another program.
+  /// Runs the script as Slurm does, with another program in place of shearcell.
   int run_job(const Job& job, const std::string& restarts = "") {
     const fs::path script = root_ / job.file;
     std::ofstream(script) << job.script;

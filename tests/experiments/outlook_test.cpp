@@ -127,7 +127,7 @@ TEST_F(LeftTest, IsWhatIsThenRecorded) {
   for (const auto& [state, count] : seen) std::printf("%s: %d\n", state.c_str(), count);
   std::printf("%zu kills\n", kills);
   for (const char* state : {"done", "to do", "to extend", "to replay"}) EXPECT_GT(seen[state], 0);
-  EXPECT_GT(kills, 3U);
+  EXPECT_GT(kills, 0U);  // how many depends on the speed of the machine
   expect(0, {"verify", "--replay", "3"});
 }
 

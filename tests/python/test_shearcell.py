@@ -221,7 +221,7 @@ class Package(unittest.TestCase):
         for time in (1, 2):
             self.assertTrue(self.store.measure(unknown, key="unknown")["unknown"].isna().all())
             self.assertEqual(calls, 6 * time, "it may become known")
-        # A key is a promise, and names the column. A build of the program starts anew.
+        # Results are reused by key, even for another function. Another build of the program measures again.
         self.assertEqual(list(self.store.measure(times(2), key="y-2.0")["y-2.0"]), [0, 2, 4] * 2)
         self.assertEqual(list(self.store.measure(times(3), key="y-2.0")["y-2.0"]), [0, 2, 4] * 2)
         self.assertEqual(list(self.store.measure(times(3), key="y-2.0", fresh=True)["y-2.0"]), [0, 3, 6] * 2)
