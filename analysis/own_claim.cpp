@@ -44,17 +44,16 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
 }
 
 Scalar scalar_of(const ClaimSpec& claim) {
-  if (const RunMeasure* of_run = find_run_measure(claim.compare)) return onset_phi(of_run->method);
-  const ScalarMeasure& measure = *find_measure(claim.compare);
-  const auto quantity = [&measure](const Measures& m) { return measure.of(m); };
-  return over_cycles(claim.compare, quantity, static_cast<std::int64_t>(claim.cycles->at(0)),
+  if (const Measure* of_run = find_measure(claim.compare, MeasureKind::run)) {
+    return of_whole_run(*of_run);
+  }
+  return over_cycles(claim.compare, claim.compare, static_cast<std::int64_t>(claim.cycles->at(0)),
                      static_cast<std::int64_t>(claim.cycles->at(1)));
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> runs) {
-  const RunMeasure* of_run = find_run_measure(claim.compare);
-  const bool waits =
-      of_run != nullptr && of_run->value == &RunOnset::cycle;  // a run may end before
+  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+  const bool waits = of_run != nullptr && of_run->waits;
   const std::string a = words_of(claim.between[0]), b = words_of(claim.between[1]);
   const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
   const std::string more =
@@ -82,10 +81,9 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> run
                     fmt::format("no run with {} has a checkpoint{}", *words,
                                 of_run != nullptr ? "" : " of " + scalar_of(claim).reach))}};
   }
-  return {
-      {},
-      {waits ? compare_waits(decided, "the onset", waits_for_onset(first), waits_for_onset(second))
-             : compare(decided, scalar_of(claim), first, second)}};
+  return {{},
+          {waits ? compare_waits(decided, "the onset", waits_for_onset, first, second)
+                 : compare(decided, scalar_of(claim), first, second)}};
 }
 
 }  // namespace
@@ -112,8 +110,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
 Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.name, "",
                 [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
-  if (const ScalarMeasure* one = find_measure(claim.compare)) {
-    figure.needs.emplace_back(one->derived());
+  if (const Measure* one = find_measure(claim.compare)) {
+    figure.needs.push_back(provider_of(*one).name);
     figure.within = claim.cycles;
   }
   figure.uses = [claim](const FigureRun& run) {

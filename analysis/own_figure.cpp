@@ -19,18 +19,21 @@ namespace shearcell {
 namespace {
 
 /// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
-MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
+MeasureColumn column_of(std::string_view measure, std::string_view of) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
   if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  return {std::move(name), std::move(unit), std::move(quantity)};
+  return {std::move(name), std::move(unit), std::string(measure)};
 }
 
-/// The column of a scalar measure, which must exist.
+/// The column of a number, which must exist.
 MeasureColumn scalar_column(std::string_view name) {
-  const ScalarMeasure& measure = *find_measure(name);
-  return column_of(name, measure.unit, [&measure](const Measures& m) { return measure.of(m); });
+  return column_of(name, find_measure(name)->unit);
+}
+
+const Measure* find_curve(std::string_view name) {
+  return find_measure(name, MeasureKind::curve);
 }
 
 /// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
@@ -48,22 +51,23 @@ Axis axis_of(const std::string& key) {
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  if (const ScalarMeasure* measure = find_measure(key)) return named_axis(key, measure->unit);
-  if (const CurveMeasure* measure = find_curve_measure(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_measure(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_curve(key)) return named_axis(key, measure->unit);
   return named_axis(key, "1");
 }
 
 /// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
 std::string_view word_for_cycle(std::span<const FigureRun> runs) {
   const auto stiffens = [](const FigureRun& run) {
-    return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
+    return !run.checkpoints.empty() &&
+           std::isfinite(run.checkpoints.front().measures.number("raised_stiffness_N_per_m"));
   };
   if (std::ranges::none_of(runs, stiffens)) return "cycle";
   return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
-  if (const CurveMeasure* y = find_curve_measure(plot.y)) return named_axis(y->x, y->x_unit);
+  if (const Measure* y = find_curve(plot.y)) return named_axis(y->x, y->x_unit);
   if (!plot.x_symbol.empty()) {
     return {.symbol = italic(plot.x_symbol),
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
@@ -132,8 +136,8 @@ void style_without_symbol(std::size_t curve, Series& series) {
 }
 
 /// Every run against the cycle, or against a measure `x`.
-FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Quantity& y,
-                   const ScalarMeasure* x) {
+FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
+  const Measure* x = find_measure(plot.x);
   FigureTable table{.name = plot.name, .columns = {"variant", "seed"}};
   if (x != nullptr) table.columns.emplace_back("cycle");
   table.columns.insert(table.columns.end(), {plot.x, plot.y});
@@ -144,7 +148,8 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
       Series series = thin_line(std::exchange(title, Text()), curve.style.colour);
       style_without_symbol(k, series);
       for (const CheckpointMeasures& c : run->checkpoints) {
-        const double at = x == nullptr ? c.cycle : x->of(c.measures), value = y(c.measures);
+        const double at = x == nullptr ? c.cycle : c.measures.number(plot.x);
+        const double value = c.measures.number(plot.y);
         TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->seed});
         if (x != nullptr) row.emplace_back(c.cycle);
         row.insert(row.end(), {at, value});
@@ -171,25 +176,25 @@ struct Points {
 /// Against a parameter: one number of each run, a trace for each seed. Of a curve measure: the
 /// curve of each run, a trace for each run. Checkpoints are those of `cycle`.
 Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
-  const RunMeasure* of_run = find_run_measure(plot.y);
-  const CurveMeasure* of_curve = find_curve_measure(plot.y);
+  const Measure* of_run = find_measure(plot.y, MeasureKind::run);
+  const Measure* of_curve = find_curve(plot.y);
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
     if (of_run != nullptr) {
-      points.add(run.seed, number_of(run, plot.x), of_run->of(run));
+      points.add(run.seed, number_of(run, plot.x), of_run->of_run(run).or_nan());
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
     if (of_curve == nullptr) {
-      points.add(run.seed, number_of(run, plot.x), find_measure(plot.y)->of(*measures));
+      points.add(run.seed, number_of(run, plot.x), measures->number(plot.y));
       continue;
     }
-    const MeasuredCurve measured = of_curve->of(*measures);
-    for (std::size_t i = 0; i < measured.x.size(); ++i) {
-      points.add(r, measured.x[i], measured.y[i]);
-    }
+    const auto measured = measures->curves.find(plot.y);
+    if (measured == measures->curves.end()) continue;
+    const auto& [x, y] = measured->second;
+    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, x[i], y[i]);
   }
   return points;
 }
@@ -210,9 +215,9 @@ std::string note_of(const PlotSpec& plot, std::optional<double> cycle,
 /// Against a parameter, or of a curve measure: the mean over the runs at each x, or each trace.
 FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
-  const CurveMeasure* of_curve = find_curve_measure(plot.y);
+  const Measure* of_curve = find_curve(plot.y);
   const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
-  const bool of_whole_run = find_run_measure(plot.y) != nullptr;
+  const bool of_whole_run = find_measure(plot.y, MeasureKind::run) != nullptr;
   const MeasureColumn y = of_curve != nullptr ? column_of(plot.y, of_curve->unit)
                           : of_whole_run      ? column_of(plot.y, "1")
                                               : scalar_column(plot.y);
@@ -260,12 +265,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
 /// Means of both measures at each cycle, over the runs that have both.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
   std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
-  const std::array<Quantity, 2> quantities = {both[0].quantity, both[1].quantity};
-  for (std::size_t k = 0; k < 2; ++k) {
-    both[k].quantity = [own = quantities[k], other = quantities[1 - k]](const Measures& m) {
-      return std::isfinite(other(m)) ? own(m) : std::nan("");
-    };
-  }
+  both[0].known = plot.x, both[1].known = plot.y;
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
   table.chart.note.clear();  // of lines that are not drawn
@@ -274,8 +274,7 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
 
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
-  const CurveMeasure* measured = find_curve_measure(plot.y);
-  const ScalarMeasure* x = find_measure(plot.x);
+  const Measure* measured = find_curve(plot.y);
   const bool by_parameter = measured == nullptr && is_parameter(plot.x);
   const bool grouped = by_parameter || !plot.by.empty();
   const std::vector<FigureRun> groups =
@@ -284,7 +283,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
       curves_by(grouped ? groups : given, {}, [](const FigureRun&) { return nullptr; }, {});
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   const MeasureColumn column = scalar_column(plot.y);
-  if (plot.show == Show::traces) return traces(plot, curves, column.quantity, x);
+  if (plot.show == Show::traces) return traces(plot, curves);
   if (plot.x == "cycle") return against_cycle(plot.name, curves, {&column, 1}, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, column, {});
   return against_measure(plot, curves);
@@ -305,11 +304,11 @@ bool is_parameter(std::string_view x) {
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {
-  return find_curve_measure(plot.y) == nullptr && !is_parameter(plot.x);
+  return find_curve(plot.y) == nullptr && !is_parameter(plot.x);
 }
 
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
-  const CurveMeasure* measured = find_curve_measure(plot.y);
+  const Measure* measured = find_curve(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
   Figure figure{plot.name, plot.y + " against " + x,
                 [plot, names](std::span<const FigureRun> runs) {
@@ -323,12 +322,12 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
                   }
                   return FigureResult{{std::move(table)}, {}};
                 }};
-  if (measured != nullptr) figure.needs.emplace_back(measured->derived);
+  if (measured != nullptr) figure.needs.push_back(provider_of(*measured).name);
   for (const std::string& name : {plot.x, plot.y}) {
-    if (const ScalarMeasure* one = find_measure(name)) figure.needs.emplace_back(one->derived());
+    if (const Measure* one = find_measure(name)) figure.needs.push_back(provider_of(*one).name);
   }
   figure.within = plot.cycles;
-  if (plot.cycle && !draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+  if (plot.cycle && !draws_every_cycle(plot) && find_measure(plot.y, MeasureKind::run) == nullptr) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
   if (!plot.by.empty()) {

@@ -35,7 +35,7 @@ inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "highe
 
 struct PlotSpec {
   std::string name;
-  std::string y;            ///< a scalar, curve (analysis/measures.hpp) or run measure (onset.hpp)
+  std::string y;            ///< a measure (analysis/measures.hpp): a number, a curve, or of a run
   std::string x = "cycle";  ///< "cycle", a scalar measure, or a parameter; unused by curves
   std::string by = {};      ///< a curve for each value of it; "": for each variant
   Show show = Show::mean;

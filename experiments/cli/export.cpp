@@ -200,6 +200,7 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
   std::uint64_t every = run.places.empty() ? checkpoint_cadence(run.run) : 0;
   for (const Membership& place : run.places) every = std::gcd(every, place.checkpoint_every);
   MeasureSources sources(store, {{run.run.id, every}});
+  sources.read_run(run.run.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
     for (const FrameWriter& write : writers) write(frame);

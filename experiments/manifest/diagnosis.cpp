@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "analysis/figure.hpp"
-#include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
@@ -356,8 +355,8 @@ std::uint64_t length_of(const Variant& variant) {
 }
 
 std::uint64_t cycles_back(string_view measure) {
-  const ScalarMeasure* found = find_measure(measure);
-  return found == nullptr ? 0 : found->cycles_back();
+  const Measure* found = find_measure(measure);
+  return found == nullptr ? 0 : found->cycles_back;
 }
 
 /// "a checkpoint at cycle 3 with another one 1 cycle before it".
@@ -410,7 +409,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && find_run_measure(plot.y) == nullptr) {
+  } else if (!draws_every_cycle(plot) && find_measure(plot.y, MeasureKind::run) == nullptr) {
     if (!plot.cycle && scale.until->until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(length_of(shortest)));
     where = format(" at cycle {}", cycles[0]);
@@ -465,7 +464,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
-  if (plot.cycle && find_run_measure(plot.y) != nullptr) {
+  if (plot.cycle && find_measure(plot.y, MeasureKind::run) != nullptr) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {

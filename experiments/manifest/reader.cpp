@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "analysis/figure.hpp"
-#include "analysis/onset.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -103,10 +102,10 @@ void fields(Scale& scale, const auto& visit) {
 }
 
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
-  static const Names can_be_x = joined({"cycle"}, names_of(all_scalar_measures()), parameters());
+  static const Names can_be_x =
+      joined({"cycle"}, measure_names({MeasureKind::number}), parameters());
   static const Names can_be_y =
-      joined({}, names_of(all_scalar_measures()), names_of(all_curve_measures()),
-             names_of(all_run_measures()));
+      measure_names({MeasureKind::number, MeasureKind::curve, MeasureKind::run});
   static const Names can_be_by = parameters();
   visit(plot.name, {.name = "name", .required = true});
   visit(plot.y, {.name = "y", .names = can_be_y, .required = true});
@@ -119,8 +118,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
-  static const Names can_be_compared =
-      joined({}, names_of(all_scalar_measures()), names_of(all_run_measures()));
+  static const Names can_be_compared = measure_names({MeasureKind::number, MeasureKind::run});
   visit(claim.name, {.name = "name", .required = true});
   visit(claim.compare, {.name = "compare", .names = can_be_compared, .required = true});
   visit(claim.between,
@@ -681,13 +679,13 @@ struct Reader {
 
   static void check(const Entry& in, const Field&, Placed<PlotSpec>& plot) {
     const auto x = in.find("x"), cycles = in.find("cycles");
-    if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
+    if (const Measure* curve = find_measure(plot.y, MeasureKind::curve); curve != nullptr && x) {
       x->reject_value(fmt::format("does not go with {}", curve->name),
                       fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
     }
     if (x && plot.y == plot.x) x->reject_value("is also the y of this plot", "Name another one.");
     const bool against_parameter = is_parameter(plot.x);
-    if (find_run_measure(plot.y) != nullptr && !against_parameter) {
+    if (find_measure(plot.y, MeasureKind::run) != nullptr && !against_parameter) {
       in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }
     if (cycles && (plot.show != Show::traces || against_parameter)) {
@@ -706,7 +704,7 @@ struct Reader {
   static void check(const Entry& in, const Field& about, const Placed<ClaimSpec>& claim) {
     const auto at_cycle = in.find("at_cycle"), cycles = in.find("cycles");
     if (at_cycle && cycles) cycles->reject("does not go with at_cycle", "State one of them.");
-    const bool of_run = find_run_measure(claim.compare) != nullptr;
+    const bool of_run = find_measure(claim.compare, MeasureKind::run) != nullptr;
     if (of_run && (at_cycle || cycles)) {
       (at_cycle ? at_cycle : cycles)
           ->reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");

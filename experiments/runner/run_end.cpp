@@ -22,11 +22,11 @@ using nlohmann::json;
 /// unread, may be; null without one.
 const MeasuredCycle* first_reached(std::span<const MeasuredCycle> measured, const RunAsk& ask) {
   if (!ask.until) return nullptr;
-  const ScalarMeasure* measure = find_measure(name_of(ask.until->measure));
+  const std::string_view measure = name_of(ask.until->measure);
   const auto every = static_cast<double>(ask.checkpoint_every);
   const auto found = std::ranges::find_if(measured, [&](const MeasuredCycle& m) {
     return std::fmod(m.cycle, every) == 0 &&
-           (m.unread || measure->of(m.measures) >= ask.until->value);
+           (m.unread || m.measures.number(measure) >= ask.until->value);
   });
   return found == measured.end() ? nullptr : &*found;
 }
@@ -60,17 +60,14 @@ bool all_reached(std::span<const RunAsk> asks, std::span<const MeasuredCycle> me
 }
 
 std::vector<MeasuredCycle> measure(const Store& store, std::span<const CheckpointRecord> records,
-                                   std::span<const DerivedMeasure> measures,
                                    const MeasureOptions& options) {
-  const auto results = measure_checkpoints(store, records, measures, options).results;
+  static const std::array<std::string, 1> scalars = {"scalars"};
+  MeasuredCheckpoints found = measure_checkpoints(store, records, scalars, options);
   std::vector<MeasuredCycle> measured;
   for (std::size_t k = 0; k < records.size(); ++k) {
     MeasuredCycle& one = measured.emplace_back(MeasuredCycle{.cycle = records[k].cycle});
-    if (results[k].front().is_null()) {
-      one.unread = records[k];
-    } else {
-      one.measures = read_results(measures, results[k]);
-    }
+    one.measures = std::move(found.measures[k]);
+    if (found.lacks(k, "scalars")) one.unread = records[k];
   }
   return measured;
 }
@@ -150,9 +147,8 @@ double end_for(const Store& store, const RunRecord& run, const RunAsk& ask,
   std::erase_if(records, [&](const CheckpointRecord& record) {
     return std::fmod(record.cycle, static_cast<double>(ask.checkpoint_every)) != 0;
   });
-  const DerivedMeasure scalars = derived_measure("scalars");
-  const auto measured = measure(store, records, {&scalars, 1},
-                                {.workers = options.workers, .report = options.report});
+  const auto measured =
+      measure(store, records, {.workers = options.workers, .report = options.report});
   const MeasuredCycle* reached = first_reached(measured, ask);
   if (reached == nullptr || !reached->unread) return asked_end(ask, reached);
   const std::optional<double> recorded = recorded_reach(store, run, ask);
@@ -222,9 +218,9 @@ std::optional<json> RunEnd::ended() {
   if (records_.empty()) return std::nullopt;
   const std::vector<RunAsk> asks = asks_of(store_, run_);
   // The crystallites come from the same analysis, and figures need them.
-  static const std::array measures = {derived_measure("scalars"), derived_measure("crystallites")};
+  const MeasureOptions options{.report = {}, .also = {"crystallites"}};
   for (; next_ < records_.size() && !all_reached(asks, measured_); ++next_) {
-    std::ranges::move(measure(store_, {&records_[next_], 1}, measures, {}),
+    std::ranges::move(measure(store_, {&records_[next_], 1}, options),
                       std::back_inserter(measured_));
   }
   return ended_early(asks, measured_, records_.back().cycle);
