@@ -16,11 +16,11 @@
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/look.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
@@ -73,12 +73,16 @@ using CheckpointFacts = std::vector<std::pair<TableColumn, nlohmann::json>>;
 
 /// The same values as in `table`; measured now if they are not cached.
 CheckpointFacts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
-  MeasuredPackings found;
+  MeasuredCheckpoints found;
   try {
-    found = measures_of(store, {&record, 1}, table_measures(), {});
+    found = measure_checkpoints(store, {&record, 1}, table_providers(), {});
   } catch (const AnalysisError& problem) {  // a failed run may leave such a state
     print_stderr("not measured: {}\n", problem.what());
-    return facts_of(record, std::nullopt);
+    MeasureSources sources(store);
+    sources.read_run(record.run);
+    Measures recorded;
+    sources.add_recorded(record, recorded);
+    return facts_of(record, recorded);
   }
   print_problems(found, "not measured", context);
   return facts_of(record, found.measures.front());

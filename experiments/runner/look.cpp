@@ -46,12 +46,12 @@ void measure_from(const Store& store, const CheckpointRecord& first,
     if (chosen.size() == options.workers) break;
   }
   // The crystallites come from the same analysis, and figures need them.
-  static const std::array measures = {derived_measure("scalars"), derived_measure("crystallites")};
-  const auto results = measure_checkpoints(store, records, measures,
-                                           {.workers = options.workers, .report = options.report})
-                           .results;
+  static const std::array<std::string, 1> scalars = {"scalars"};
+  const MeasureOptions also = {
+      .workers = options.workers, .report = options.report, .also = {"crystallites"}};
+  MeasuredCheckpoints found = measure_checkpoints(store, records, scalars, also);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (!results[k].front().is_null()) chosen[k]->measures = read_results(measures, results[k]);
+    if (!found.lacks(k, "scalars")) chosen[k]->measures = std::move(found.measures[k]);
   }
   if (!chosen.front()->measures) refuse_unread(first);
 }

@@ -59,7 +59,7 @@ End end_for(const RunRecord& stage, const Membership& ask,
   End end{static_cast<double>(ask.target_cycles)};
   const std::optional<Until> until = until_of(ask);
   if (!until) return end;
-  const ScalarMeasure* measure = find_measure(name_of(until->measure));
+  const std::string_view measure = name_of(until->measure);
   const auto every = static_cast<double>(ask.checkpoint_every);
   for (const SeenCheckpoint& one : checkpoints) {
     if (std::fmod(one.record.cycle, every) != 0) continue;
@@ -71,7 +71,7 @@ End end_for(const RunRecord& stage, const Membership& ask,
       if (!end.reached) end.undecided = &one.record;
       break;
     }
-    if (measure->of(*one.measures) < until->value) continue;
+    if (one.measures->number(measure) < until->value) continue;
     end.reached = one.record.cycle;
     break;
   }
