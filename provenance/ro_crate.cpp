@@ -152,7 +152,7 @@ std::string error_of(const Attempt& attempt) {
 /// The recorded checkpoint from which the attempt started; nullptr without one.
 const CheckpointHistory* initial_state(const CrateFacts& facts, const Attempt& attempt) {
   const auto stage = std::ranges::find(facts.stages, attempt.from_run,
-                                       [](const RunLineage& each) { return each.run.id; });
+                                       [](const RunLineage& each) { return each.stage.id; });
   return stage == facts.stages.end() ? nullptr : stage->find(attempt.from_checkpoint);
 }
 
@@ -181,16 +181,16 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
     results.push_back(add_checkpoint(graph, *stage.find(sha256)));
   }
   const Maker maker = maker_of(attempt.host);
-  json action = {
-      {"@id", fmt::format("#attempt-{}-{}", stage.run.id, a + 1)},
-      {"@type", "CreateAction"},
-      {"name", fmt::format("{} of run {:.12}, attempt {}", stage.run.kind, stage.run.id, a + 1)},
-      {"instrument", add_software(graph, maker)},
-      {"location", add_host(graph, maker)},
-      {"startTime", attempt.started_at},
-      {"actionStatus", reference(status_of(attempt))},
-      {"object", objects},
-      {"result", results}};
+  json action = {{"@id", fmt::format("#attempt-{}-{}", stage.stage.id, a + 1)},
+                 {"@type", "CreateAction"},
+                 {"name", fmt::format("{} of run {:.12}, attempt {}", stage.stage.kind,
+                                      stage.stage.id, a + 1)},
+                 {"instrument", add_software(graph, maker)},
+                 {"location", add_host(graph, maker)},
+                 {"startTime", attempt.started_at},
+                 {"actionStatus", reference(status_of(attempt))},
+                 {"object", objects},
+                 {"result", results}};
   if (!attempt.ended_at.empty()) action["endTime"] = attempt.ended_at;
   if (const std::string error = error_of(attempt); !error.empty()) action["error"] = error;
   return graph.add(std::move(action));
@@ -215,7 +215,7 @@ std::string title_of(const Stage& run) {
 
 std::string newest_moment(const CrateFacts& facts) {
   std::string newest;
-  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.run.updated_at);
+  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.stage.updated_at);
   return newest;
 }
 
@@ -233,7 +233,7 @@ CrateFacts crate_facts(const Store& store, const std::string& run, std::string l
                        std::vector<std::string> left_out) {
   CrateFacts facts{run_lineage(store, run), {}, std::move(licence), std::move(left_out)};
   for (const RunLineage& stage : facts.stages) {
-    for (const Ask& member : stage.run.asks) {
+    for (const Ask& member : stage.stage.asks) {
       if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
       if (auto manifest = find_manifest(store, member.manifest)) {
         facts.manifests.push_back(std::move(*manifest));
@@ -257,11 +257,11 @@ json ro_crate_metadata(const CrateFacts& facts) {
   for (const RunLineage& stage : facts.stages) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
-      if (std::ranges::count(stage.run.asks, manifest.sha256, &Ask::manifest) > 0) {
+      if (std::ranges::count(stage.stage.asks, manifest.sha256, &Ask::manifest) > 0) {
         given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
-    given.parameters = add_parameters(graph, facts, stage.run);
+    given.parameters = add_parameters(graph, facts, stage.stage);
     for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
       actions.push_back(add_attempt(graph, facts, stage, a, given));
     }
@@ -273,7 +273,7 @@ json ro_crate_metadata(const CrateFacts& facts) {
              {"version", "0.5"}});
   const json& entities = graph.entities();
 
-  const Stage& run = facts.stages.back().run;
+  const Stage& run = facts.stages.back().stage;
   json all = json::array();
   all.push_back({{"@id", kCrateMetadata},
                  {"@type", "CreativeWork"},
