@@ -85,8 +85,8 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-bool adds_something(const RunRecord& known, const Membership& m) {
-  return std::ranges::none_of(known.memberships, [&](const Membership& old) {
+bool adds_something(const Stage& known, const Ask& m) {
+  return std::ranges::none_of(known.asks, [&](const Ask& old) {
     return place_of(old) == place_of(m) && old.checkpoint_every == m.checkpoint_every &&
            old.target_cycles >= m.target_cycles;
   });
@@ -101,8 +101,8 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
                        describe(lease.holder));
   }
   // Whoever continued it began an attempt, and a merge may have brought its end.
-  const auto run = query_run(database, id);
-  const bool own = run && run->attempts == attempt && run->state == RunState::running;
+  const auto run = query_stage(database, id);
+  const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";
 }
 
@@ -239,15 +239,15 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   return sha256;
 }
 
-void Store::declare_run(const RunRecord& declared) {
+void Store::declare_stage(const Stage& declared) {
   must_write();
   if (!is_sha256_hex(declared.id)) {
     throw std::invalid_argument(fmt::format("'{}' is not a run id", declared.id));
   }
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
-  const auto known = query_run(database_, declared.id);
-  if (!known && !declared.parent.empty() && !query_run(database_, declared.parent)) {
+  const auto known = query_stage(database_, declared.id);
+  if (!known && !declared.parent.empty() && !query_stage(database_, declared.parent)) {
     throw std::invalid_argument(
         fmt::format("run {}: its parent {} was never declared", declared.id, declared.parent));
   }
@@ -255,30 +255,30 @@ void Store::declare_run(const RunRecord& declared) {
     throw std::invalid_argument(
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
-  for (const Membership& m : declared.memberships) {
+  for (const Ask& m : declared.asks) {
     if (known && !adds_something(*known, m)) continue;
     append(run_stream(declared.id), encode(events::RunDeclared{declared, m}), lock);
   }
   lock.commit();
 }
 
-std::uint64_t Store::start_run(const std::string& id, const json& host,
-                               const std::optional<std::string>& from_sha256,
-                               const std::string& parent_checkpoint, bool fill) {
+std::uint64_t Store::start_stage(const std::string& id, const json& host,
+                                 const std::optional<std::string>& from_sha256,
+                                 const std::string& parent_checkpoint, bool fill) {
   must_write();
   const std::scoped_lock guard(mutex_);
   if (held_.contains(id)) {
     throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
   }
   sqlite::WriteTransaction lock(database_);
-  const auto known = query_run(database_, id);
-  if (!known) throw unknown_run(id);
+  const auto known = query_stage(database_, id);
+  if (!known) throw unknown_stage(id);
   for (const Lease& lease : query_leases(database_, id)) {
     if (lease.holder.token == self_.token || lapsed(lease, now_ms())) continue;
     throw RunHeld(
         fmt::format("run {}: another program computes it ({})", id, describe(lease.holder)));
   }
-  if ((known->state == RunState::completed) != fill) {
+  if ((known->state == StageState::completed) != fill) {
     throw ConcurrencyConflict(fmt::format("run {}: it is {}completed", id, fill ? "not " : ""));
   }
   const std::uint64_t attempt = known->attempts + 1;
@@ -299,7 +299,8 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
-  held_[id] = attempt;  // first, so that interrupt_run() works if the commit only reports an error
+  held_[id] =
+      attempt;  // first, so that interrupt_stage() works if the commit only reports an error
   lock.commit();
   return attempt;
 }
@@ -355,16 +356,16 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   return query_checkpoint(database_, id, sha256).value();
 }
 
-void Store::interrupt_run(const std::string& id, const std::string& why) {
+void Store::interrupt_stage(const std::string& id, const std::string& why) {
   append_held(id, encode(events::RunInterrupted{why}), true);
 }
 
-void Store::fail_run(const std::string& id, const std::string& why, const json& numbers) {
+void Store::fail_stage(const std::string& id, const std::string& why, const json& numbers) {
   append_held(id, encode(events::RunFailed{why, numbers}), true);
 }
 
-void Store::complete_run(const std::string& id, const json& summary,
-                         std::optional<std::uint64_t> target_cycles) {
+void Store::complete_stage(const std::string& id, const json& summary,
+                           std::optional<std::uint64_t> target_cycles) {
   append_held(id, encode(events::RunCompleted{summary, target_cycles}), true);
 }
 
@@ -409,17 +410,17 @@ std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string
   return std::nullopt;
 }
 
-std::vector<RunRecord> Store::runs() const {
+std::vector<Stage> Store::stages() const {
   const std::scoped_lock guard(mutex_);
   const sqlite::ReadTransaction snapshot(database_);
-  return query_runs(database_);
+  return query_stages(database_);
 }
 
-RunRecord Store::run(const std::string& id) const {
+Stage Store::stage(const std::string& id) const {
   const std::scoped_lock guard(mutex_);
   const sqlite::ReadTransaction snapshot(database_);
-  auto found = query_run(database_, id);
-  if (!found) throw unknown_run(id);
+  auto found = query_stage(database_, id);
+  if (!found) throw unknown_stage(id);
   return std::move(*found);
 }
 
@@ -431,12 +432,12 @@ std::vector<Lease> Store::leases() const {
   return found;
 }
 
-RunRecord Store::find_run(std::string_view prefix) const {
+Stage Store::find_stage(std::string_view prefix) const {
   const std::scoped_lock guard(mutex_);
-  const std::vector<std::string> ids = query_run_ids(database_, prefix, kListed);
-  if (ids.empty()) throw unknown_run(prefix);
+  const std::vector<std::string> ids = query_stage_ids(database_, prefix, kListed);
+  if (ids.empty()) throw unknown_stage(prefix);
   require_one("runs", prefix, ids);
-  return run(ids.front());
+  return stage(ids.front());
 }
 
 std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
@@ -451,7 +452,7 @@ std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) 
 
 std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
   const std::scoped_lock guard(mutex_);
-  if (!has_run(database_, id)) throw unknown_run(id);
+  if (!has_stage(database_, id)) throw unknown_stage(id);
   auto found = query_checkpoints(database_, id);
   std::erase_if(found, [listed](const CheckpointRecord& record) {
     return (record.state == CheckpointState::rejected && listed != Listed::all) ||
@@ -479,7 +480,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
     require_kept();  // it may have been pruned since the record was read
     throw;
   }
-  const RunRecord of = run(record.run);
+  const Stage of = stage(record.run);
   try {
     return read_checkpoint(bytes, record, of);
   } catch (const StoreDamaged& damage) {
@@ -523,7 +524,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
   std::vector<CheckpointRecord> found;
-  for (const RunRecord& run : runs()) {
+  for (const Stage& run : stages()) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
@@ -557,7 +558,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
     sqlite::WriteTransaction lock(database_);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
-      const auto run = query_run(database_, record.run);
+      const auto run = query_stage(database_, record.run);
       if (!now || now->state != CheckpointState::recorded || !run || now->step >= run->step)
         continue;
       append(run_stream(record.run), encode(events::CheckpointPruned{{*now}}), lock);
@@ -601,7 +602,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
 }
 
 void Store::record_replay(const std::string& id, bool same, const json& facts) {
-  run(id);  // throws when it is unknown
+  stage(id);  // throws when it is unknown
   record(run_stream(id), {same ? "ReplayVerified" : "ReplayDiverged", facts});
 }
 

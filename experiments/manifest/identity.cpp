@@ -31,7 +31,7 @@ json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
-json record_of(const StageRecord& stage) {
+json record_of(const StageInputs& stage) {
   const Parameters parameters = without_ineffective(stage.parameters);
   json values = json::object();
   for (const Field& field : schema()) {
@@ -47,8 +47,8 @@ json record_of(const StageRecord& stage) {
   return resolved;
 }
 
-RunRecord new_stage(const StageRecord& stage) {
-  RunRecord made;
+Stage new_stage(const StageInputs& stage) {
+  Stage made;
   made.resolved = record_of(stage);
   made.id = stage_key(made.resolved);
   made.parent = stage.parent;
@@ -86,7 +86,7 @@ UnreadableRecord damaged(std::string_view key, std::string_view problem) {
 
 // A parameter that does not affect the stage keeps its default. One that affects it and is missing
 // from the record has the value at which it is omitted.
-void read_parameters(const json& values, StageRecord& record) {
+void read_parameters(const json& values, StageInputs& record) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   Parameters& p = record.parameters;
   for (const Field& field : schema()) {  // `protocol` before what depends on it
@@ -106,11 +106,11 @@ void read_parameters(const json& values, StageRecord& record) {
 
 }  // namespace
 
-RunRecord prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  return new_stage({Stage::prepare, "", seed, parameters});
+Stage prepare_stage(const Parameters& parameters, std::uint64_t seed) {
+  return new_stage({StageKind::prepare, "", seed, parameters});
 }
 
-RunRecord last_stage(const Parameters& parameters, std::uint64_t seed, const RunRecord& parent) {
+Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent) {
   return new_stage({stage_after_settling(parameters.protocol), parent.id, seed, parameters});
 }
 
@@ -118,20 +118,20 @@ std::string stage_key(const json& resolved) {
   return sha256_hex(std::string(kDomain) + canonical_json(resolved));
 }
 
-StageRecord read_stage(const json& resolved) {
+StageInputs read_stage(const json& resolved) {
   const json name = member_of(resolved, "stage"), parent = member_of(resolved, "parent");
   const json seed = member_of(resolved, "seed"), values = member_of(resolved, "parameters");
-  const auto stage = value_of<Stage>(name.is_string() ? name.get<std::string>() : "");
+  const auto stage = value_of<StageKind>(name.is_string() ? name.get<std::string>() : "");
   if (!stage) throw damaged("stage", "is not one of prepare, shear, stiffen");
   if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
-  StageRecord record{*stage, "", seed.get<std::uint64_t>(), {}};
-  if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
-  if (record.stage != Stage::prepare) {
+  StageInputs record{*stage, "", seed.get<std::uint64_t>(), {}};
+  if (record.stage == StageKind::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
+  if (record.stage != StageKind::prepare) {
     if (parent.is_string()) record.parent = parent.get<std::string>();
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
   }
   read_parameters(values, record);
-  if (record.stage != Stage::prepare &&
+  if (record.stage != StageKind::prepare &&
       stage_after_settling(record.parameters.protocol) != record.stage) {
     throw damaged("protocol", "is not one that shears");  // this program never writes such a record
   }
