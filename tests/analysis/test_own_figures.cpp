@@ -302,11 +302,11 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
   EXPECT_EQ(verdict().ruling, Ruling::agrees) << "within 10 %";
   EXPECT_NEAR(verdict().estimate.value(), 22.002 / 23 - 1, 1e-9);
   claim.is = Relation::lower;
-  EXPECT_EQ(verdict().ruling, Ruling::differs);
+  EXPECT_EQ(verdict().ruling, Ruling::refuted);
   EXPECT_TRUE(verdict().claim.starts_with(
       "own: 1000*phi at cycle 2 is lower by more than 10 % than published, 23 ± 0.1 (S C), for "));
   claim.margin = 0.01;
-  EXPECT_EQ(verdict().ruling, Ruling::agrees);
+  EXPECT_EQ(verdict().ruling, Ruling::supported);
   claim.statement = "B.9: they are equal";
   EXPECT_EQ(verdict().claim, "B.9: they are equal");
   claim.between[0] = nlohmann::json::object();

@@ -162,8 +162,8 @@ Rates rates(const Kind& kind, std::size_t runs, double truth, std::uint32_t firs
   std::uint32_t agrees = 0, differs = 0;
   for (std::uint32_t s = 0; s < kind.samples; ++s) {
     const Verdict verdict = decide(claim, "", kind.simulate(first + s, runs, truth), runs, "");
-    agrees += verdict.ruling == Ruling::agrees ? 1 : 0;
-    differs += verdict.ruling == Ruling::differs ? 1 : 0;
+    agrees += verdict.ruling == Ruling::agrees || verdict.ruling == Ruling::supported ? 1 : 0;
+    differs += verdict.ruling == Ruling::differs || verdict.ruling == Ruling::refuted ? 1 : 0;
   }
   return {100.0 * agrees / kind.samples, 100.0 * differs / kind.samples};
 }

@@ -339,7 +339,7 @@ TEST_F(FinalNames, OfExistingFilesAreGivenToCompleteFiles) {
     Arguments command;
     std::size_t files;
   };
-  for (const auto& [command, files] : std::vector<Case>{{{"figures", "S2", "--out", "out/f"}, 11},
+  for (const auto& [command, files] : std::vector<Case>{{{"figures", "S2", "--out", "out/f"}, 12},
                                                         {{"table", "--out", "out/t.csv"}, 1},
                                                         {{"report", "--out", "out/r.html"}, 1}}) {
     SCOPED_TRACE(command.front());

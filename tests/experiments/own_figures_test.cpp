@@ -201,7 +201,7 @@ claims:
   EXPECT_TRUE(files.contains("by_period_3.csv") && !files.contains("by_period_4.csv"));
   EXPECT_TRUE(has(files.at("by_period_1.gp"), "set title 'T=0.25 s'"));
   const auto verdict = nlohmann::json::parse(files.at("drive.verdict.json"));
-  EXPECT_EQ(verdict.at("verdict"), "agrees");
+  EXPECT_EQ(verdict.at("verdict"), "1 agrees");
   EXPECT_EQ(verdict.at("claims").at(0).at("claim"),
             "close: phi at cycle 1 is as published, 0.637 ± 0.001 (a journal), for a large "
             "amplitude, T=1 s");
