@@ -85,6 +85,15 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
+/// A run with those of its places that are selected.
+struct PlacedRun {
+  RunRecord run;
+  std::vector<Membership> places;
+};
+
+/// Each run once, in the order of its first place.
+std::vector<PlacedRun> by_run(const std::vector<SelectedRun>& selected);
+
 /// An error message if the text is not a decimal number from `low` to `high`; else "". A double may
 /// have a fraction and an exponent; a std::uint64_t must not have leading zeros.
 template <class Number>
@@ -142,14 +151,14 @@ void print_table(const Row& header, const auto& items, const auto& row) {
   print_table(header, rows);
 }
 
-/// One value of a result: a key of its JSON and, with a heading, a cell of its table.
+/// One value of a result: a key of its JSON and, with a heading, a cell of its table or a line.
 struct Fact {
-  const char* key;  ///< "" for a cell alone
+  std::string key;  ///< "" for text alone
   nlohmann::json value;
-  const char* heading = nullptr;         ///< of the column; null for JSON alone
-  std::optional<std::string> text = {};  ///< of the cell; none: the value itself
+  std::optional<std::string> heading = {};  ///< of the column or line; none for JSON alone
+  std::optional<std::string> text = {};     ///< in the table or line; none: the value itself
 };
-using Facts = std::vector<Fact>;  ///< of one row
+using Facts = std::vector<Fact>;  ///< of one row, or of one thing
 
 /// The facts as one JSON object.
 nlohmann::json to_json(const Facts& facts);
@@ -157,6 +166,10 @@ nlohmann::json to_json(const std::vector<Facts>& rows);
 
 /// Prints a row for each; all have the same headings.
 void print_table(const std::vector<Facts>& rows);
+
+/// Prints "HEADING  text" for each fact that has a heading. Further lines of the text stand below
+/// the first one; an empty text has no line.
+void print_lines(const Facts& facts);
 
 /// facts(item) for each item.
 std::vector<Facts> rows_of(const auto& items, const auto& facts) {

@@ -16,9 +16,8 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -97,6 +96,14 @@ void print_numerics(const std::vector<Line>& lines) {
       {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
 }
 
+// What our own simulation has and LAMMPS lacks or has only approximately.
+const std::vector<std::string> kLammpsCaveats = {
+    "LAMMPS computes the shear alone; packings are placed and settled by this program, and shared.",
+    "Results equal ours up to rounding; the bits differ, also between numbers of processes.",
+    "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
+    "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
+    "wall's plane ends a run."};
+
 // Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
   std::vector<std::string> notes;
@@ -109,7 +116,7 @@ std::vector<std::string> notes_of(const Plan& plan) {
                                 format_bytes(most), format_bytes(machine_memory())));
   }
   if (!asks_for_lammps(plan)) return notes;
-  std::ranges::move(lammps_caveats(), std::back_inserter(notes));
+  notes.insert(notes.end(), kLammpsCaveats.begin(), kLammpsCaveats.end());
   try {
     notes.push_back("LAMMPS here: " + find_lammps().version);
   } catch (const ProgramError& missing) {

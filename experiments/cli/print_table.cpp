@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <sstream>
+#include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "provenance/json_text.hpp"
@@ -74,6 +76,10 @@ std::string painted(const std::string& word, const std::string& text) {
   return found == colours.end() ? text : fmt::format(fmt::fg(found->second), "{}", text);
 }
 
+std::string text_of(const Fact& fact) {
+  return fact.text ? *fact.text : short_text(fact.value);
+}
+
 }  // namespace
 
 void print_table(const Row& header, const std::vector<Row>& given) {
@@ -104,7 +110,7 @@ void print_table(const Row& header, const std::vector<Row>& given) {
 nlohmann::json to_json(const Facts& facts) {
   nlohmann::json all = nlohmann::json::object();
   for (const Fact& fact : facts) {
-    if (*fact.key != '\0') all[fact.key] = fact.value;
+    if (!fact.key.empty()) all[fact.key] = fact.value;
   }
   return all;
 }
@@ -120,12 +126,25 @@ void print_table(const std::vector<Facts>& rows) {
     header.clear();
     cells.emplace_back();
     for (const Fact& fact : row) {
-      if (fact.heading == nullptr) continue;
-      header.emplace_back(fact.heading);
-      cells.back().push_back(fact.text ? *fact.text : short_text(fact.value));
+      if (!fact.heading) continue;
+      header.push_back(*fact.heading);
+      cells.back().push_back(text_of(fact));
     }
   }
   print_table(header, cells);
+}
+
+void print_lines(const Facts& facts) {
+  std::size_t widest = 0;
+  for (const Fact& fact : facts) widest = std::max(widest, fact.heading.value_or("").size());
+  for (const Fact& fact : facts) {
+    if (!fact.heading) continue;
+    std::string heading = *fact.heading;
+    std::istringstream lines(text_of(fact));
+    for (std::string line; std::getline(lines, line);) {
+      print_text("{:<{}}  {}\n", std::exchange(heading, ""), widest, line);
+    }
+  }
 }
 
 void print_list(const char* name, const std::vector<Facts>& rows, const Context& context) {

@@ -16,7 +16,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/keep_measures.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/words.hpp"
@@ -40,9 +40,7 @@ bool selects(const RunSelection& s) {
 std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
   std::vector<std::string> ids;
-  for (const SelectedRun& one : select_runs(store, selection)) {
-    if (std::ranges::count(ids, one.run.id) == 0) ids.push_back(one.run.id);
-  }
+  for (const PlacedRun& one : by_run(select_runs(store, selection))) ids.push_back(one.run.id);
   return ids;
 }
 
@@ -76,23 +74,20 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
   std::map<std::string, std::vector<CheckpointRecord>> by_run;
   for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
-  // All experiments that have the run: they lose its files too.
-  const auto experiments_of = [](const RunRecord& run) {
-    std::set<std::string> names;
-    for (const Membership& m : run.memberships) names.insert(m.experiment);
-    return fmt::format("{}", fmt::join(names, ", "));
-  };
-  const Row header = {"run", "experiment", "state", "to free", "of", "bytes"};
-  print_table(header, by_run, [&](const auto& freed) -> Row {
-    const auto& [id, of_run] = freed;
-    const RunRecord run = store.run(id);
-    return {id.substr(0, 8),
-            experiments_of(run),
-            std::string(name_of(run.state)),
-            std::to_string(of_run.size()),
-            std::to_string(store.checkpoints(id).size()),
-            format_bytes(bytes_of(of_run))};
-  });
+  print_table({"run", "experiment", "state", "to free", "of", "bytes"}, by_run,
+              [&](const auto& freed) -> Row {
+                const auto& [id, of_run] = freed;
+                const RunRecord run = store.run(id);
+                // All experiments that have the run: they lose its files too.
+                std::set<std::string> experiments;
+                for (const Membership& m : run.memberships) experiments.insert(m.experiment);
+                return {id.substr(0, 8),
+                        fmt::format("{}", fmt::join(experiments, ", ")),
+                        std::string(name_of(run.state)),
+                        std::to_string(of_run.size()),
+                        std::to_string(store.checkpoints(id).size()),
+                        format_bytes(bytes_of(of_run))};
+              });
 }
 
 bool agreed() {

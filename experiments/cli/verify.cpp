@@ -9,7 +9,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/sha256.hpp"

@@ -13,7 +13,7 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"

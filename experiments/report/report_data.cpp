@@ -16,7 +16,7 @@
 #include "experiments/figures/collect.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/host.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"

@@ -16,7 +16,7 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
@@ -286,24 +286,24 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-// Variants that start from one packing share it, so its name says no variant.
-std::string job_name(const Membership& membership, const std::string& name) {
-  return fmt::format("{} {} seed={}", membership.experiment, name, membership.seed);
-}
-
-StageJob job_of(const RunRecord& run, const VariantNames& names) {
-  if (run.memberships.empty()) return {run.id, run.parent, run.kind};
-  const Membership& place = run.memberships.front();
-  return {run.id, run.parent, job_name(place, names.of(run, place))};
-}
-
-/// Adds their ids to equal names, as those of several scales.
-void tell_apart(std::vector<StageJob>& jobs) {
+/// A job for each stage, named by its first place, and by its id where names are equal, as those of
+/// several scales.
+std::vector<StageJob> jobs_of(const std::vector<RunRecord>& stages, const VariantNames& names) {
+  std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
-  for (const StageJob& job : jobs) ++count[job.name];
+  for (const RunRecord& stage : stages) {
+    std::string name = stage.kind;
+    if (!stage.memberships.empty()) {
+      const Membership& place = stage.memberships.front();
+      name = fmt::format("{} {} seed={}", place.experiment, names.of(stage, place), place.seed);
+    }
+    ++count[name];
+    jobs.push_back({stage.id, stage.parent, name});
+  }
   for (StageJob& job : jobs) {
     if (count[job.name] > 1) job.name += " " + job.id.substr(0, 8);
   }
+  return jobs;
 }
 
 // By scale, where it is not the default.
@@ -326,32 +326,28 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
     info["max_overlap_diameters"] = std::move(limits);
   }
   store.register_manifest(manifest.text, manifest.file, info);
-  std::vector<StageJob> jobs;
+  std::vector<RunRecord> stages;
   std::set<std::string> known;
-  PackingNames packings;
-  for (const PlannedRun& run : plan.runs) packings.add(run, run.prepare.resolved);
   for (const PlannedRun& run : plan.runs) {
     for (RunRecord stage : {run.prepare, run.last}) {
       const bool prepare = stage.kind == name_of(Stage::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      Membership membership = run;
+      stage.memberships = {run};
       if (prepare) {
-        membership = {.experiment = run.experiment,
-                      .scale = run.scale,
-                      .variant = "packing",
-                      .seed = run.seed,
-                      .manifest = run.manifest,
-                      .checkpoint_every = run.checkpoint_every};
+        // Variants that start from one packing share it, so its place says no variant.
+        stage.memberships = {{.experiment = run.experiment,
+                              .scale = run.scale,
+                              .variant = "packing",
+                              .seed = run.seed,
+                              .manifest = run.manifest,
+                              .checkpoint_every = run.checkpoint_every}};
       }
-      const std::string name = prepare ? packings.of(run, stage.resolved) : run.name;
-      if (first) jobs.push_back({stage.id, stage.parent, job_name(membership, name)});
-      stage.memberships = {std::move(membership)};
       store.declare_run(stage);
+      if (first) stages.push_back(std::move(stage));
     }
   }
-  tell_apart(jobs);
-  return jobs;
+  return jobs_of(stages, VariantNames(store));
 }
 
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
@@ -366,13 +362,9 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (RunRecord run : asked) {
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
   }
-  std::vector<StageJob> jobs;
-  const VariantNames names(store);
-  for (const RunRecord& run : store.runs()) {
-    if (wanted.contains(run.id)) jobs.push_back(job_of(run, names));
-  }
-  tell_apart(jobs);
-  return jobs;
+  std::vector<RunRecord> stages = store.runs();
+  std::erase_if(stages, [&](const RunRecord& run) { return !wanted.contains(run.id); });
+  return jobs_of(stages, VariantNames(store));
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,

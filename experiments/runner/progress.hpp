@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell {

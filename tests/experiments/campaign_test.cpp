@@ -8,7 +8,7 @@
 #include <set>
 
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"

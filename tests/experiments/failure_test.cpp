@@ -8,7 +8,7 @@
 
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/cost.hpp"
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"

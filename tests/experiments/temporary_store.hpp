@@ -14,7 +14,7 @@
 
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/store.hpp"
 #include "tests/support/files.hpp"
