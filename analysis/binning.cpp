@@ -7,7 +7,7 @@
 
 namespace shearcell {
 
-std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity) {
+std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure, double least) {
   struct OverRuns {
     std::vector<double> phi;
     std::vector<double> value;
@@ -16,11 +16,12 @@ std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity) {
   for (const FigureRun* run : runs) {
     std::map<std::int64_t, OverRuns> own;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      const double phi = checkpoint.measures.phi;
+      const double phi = checkpoint.measures.number("phi");
       if (!std::isfinite(phi)) continue;
       OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
       bin.phi.push_back(phi);
-      bin.value.push_back(quantity(checkpoint.measures));
+      const double value = checkpoint.measures.number(measure);
+      bin.value.push_back(value < least ? least : value);
     }
     for (const auto& [bin, checkpoints] : own) {
       const RunStatistics value = over_runs(checkpoints.value);

@@ -3,6 +3,8 @@
 // averaged at equal phi.
 #pragma once
 
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "analysis/figure.hpp"
@@ -23,7 +25,8 @@ struct PhiBin {
 };
 
 /// Ascending bins between whole multiples of phi_bin; only those that some run visits. Checkpoints
-/// without a finite phi are left out.
-std::vector<PhiBin> binned_by_phi(RunGroup runs, const Quantity& quantity);
+/// without a finite phi are left out. Values below `least` count as `least`.
+std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure,
+                                  double least = -std::numeric_limits<double>::infinity());
 
 }  // namespace shearcell

@@ -61,6 +61,20 @@ void add_missing(std::string& note, const Values& values, const Scalar& scalar) 
   }
 }
 
+/// One number of each run. A group is named by its variant.
+Entered entered_by(const Scalar& scalar, std::initializer_list<RunGroup> groups) {
+  Entered entered{run_columns()};
+  entered.columns.insert(entered.columns.end(), {"value", "missing"});
+  for (const RunGroup group : groups) {
+    for (const FigureRun* run : group) {
+      const RunValue value = scalar.of(*run);
+      TableRow& row = entered.rows.emplace_back(run_values(*run));
+      row.insert(row.end(), {value.or_nan(), std::string(name_of(value.missing))});
+    }
+  }
+  return entered;
+}
+
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
                  std::size_t runs, const Values& values, const Scalar& scalar, std::string note) {
   add_missing(note, values, scalar);
@@ -114,13 +128,9 @@ std::string wait_in_words(std::span<const Waiting> runs) {
 
 }  // namespace
 
-RunValue measured(double value) {
-  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
-}
-
-Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
+Scalar over_cycles(const std::string& name, const std::string& measure, std::int64_t first,
                    std::int64_t last) {
-  const auto of = [quantity = std::move(quantity), first, last](const FigureRun& run) -> RunValue {
+  const auto of = [measure, first, last](const FigureRun& run) -> RunValue {
     double sum = 0;
     std::int64_t count = 0;
     for (const CheckpointMeasures& checkpoint : run.checkpoints) {
@@ -129,7 +139,7 @@ Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t firs
           cycle > static_cast<double>(last)) {
         continue;
       }
-      sum += quantity(checkpoint.measures);
+      sum += checkpoint.measures.number(measure);
       ++count;
     }
     if (count != last - first + 1) {
@@ -147,14 +157,13 @@ Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t firs
 }
 
 Scalar early_phi() {
-  return over_cycles("phi", &Measures::phi, 1, early_cycles);
+  return over_cycles("phi", "phi", 1, early_cycles);
 }
 
 Scalar percentage_over_phi() {
   const auto of = [](const FigureRun& run) -> RunValue {
     const FigureRun* one = &run;
-    const std::vector<PhiBin> bins =
-        binned_by_phi(std::span(&one, 1), &Measures::crystalline_percent);
+    const std::vector<PhiBin> bins = binned_by_phi(std::span(&one, 1), "crystalline_percent");
     if (bins.empty()) return {0, Missing::too_short};
     if (*bins.front().phi.mean > window_low) return {0, Missing::too_late};
     if (*bins.back().phi.mean < window_high) return {0, Missing::too_short};
@@ -173,15 +182,12 @@ Scalar percentage_over_phi() {
       fmt::format("phi from {} to {}", window_low, window_high), of};
 }
 
-Scalar onset_phi(OnsetMethod method) {
-  const auto of = [method](const FigureRun& run) -> RunValue {
-    const RunOnset onset = method(run);
-    if (onset.observed == Observed::never) return {0, Missing::too_short};
-    if (onset.observed == Observed::before_start) return {0, Missing::too_late};
-    if (onset.observed == Observed::unclear) return {0, Missing::undefined};
-    return measured(onset.phi);
-  };
-  return {"phi at the onset", "the onset", of};
+Scalar of_whole_run(const Measure& measure) {
+  return {std::string(measure.words), std::string(measure.reach), measure.of_run};
+}
+
+Scalar onset_phi() {
+  return of_whole_run(*find_measure("onset_size_phi", MeasureKind::run));
 }
 
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing) {
@@ -225,9 +231,12 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
     estimate = mapped(*estimate, [](double log_ratio) { return std::expm1(log_ratio); });
   }
   if (a.empty() || b.empty()) all = {};
-  return conclude(claim,
-                  (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
-                  estimate, runs, all, scalar, std::move(note));
+  Verdict verdict = conclude(
+      claim, (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
+      estimate, runs, all, scalar, std::move(note));
+  verdict.counted = pairs.any ? Counted::pairs : Counted::runs_per_variant;
+  verdict.entered = entered_by(scalar, {a, b});
+  return verdict;
 }
 
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
@@ -244,16 +253,18 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   } else if (published != 0) {
     quantity += fmt::format(" less {:.6g}", published);
   }
-  return conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
+  Verdict verdict = conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
+  verdict.entered = entered_by(scalar, {runs});
+  return verdict;
 }
 
-std::vector<Waiting> waits_for(RunGroup runs, const Quantity& quantity, double level) {
+std::vector<Waiting> waits_for(RunGroup runs, const std::string& measure, double level) {
   std::vector<Waiting> waits;
   for (const FigureRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     Waiting wait{run->checkpoints.back().cycle, false};
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      if (!(quantity(checkpoint.measures) >= level)) continue;
+      if (!(checkpoint.measures.number(measure) >= level)) continue;
       wait = {checkpoint.cycle, true};
       break;
     }
@@ -273,8 +284,18 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
   return waits;
 }
 
-Verdict compare_waits(const Claim& claim, const std::string& event, std::span<const Waiting> a,
-                      std::span<const Waiting> b) {
+std::vector<std::string> run_columns() {
+  return {"group", "seed", "packing"};
+}
+
+TableRow run_values(const FigureRun& run) {
+  return {run.variant, run.seed, packing_of(run)};
+}
+
+Verdict compare_waits(const Claim& claim, const std::string& event,
+                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup first,
+                      RunGroup second) {
+  const std::vector<Waiting> a = waits(first), b = waits(second);
   const std::optional<Estimate> estimate = log2_wait_ratio(a, b);
   const std::size_t runs = std::min(a.size(), b.size());
   std::string note;
@@ -286,8 +307,26 @@ Verdict compare_waits(const Claim& claim, const std::string& event, std::span<co
   } else if (!estimate) {
     add(note, fmt::format("{} is at cycle 0 in every run of one group, or in no run", event));
   }
-  return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
-                estimate, runs, std::move(note));
+  Verdict verdict =
+      decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
+             runs, std::move(note));
+  verdict.counted = Counted::runs_per_variant;
+  const auto cycle_of = [&](const FigureRun& run) -> RunValue {
+    const FigureRun* alone = &run;
+    const std::vector<Waiting> wait = waits(RunGroup(&alone, 1));
+    if (wait.empty()) return {0, Missing::checkpoint};
+    return {wait.front().cycle, wait.front().observed ? Missing::nothing : Missing::too_short};
+  };
+  verdict.entered = Entered{run_columns()};
+  verdict.entered.columns.insert(verdict.entered.columns.end(), {"cycle", "missing"});
+  for (const RunGroup group : {first, second}) {
+    for (const FigureRun* run : group) {
+      const RunValue cycle = cycle_of(*run);
+      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
+      row.insert(row.end(), {cycle.value, std::string(name_of(cycle.missing))});
+    }
+  }
+  return verdict;
 }
 
 }  // namespace shearcell

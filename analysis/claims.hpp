@@ -16,19 +16,6 @@
 
 namespace shearcell {
 
-/// Why a run has no number: it lacks a checkpoint of that cycle (`checkpoint`), ends before it,
-/// begins after it, or the quantity does not exist in it (`undefined`: phi without interior
-/// grains).
-enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
-
-struct RunValue {
-  double value = 0;
-  Missing missing = Missing::nothing;
-};
-
-/// The value, which is missing if it is not finite.
-RunValue measured(double value);
-
 /// One number per run.
 struct Scalar {
   std::string name;   ///< "phi at cycle 10"
@@ -37,8 +24,9 @@ struct Scalar {
   bool relative = false;  ///< differences are relative: 0.03 is 3 %
 };
 
-/// Mean over the checkpoints of cycles first .. last, all of which the run must have.
-Scalar over_cycles(const std::string& name, Quantity quantity, std::int64_t first,
+/// Mean of a measure, called `name` in sentences, over the checkpoints of cycles first .. last, all
+/// of which the run must have.
+Scalar over_cycles(const std::string& name, const std::string& measure, std::int64_t first,
                    std::int64_t last);
 
 /// phi, mean over cycles 1 to 15, before most runs crystallize.
@@ -48,8 +36,11 @@ Scalar early_phi();
 /// means of the run's bins of phi (binning.hpp), integrated over that window.
 Scalar percentage_over_phi();
 
-/// phi at the onset, with the supplement's critical size for the run's amplitude.
-Scalar onset_phi(OnsetMethod method);
+/// A measure of the whole run.
+Scalar of_whole_run(const Measure& measure);
+
+/// phi at the onset by method 1 (onset.hpp).
+Scalar onset_phi();
 
 /// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
@@ -64,13 +55,18 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
 /// The cycle at which each run is first at `level` or more, or the last one.
-std::vector<Waiting> waits_for(RunGroup runs, const Quantity& quantity, double level);
+std::vector<Waiting> waits_for(RunGroup runs, const std::string& measure, double level);
 /// The same for the onset of crystallization by method 1.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
 /// log2 of how many times later the event is in `a`, by the log-rank test (statistics.hpp).
-/// Runs that end before it are censored.
-Verdict compare_waits(const Claim& claim, const std::string& event, std::span<const Waiting> a,
-                      std::span<const Waiting> b);
+/// `waits` gives the waiting times of runs; runs that end before the event are censored.
+Verdict compare_waits(const Claim& claim, const std::string& event,
+                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
+                      RunGroup b);
+
+/// The first columns of what entered a verdict, and their values of one run.
+std::vector<std::string> run_columns();
+TableRow run_values(const FigureRun& run);
 
 }  // namespace shearcell

@@ -9,6 +9,7 @@
 #include <span>
 #include <tuple>
 
+#include "analysis/measures.hpp"
 #include "analysis/near_grains.hpp"
 #include "analysis/voronoi.hpp"
 
@@ -138,6 +139,54 @@ std::vector<Lattice> common_neighbour_analysis(const Cell& cell, const WallPose&
     lattices.push_back(lattice);
   }
   return lattices;
+}
+
+namespace {
+
+std::vector<Lattice> lattices_of(const MeasureInput& input) {
+  const Checkpoint& c = *input.checkpoint;
+  return common_neighbour_analysis(c.cell, pose_of(c), c.state.position);
+}
+
+}  // namespace
+
+Provider lattice_provider() {
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const std::vector<Lattice> lattice = lattices_of(input);
+    const auto percent = [&](Lattice wanted) {
+      return percent_of_interior(input.analysis->grains,
+                                 [&](std::size_t i) { return lattice[i] == wanted; });
+    };
+    const double fcc = percent(Lattice::fcc), hcp = percent(Lattice::hcp);
+    return {{"cna_crystalline_percent", fcc + hcp},
+            {"cna_fcc_percent", fcc},
+            {"cna_hcp_percent", hcp},
+            {"cna_bcc_percent", percent(Lattice::bcc)}};
+  };
+  return {.name = "lattices",
+          .parameters = interior_criteria(),
+          .measures = {{"cna_crystalline_percent", "%",
+                        "FCC and HCP grains among interior grains, by common neighbour analysis"},
+                       {"cna_fcc_percent", "%", "FCC grains likewise"},
+                       {"cna_hcp_percent", "%", "HCP grains likewise"},
+                       {"cna_bcc_percent", "%", "BCC grains likewise"}},
+          .compute = compute};
+}
+
+Provider grain_lattice_provider() {
+  return {.name = "grain_lattices",
+          .parameters = nlohmann::json::object(),
+          .measures = {{.name = "lattice",
+                        .unit = "1",
+                        .meaning = "by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC",
+                        .kind = MeasureKind::grains,
+                        .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
+                                  .whole = true,
+                                  .of_wall_grains = -1},
+                        .words = "lattice by common neighbours"}},
+          .compute = [](const MeasureInput& input) {
+            return nlohmann::json{{"lattice", lattices_of(input)}};
+          }};
 }
 
 }  // namespace shearcell

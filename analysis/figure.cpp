@@ -14,6 +14,14 @@
 
 namespace shearcell {
 
+double RunValue::or_nan() const {
+  return missing == Missing::nothing ? value : std::nan("");
+}
+
+RunValue measured(double value) {
+  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
+}
+
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   for (const nlohmann::json* values : {&run.swept, &run.parameters}) {
     if (values->is_object() && values->contains(key)) return values->at(key);
@@ -125,7 +133,7 @@ std::span<const Figure> all_figures() {
       one("nucleation_core", "The rate of nucleation at least 4 d from the walls",
           figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"}),
       one("B5", "Continuous and periodically paused shear", figure_b5, curves, {"protocol"},
-          {"at_rest"}),
+          {"rest"}),
       one("walls", "Rough and smooth walls", figure_walls, curves, {"walls"}),
       one("choices", "Mass and drag of the moving wall, and other wall grains", figure_choices,
           curves, {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};

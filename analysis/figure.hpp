@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -23,8 +22,6 @@ struct CheckpointMeasures {
   double cycle = 0;    ///< cycles since the stage began
   std::string sha256;  ///< of the checkpoint file
   Measures measures;
-  /// Observable of that name, which a stiffening records; NaN if absent.
-  double stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One run as a figure sees it.
@@ -44,8 +41,24 @@ struct FigureRun {
 
 using RunGroup = std::span<const FigureRun* const>;
 
-/// A scalar of one checkpoint: a member of Measures, or computed from several.
-using Quantity = std::function<double(const Measures&)>;
+/// Why a run has no number: it lacks a checkpoint of that cycle (`checkpoint`), ends before it,
+/// begins after it, or the quantity does not exist in it (`undefined`: phi without interior
+/// grains).
+enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
+template <>
+inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoint", "ends before",
+                                                                "begins after", "undefined");
+
+/// One number of a run.
+struct RunValue {
+  double value = 0;
+  Missing missing = Missing::nothing;
+
+  /// Not a number if it is missing.
+  double or_nan() const;
+};
+/// The value, which is missing if it is not finite.
+RunValue measured(double value);
 
 /// The panels of a figure in order, and the verdicts on the supplement's claims.
 struct FigureResult {
@@ -66,8 +79,7 @@ struct Figure {
   std::function<FigureResult(std::span<const FigureRun> runs)> make;
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
-  /// Names of what it needs besides the scalars: derived measures (derived_measures.hpp), "ledger",
-  /// and "at_rest", which is phi_at_rest of cycles 1 to early_cycles.
+  /// Names of the providers (measures.hpp) that it needs besides "scalars".
   std::vector<std::string> needs = {};
   /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
   /// other figures are of whole cycles.

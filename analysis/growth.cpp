@@ -138,17 +138,31 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     std::int32_t smaller = 0;
   };
   std::vector<Fate> fates(now.size.size());
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by both labels
   std::size_t l = 0;  // both lists of grains ascend
   for (std::size_t k = 0; k < now.grain.size(); ++k) {
     while (l < later.grain.size() && later.grain[l] < now.grain[k]) ++l;
     if (l == later.grain.size()) break;
     if (later.grain[l] != now.grain[k]) continue;
     const auto label = static_cast<std::size_t>(now.label[k]);
+    ++shared[{now.label[k], later.label[l]}];
     const std::int32_t before = now.size[label];
     const std::int32_t after = later.size[static_cast<std::size_t>(later.label[l])];
     if (after > before) ++fates[label].larger;
     if (after == before) ++fates[label].same;
     if (after < before) ++fates[label].smaller;
+  }
+  // The crystallite that each later one has most grains of, and the later one of each.
+  struct Most {
+    std::int32_t grains = 0, of = -1;
+  };
+  std::vector<Most> origin(later.size.size()), end(now.size.size());
+  for (const auto& [labels, grains] : shared) {
+    const auto [before_label, after_label] = labels;
+    Most &from = origin[static_cast<std::size_t>(after_label)],
+         &to = end[static_cast<std::size_t>(before_label)];
+    if (grains > from.grains) from = {grains, before_label};
+    if (grains > to.grains) to = {grains, after_label};
   }
   for (std::size_t c = 0; c < fates.size(); ++c) {
     const std::int32_t size = now.size[c];
@@ -156,6 +170,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     GrowthCount& count = counts[size];
     if (2 * fates[c].larger > size) {
       ++count.grew;
+      const std::int32_t from = origin[static_cast<std::size_t>(end[c].of)].of;
+      if (now.size[static_cast<std::size_t>(from)] > size) ++count.absorbed;
     } else if (2 * smaller_or_none > size) {
       ++count.shrank;
       if (2 * fates[c].smaller <= size) ++count.vanished;

@@ -19,6 +19,9 @@ struct GrowthCount {
   std::size_t grew = 0;      ///< more than half of the grains are in larger crystallites
   std::size_t shrank = 0;    ///< more than half are in smaller ones, or in none
   std::size_t vanished = 0;  ///< of those that shrank: no more than half are in smaller ones
+  /// Of those that grew: of the crystallite that has most of their grains, more grains were in
+  /// another crystallite before, which was larger.
+  std::size_t absorbed = 0;
 
   bool operator==(const GrowthCount&) const = default;
 };

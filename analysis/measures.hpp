@@ -1,143 +1,168 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that is measured on one checkpoint.
+// Measures by their names, for tables, plots, claims, exports, the report and Python.
+//
+// A provider computes some measures of a checkpoint, or of a whole run, in one function. To add
+// measures, write a provider beside the function that computes them and add it to the list in
+// measures.cpp. Nothing else knows their names.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <functional>
+#include <initializer_list>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "analysis/crystal.hpp"
-#include "analysis/mechanics.hpp"
-#include "provenance/checkpoint.hpp"
+#include "analysis/analyse.hpp"
+#include "core/scene.hpp"
+#include "provenance/records.hpp"
 
 namespace shearcell {
+
+struct FigureRun;  // analysis/figure.hpp
+struct RunValue;
+
+/// Raise it with every change that may alter a bit of any result: results that were stored with
+/// another version are computed again. tests/analysis/test_derived_measures.cpp pins results to it.
+inline constexpr std::uint64_t analysis_version = 2;
 
 /// A function measured on one packing, as g(r): values at ascending x.
 struct MeasuredCurve {
   std::vector<double> x, y;
 };
 
-/// Of one packing. Means over no grain at all are not a number.
+/// What was measured on one checkpoint, by the names of the measures.
 struct Measures {
-  std::size_t grains = 0;               ///< N
-  std::size_t interior_grains = 0;      ///< N_inves, at least 1.5 d from the wall surfaces
-  double phi = 0;                       ///< Eq. S4 over interior grains
-  double phi_uncorrected = 0;           ///< phi_u, Eq. S2 over interior grains
-  double crystalline_percent = 0;       ///< of interior grains [%]
-  double fcc_percent = 0;               ///< of interior grains [%]
-  double hcp_percent = 0;               ///< of interior grains [%]
-  double mean_overlap = 0;              ///< Eq. S3 over all pairs of grains [d]
-  double contacts_per_grain = 0;        ///< with grains and wall grains, over all grains
-  std::size_t crystallites = 0;         ///< of interior grains
-  std::size_t largest_crystallite = 0;  ///< grains in it
-  /// phi after a rest (protocols/rest.hpp); not a number unless a figure asked for it.
-  double phi_at_rest = std::numeric_limits<double>::quiet_NaN();
-  std::optional<Mechanics> mechanics;  ///< of a checkpoint, where asked for
-  MechanicalUnits units;
-  /// What else was asked for (derived_measures.hpp), by the names of the measures.
-  std::map<std::string, double, std::less<>> numbers;
-  std::map<std::string, MeasuredCurve, std::less<>> curves;
-  std::optional<CrystalliteMap> crystallite_map;
+  std::map<std::string, double, std::less<>> numbers = {};
+  std::map<std::string, MeasuredCurve, std::less<>> curves = {};
+  std::map<std::string, std::vector<double>, std::less<>> of_grains = {};  ///< by grain id
+  std::optional<CrystalliteMap> crystallite_map = {};
+
+  /// Not a number where it was not measured.
+  double number(std::string_view name) const;
 };
 
-/// A member of Mechanics.
-struct MechanicalMember {
-  std::string_view cached_as;  ///< the name that cached results give it, with its unit there
-  double Mechanics::*value;
-  double MechanicalUnits::*unit;  ///< turns it into SI; null for a number that has none
+/// A `count` is a whole number. `grains` has one number for each grain. `run` is one number of a
+/// whole run.
+enum class MeasureKind { number, count, curve, grains, run };
+
+/// How a measure of each grain is shown: numbers from `low` to `high`, or 0, 1, ... for classes.
+struct GrainScale {
+  double low = 0, high = 0;
+  std::string_view parameter = {};  ///< of the run, in whose value low and high are multiples
+  bool logarithmic = false;
+  std::vector<std::string> classes = {};
+  bool whole = false;         ///< a whole number, such as a class
+  double of_wall_grains = 0;  ///< its value in exports
 };
 
-/// One of Measures::numbers.
-struct NumberOf {
-  /// The DerivedMeasure that has it; "drive" and "ledger" are not taken from an Analysis
-  /// (experiments/figures/more_measures.hpp).
-  std::string_view derived;
-  std::uint64_t cycles_back = 0;  ///< to the earlier checkpoint that it needs too; 0 for none
-};
-
-/// A scalar of Measures, by the name that tables, plots and exports give it.
-struct ScalarMeasure {
-  std::string_view name;  ///< with its unit, unless it is a count or a pure number
+struct Measure {
+  std::string_view name;  ///< ends in its unit, unless it is a count or a pure number
   std::string_view unit;  ///< "1" for none
   std::string_view meaning;
-  std::variant<double Measures::*, std::size_t Measures::*, MechanicalMember, NumberOf> member;
-
-  /// Name of the DerivedMeasure that it is cached in.
-  std::string_view derived() const;
-  std::uint64_t cycles_back() const;  ///< as NumberOf::cycles_back
-  /// In `unit`; not a number where it is unknown.
-  double of(const Measures& measures) const;
-};
-/// N is a parameter of the run, so it is not a measure; cached results have it all the same.
-std::span<const ScalarMeasure> all_scalar_measures();
-std::span<const ScalarMeasure> cached_scalar_measures();
-/// The one of that name, or null.
-const ScalarMeasure* find_measure(std::string_view name);
-
-/// A function of Measures, by the name that tables and plots give it.
-struct CurveMeasure {
-  std::string_view name;  ///< with its unit, unless it is a pure number
-  std::string_view unit;  ///< "1" for none
-  std::string_view meaning;
-  std::string_view x, x_unit;
-  std::string_view derived;               ///< the DerivedMeasure that has it
-  double MechanicalUnits::*si = nullptr;  ///< turns it into its unit; null for a pure number
-
-  /// In `unit`; empty where it was not measured.
-  MeasuredCurve of(const Measures& measures) const;
-};
-std::span<const CurveMeasure> all_curve_measures();
-/// The one of that name, or null.
-const CurveMeasure* find_curve_measure(std::string_view name);
-
-/// One entry per grain, by grain id.
-struct GrainMeasures {
-  std::vector<double> cell_volume;      ///< [d^3]
-  std::vector<double> cell_surface;     ///< [d^2]
-  std::vector<double> largest_overlap;  ///< delta_max,i [d]
-  std::vector<std::int32_t> contacts;   ///< with grains and wall grains
-  std::vector<double> phi_local;
-  std::vector<double> q6;
-  std::vector<double> pressure;        ///< [k/d]; of a checkpoint
-  std::vector<Structure> structure;    ///< of every grain, near the walls too
-  std::vector<std::uint8_t> interior;  ///< 1 or 0
-  Crystallites crystallites;           ///< of crystalline interior grains
+  MeasureKind kind = MeasureKind::number;
+  std::uint64_t cycles_back = 0;         ///< to the earlier checkpoint that it needs; 0 for none
+  std::string_view x = {}, x_unit = {};  ///< of a curve
+  GrainScale scale = {};                 ///< of a measure of each grain
+  RunValue (*of_run)(const FigureRun& run) = nullptr;
+  /// Its name in sentences, of a number of a whole run or of a measure of each grain.
+  std::string_view words = {};
+  std::string_view reach = {};  ///< what a run must reach to have it
+  bool waits = false;           ///< the cycle of an event, before which a run may end
 };
 
-struct Analysis {
-  Measures measures;
-  GrainMeasures grains;
-  CrystalliteMap crystallites;  ///< where they are
+/// Over one cycle of all grains and the moving wall [m d^2/s^2].
+struct CycleEnergies {
+  double work_of_walls = 0, dissipation = 0, stored = 0;
 };
 
-/// Measures of a packing and of each of its grains; mechanics of a checkpoint only. Throws
-/// AnalysisError as voronoi() does, and for a cell less than 1 d deep, which no engine takes.
-Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
-Analysis analyse(const Checkpoint& checkpoint);
+/// What measures need of the run that a checkpoint is of. The program that measures fills it in
+/// (experiments/runner/measure_sources.hpp), since analysis knows neither manifests nor protocols.
+struct RunFacts {
+  nlohmann::json parameters = {};   ///< by their keys in a manifest
+  std::optional<Drive> drive = {};  ///< of a shear
+  /// The state so many seconds after the checkpoint, between upright walls that are held in place.
+  /// Throws NumericalFailure, as does the next one.
+  std::function<State(const Checkpoint& from, double seconds)> rest = {};
+  /// Energies of the cycle that begins at the checkpoint, sampled every `stride` steps.
+  std::function<CycleEnergies(const Checkpoint& from, std::uint64_t stride)> next_cycle = {};
 
-/// Share of the interior grains for which `holds` [%]; not a number without any.
-template <class Predicate>
-double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
-  double count = 0, found = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    if (grains.interior[i] == 0) continue;
-    ++count;
-    found += holds(i) ? 1 : 0;
-  }
-  return 100 * found / count;
-}
+  /// A number among the parameters; not a number if there is none.
+  double number(const char* key) const;
+};
 
-/// 1 for crystalline interior grains, else 0.
-std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
+/// What measures of a checkpoint are computed from.
+struct MeasureInput {
+  const Analysis* analysis = nullptr;
+  const Checkpoint* checkpoint = nullptr;
+  /// The same run's checkpoint so many cycles earlier, valid until the next call; null where the
+  /// run has none.
+  std::function<const Checkpoint*(std::uint64_t cycles)> earlier = {};
+  const CheckpointRecord* record = nullptr;
+  const RunFacts* run = nullptr;
+};
 
-/// Of the cells of interior grains [d^2]; 0 without any.
-double mean_surface(const GrainMeasures& grains);
+/// SI values of the units of mechanics at the checkpoint, whose springs may have been made stiffer;
+/// not a number where the run's parameters are unknown.
+MechanicalUnits mechanical_units(const MeasureInput& input);
+
+/// What a provider needs: the record of a checkpoint in the log; its file; a simulation that begins
+/// at the file, which takes longer than an analysis; or the measured checkpoints of a whole run.
+enum class ComputedFrom { record, checkpoint, simulation, history };
+
+struct Provider {
+  std::string name;
+  nlohmann::json parameters =
+      nlohmann::json::object();  ///< on which results depend besides the checkpoint
+  std::vector<Measure> measures = {};
+  /// An object: a value for each measure, by name. A curve is {"x", "y"}; a measure of each grain
+  /// is an array. Measures that need a checkpoint or a shear that the run lacks are left out.
+  nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
+  std::vector<std::uint64_t> earlier = {};  ///< cycles back to the other checkpoints it needs
+  ComputedFrom from = ComputedFrom::checkpoint;
+  std::string_view cost = {};  ///< of a simulation, in words
+  /// Reads what a result has besides its measures, and checks it.
+  void (*read_more)(const nlohmann::json& result, Measures& measures) = nullptr;
+
+  /// Name and parameters as one text: equal texts, equal computation.
+  std::string key() const { return name + " " + parameters.dump(); }
+  /// Whether results are stored. Those of a record follow from the log, and measures of each grain
+  /// would take more room than the checkpoint.
+  bool is_kept() const;
+  bool has(MeasureKind kind) const;
+  /// Adds a result to the measures. Throws AnalysisError for a result of something else.
+  void read(const nlohmann::json& result, Measures& measures) const;
+};
+
+/// In the order of the columns of tables.
+std::span<const Provider> all_providers();
+/// The one of that name, which must exist.
+const Provider& provider(std::string_view name);
+
+/// The measures of one kind, of all providers. Numbers include counts.
+std::vector<const Measure*> all_measures(MeasureKind kind);
+/// Their names, of several kinds.
+std::vector<std::string_view> measure_names(std::initializer_list<MeasureKind> kinds);
+/// The measure of that name and kind, or null. Numbers include counts.
+const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
+/// The provider of a measure that exists.
+const Provider& provider_of(const Measure& measure);
+
+/// CBOR (RFC 8949): every double and integer exactly, equal results in equal bytes.
+std::vector<std::byte> encode_result(const nlohmann::json& result);
+/// Throws AnalysisError when the bytes are not CBOR.
+nlohmann::json decode_result(std::span<const std::byte> bytes);
+
+// Parameters of providers.
+nlohmann::json with(nlohmann::json parameters, const nlohmann::json& more);
+nlohmann::json surface_criteria();
+nlohmann::json interior_criteria();
+nlohmann::json crystal_criteria();
+nlohmann::json to_json(const MeasuredCurve& curve);
 
 }  // namespace shearcell

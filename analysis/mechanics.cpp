@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/measures.hpp"
 #include "core/diagnostics.hpp"
 
 namespace shearcell {
@@ -188,6 +189,118 @@ MechanicalUnits mechanical_units(double stiffness_N_per_m, double mass_kg, doubl
                                  double gravity_m_per_s2) {
   const double k = stiffness_N_per_m, m = mass_kg, d = diameter_m;
   return {k / d, m / d, k * d, k * d * d, m * d * d, m * gravity_m_per_s2 * d};
+}
+
+MechanicalUnits mechanical_units(const MeasureInput& input) {
+  const RunFacts none, &run = input.run == nullptr ? none : *input.run;
+  double stiffness = run.number("stiffness_N_per_m");
+  if (input.checkpoint != nullptr) {
+    const auto& recorded = input.checkpoint->observables;
+    const auto raised = recorded.find("stiffness_N_per_m");
+    if (raised != recorded.end()) stiffness = raised->second;
+  }
+  return mechanical_units(stiffness, run.number("mass_kg"), run.number("diameter_m"),
+                          run.number("gravity_m_per_s2"));
+}
+
+namespace {
+
+/// A measure, and the unit of the member that it is made from; null for a pure number.
+struct MechanicalMeasure {
+  Measure measure;
+  double Mechanics::*value;
+  double MechanicalUnits::*unit = nullptr;
+};
+
+const std::vector<MechanicalMeasure>& mechanical_measures() {
+  using M = Mechanics;
+  using U = MechanicalUnits;
+  static const std::vector<MechanicalMeasure> all = {
+      {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
+       &M::pressure,
+       &U::stress_Pa},
+      {{"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
+       &M::deviator,
+       &U::stress_Pa},
+      {{"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+       &M::stress_xx,
+       &U::stress_Pa},
+      {{"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+       &M::stress_yy,
+       &U::stress_Pa},
+      {{"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+       &M::stress_zz,
+       &U::stress_Pa},
+      {{"stress_xy_Pa", "Pa",
+        "shear stress of interior grains, with the sign of the others: a growing shear_strain "
+        "makes it negative"},
+       &M::stress_xy,
+       &U::stress_Pa},
+      {{"stress_xz_Pa", "Pa", "shear stress of interior grains"}, &M::stress_xz, &U::stress_Pa},
+      {{"stress_yz_Pa", "Pa", "shear stress of interior grains"}, &M::stress_yz, &U::stress_Pa},
+      {{"kinetic_pressure_Pa", "Pa",
+        "kinetic part of the pressure, of velocities less the mean flow"},
+       &M::kinetic_pressure,
+       &U::kinetic_stress_Pa},
+      {{"coordination", "1", "contacts per interior grain"}, &M::coordination},
+      {{"rattlers_percent", "%",
+        "interior grains with fewer than four contacts with walls and grains that are not "
+        "rattlers"},
+       &M::rattlers},
+      {{"coordination_without_rattlers", "1",
+        "contacts of interior grains that are not rattlers with walls and such grains, per such "
+        "grain"},
+       &M::coordination_without_rattlers},
+      {{"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
+       &M::force_bottom_x,
+       &U::force_N},
+      {{"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
+       &M::force_bottom_y,
+       &U::force_N},
+      {{"force_top_x_N", "N", "force of the grains on the top wall"}, &M::force_top_x, &U::force_N},
+      {{"force_top_y_N", "N", "force of the grains on the top wall"}, &M::force_top_y, &U::force_N},
+      {{"force_left_x_N", "N", "force of the grains on the left wall"},
+       &M::force_left_x,
+       &U::force_N},
+      {{"force_left_y_N", "N", "force of the grains on the left wall"},
+       &M::force_left_y,
+       &U::force_N},
+      {{"force_right_x_N", "N", "force of the grains on the right wall"},
+       &M::force_right_x,
+       &U::force_N},
+      {{"force_right_y_N", "N", "force of the grains on the right wall"},
+       &M::force_right_y,
+       &U::force_N},
+      {{"elastic_energy_per_grain_J", "J",
+        "elastic energy of all contacts over the number of grains"},
+       &M::elastic_energy,
+       &U::elastic_J},
+      {{"kinetic_energy_per_grain_J", "J",
+        "kinetic energy over the number of grains, half a time step earlier"},
+       &M::kinetic_energy,
+       &U::kinetic_J},
+      {{"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall"},
+       &M::height,
+       &U::weight_J}};
+  return all;
+}
+
+}  // namespace
+
+Provider mechanics_provider() {
+  Provider provider{.name = "mechanics",
+                    .parameters = with(interior_criteria(), {{"units", "SI"}})};
+  for (const auto& one : mechanical_measures()) provider.measures.push_back(one.measure);
+  provider.compute = [](const MeasureInput& input) {
+    const MechanicalUnits units = mechanical_units(input);
+    nlohmann::json found;
+    for (const auto& [measure, value, unit] : mechanical_measures()) {
+      const double number = (*input.analysis->mechanics).*value;
+      found[std::string(measure.name)] = unit == nullptr ? number : number * (units.*unit);
+    }
+    return found;
+  };
+  return provider;
 }
 
 }  // namespace shearcell

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "analysis/error.hpp"
+#include "analysis/measures.hpp"
 #include "analysis/near_grains.hpp"
 #include "core/contact.hpp"
 
@@ -89,6 +90,118 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                   boundary[crystalline[a] != 0 ? a : b] = 1;
                 });
   return boundary;
+}
+
+namespace {
+
+constexpr auto any_grain = [](std::size_t) { return true; };
+
+/// Mean of the finite values of the interior grains for which `selected` holds.
+template <class Value, class Selected>
+double mean_over(const GrainMeasures& grains, const Value& value, const Selected& selected) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0 || !selected(i)) continue;
+    const double one = value(i);
+    if (!std::isfinite(one)) continue;
+    sum += one;
+    ++count;
+  }
+  return sum / count;
+}
+
+nlohmann::json motion_of(const MeasureInput& input) {
+  const GrainMeasures& grains = input.analysis->grains;
+  nlohmann::json values = nlohmann::json::object();
+  for (const auto& [cycles, lag] : {std::pair{std::uint64_t{1}, "1_cycle_d2"},
+                                    {std::uint64_t{10}, "10_cycles_d2"},
+                                    {std::uint64_t{100}, "100_cycles_d2"}}) {
+    const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
+    if (earlier == nullptr) continue;
+    const Motion moved = motion(*earlier, *input.checkpoint);
+    const auto square = [&](std::size_t i) {
+      return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
+    };
+    const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
+    values[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
+    values[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
+    if (cycles != 1) continue;
+    // Motion over one cycle by the structure of the grains.
+    std::vector<std::uint8_t> crystalline;
+    for (const Structure structure : grains.structure) {
+      crystalline.push_back(structure == Structure::disordered ? 0 : 1);
+    }
+    const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
+    const auto returned = [&](std::size_t i) { return square(i) <= reversible_d * reversible_d; };
+    const auto inside = [&](std::size_t i) { return crystalline[i] != 0 && boundary[i] == 0; };
+    const auto at_boundary = [&](std::size_t i) { return boundary[i] != 0; };
+    const auto disordered = [&](std::size_t i) { return crystalline[i] == 0; };
+    values["reversible_percent"] = percent_of_interior(grains, returned);
+    values["msd_inside_crystal_d2"] = mean_over(grains, square, inside);
+    values["msd_crystal_boundary_d2"] = mean_over(grains, square, at_boundary);
+    values["msd_disordered_d2"] = mean_over(grains, square, disordered);
+  }
+  return values;
+}
+
+}  // namespace
+
+Provider motion_provider() {
+  using enum MeasureKind;
+  return {
+      .name = "motion",
+      .parameters = with(crystal_criteria(),
+                         {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
+      .measures =
+          {{"msd_1_cycle_d2", "d^2",
+            "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
+            number, 1},
+           {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
+           {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
+           {"d2min_1_cycle_d2", "d^2",
+            "mean non-affine squared displacement D^2_min of interior grains over 1 cycle", number,
+            1},
+           {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
+           {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
+           {"reversible_percent", "%",
+            "interior grains at most 0.01 d from where they were a cycle before", number, 1},
+           {"msd_inside_crystal_d2", "d^2",
+            "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
+            number, 1},
+           {"msd_crystal_boundary_d2", "d^2",
+            "the same of crystalline grains with other neighbours", number, 1},
+           {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline", number, 1}},
+      .compute = motion_of,
+      .earlier = {1, 10, 100}};
+}
+
+Provider grain_motion_provider() {
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const Checkpoint* earlier = input.earlier ? input.earlier(1) : nullptr;
+    if (earlier == nullptr) return nlohmann::json::object();
+    const Motion moved = motion(*earlier, *input.checkpoint);
+    const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
+    return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
+            {"d2min_d2", moved.nonaffine}};
+  };
+  return {.name = "grain_motion",
+          .parameters = {{"neighbour_d", motion_neighbour_d}},
+          .measures = {{.name = "displacement_d",
+                        .unit = "d",
+                        .meaning = "displacement over the cycle before",
+                        .kind = MeasureKind::grains,
+                        .cycles_back = 1,
+                        .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
+                        .words = "displacement in a cycle"},
+                       {.name = "d2min_d2",
+                        .unit = "d^2",
+                        .meaning = "D^2_min over the cycle before",
+                        .kind = MeasureKind::grains,
+                        .cycles_back = 1,
+                        .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
+                        .words = "non-affine motion in a cycle"}},
+          .compute = compute,
+          .earlier = {1}};
 }
 
 }  // namespace shearcell

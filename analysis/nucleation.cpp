@@ -44,11 +44,6 @@ std::optional<double> pooled(std::span<const std::vector<double>> histograms,
   return inside / all * static_cast<double>(histograms.front().size());
 }
 
-double phi_in(Region region, const Measures& measures) {
-  static const ScalarMeasure& core = *find_measure("core_phi");
-  return region == Region::core ? core.of(measures) : measures.phi;
-}
-
 /// The time of one run in one bin of phi before its onset.
 struct Stay {
   double cycles = 0;
@@ -65,10 +60,11 @@ Stays stays_of(const FigureRun& run, Region region) {
     const CheckpointMeasures &from = run.checkpoints[k - 1], &to = run.checkpoints[k];
     const bool here = onset.observed == Observed::yes && onset.cycle <= to.cycle;
     const double cycles = (here ? onset.cycle : to.cycle) - from.cycle;
-    if (const double phi = phi_in(region, from.measures); std::isfinite(phi)) {
+    if (const double phi = from.measures.number(region == Region::core ? "core_phi" : "phi");
+        std::isfinite(phi)) {
       Stay& stay = stays[std::llround(std::floor(phi / phi_bin))];
       stay.cycles += cycles;
-      stay.grain_cycles += cycles * grains_in(region, from.measures);
+      stay.grain_cycles += cycles * from.measures.number(grains_of(region));
       stay.events += here ? 1 : 0;
     }
     if (here) break;
@@ -206,9 +202,17 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
   return result;
 }
 
-double grains_in(Region region, const Measures& measures) {
-  static const ScalarMeasure& core = *find_measure("core_grains");
-  return region == Region::core ? core.of(measures) : static_cast<double>(measures.interior_grains);
+std::string grains_of(Region region) {
+  return region == Region::core ? "core_grains" : "interior_grains";
+}
+
+std::vector<Exposure> exposures_of(const FigureRun& run, Region region) {
+  std::vector<Exposure> exposures;
+  for (const auto& [bin, stay] : stays_of(run, region)) {
+    exposures.push_back(
+        {static_cast<double>(bin) * phi_bin, stay.cycles, stay.grain_cycles, stay.events});
+  }
+  return exposures;
 }
 
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {

@@ -43,7 +43,8 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
 /// The grains whose number and phi a rate is taken with: at least 1.5 d (interior) or 4 d (core)
 /// from the wall surfaces (packing_fraction.hpp). The onset is the same for both.
 enum class Region { interior, core };
-double grains_in(Region region, const Measures& measures);
+/// The measure that counts them.
+std::string grains_of(Region region);
 
 /// A bin of phi (binning.hpp) before the onset of crystallization (onset.hpp, method 1).
 struct NucleationRate {
@@ -59,6 +60,15 @@ struct NucleationRate {
 /// checkpoints is that of its beginning, so that a growing crystallite does not raise it. Runs that
 /// begin with a critical crystallite do not count.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
+
+/// The time that one run spends in a bin of phi before its onset.
+struct Exposure {
+  double phi_low = 0;
+  double cycles = 0;
+  double grain_cycles = 0;  ///< grains of the region times cycles
+  std::size_t onsets = 0;   ///< 0 or 1
+};
+std::vector<Exposure> exposures_of(const FigureRun& run, Region region);
 
 /// The exponent a of rate = c(amplitude, phi) n^a, n the grains of the region, by maximum
 /// likelihood: onsets are a Poisson process with a constant c in each bin of phi at each amplitude.

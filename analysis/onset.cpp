@@ -20,9 +20,10 @@ std::vector<Point> points_of(const FigureRun& run) {
   std::vector<Point> points;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     const Measures& m = checkpoint.measures;
-    if (!std::isfinite(m.phi)) continue;
-    const auto size = static_cast<double>(std::max<std::size_t>(1, m.largest_crystallite));
-    points.push_back({m.phi, std::log(size), checkpoint.cycle});
+    const double phi = m.number("phi");
+    if (!std::isfinite(phi)) continue;
+    const double size = std::max(1.0, m.number("largest_crystallite"));
+    points.push_back({phi, std::log(size), checkpoint.cycle});
   }
   return points;
 }
@@ -64,18 +65,18 @@ double critical_size_for(const FigureRun& run) {
 
 RunOnset onset_by_size(const FigureRun& run) {
   const double critical_size = critical_size_for(run);
-  const CheckpointMeasures* before = nullptr;
+  double cycle_before = 0, phi_before = std::nan(""), size_before = 0;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    if (!std::isfinite(checkpoint.measures.phi)) continue;
-    const auto size = static_cast<double>(checkpoint.measures.largest_crystallite);
+    const double phi = checkpoint.measures.number("phi");
+    if (!std::isfinite(phi)) continue;
+    const double size = checkpoint.measures.number("largest_crystallite");
     if (size >= critical_size) {
-      if (before == nullptr) return {Observed::before_start, 0, 0};
-      const auto smaller = static_cast<double>(before->measures.largest_crystallite);
-      const double part = (critical_size - smaller) / (size - smaller);
-      return {Observed::yes, std::lerp(before->measures.phi, checkpoint.measures.phi, part),
-              std::lerp(before->cycle, checkpoint.cycle, part)};
+      if (std::isnan(phi_before)) return {Observed::before_start, 0, 0};
+      const double part = (critical_size - size_before) / (size - size_before);
+      return {Observed::yes, std::lerp(phi_before, phi, part),
+              std::lerp(cycle_before, checkpoint.cycle, part)};
     }
-    before = &checkpoint;
+    cycle_before = checkpoint.cycle, phi_before = phi, size_before = size;
   }
   return {};
 }
@@ -99,20 +100,52 @@ RunOnset onset_by_slope(const FigureRun& run) {
   return found;
 }
 
-double RunMeasure::of(const FigureRun& run) const {
-  const RunOnset onset = method(run);
-  return onset.observed == Observed::yes ? onset.*value : std::nan("");
+namespace {
+
+template <OnsetMethod kMethod, double RunOnset::*kValue>
+RunValue at_onset(const FigureRun& run) {
+  const RunOnset onset = kMethod(run);
+  if (onset.observed == Observed::never) return {0, Missing::too_short};
+  if (onset.observed == Observed::before_start) return {0, Missing::too_late};
+  if (onset.observed == Observed::unclear) return {0, Missing::undefined};
+  return measured(onset.*kValue);
 }
 
-std::span<const RunMeasure> all_run_measures() {
-  static constexpr RunMeasure all[] = {{"onset_size_cycle", onset_by_size, &RunOnset::cycle},
-                                       {"onset_size_phi", onset_by_size, &RunOnset::phi},
-                                       {"onset_slope_phi", onset_by_slope, &RunOnset::phi}};
-  return all;
-}
+}  // namespace
 
-const RunMeasure* find_run_measure(std::string_view name) {
-  return find_named(all_run_measures(), name);
+Provider onset_provider() {
+  const auto of_run = [](const char* name, const char* meaning, auto* value, const char* words,
+                         bool waits = false) {
+    return Measure{.name = name,
+                   .unit = "1",
+                   .meaning = meaning,
+                   .kind = MeasureKind::run,
+                   .of_run = value,
+                   .words = words,
+                   .reach = "the onset",
+                   .waits = waits};
+  };
+  const auto critical = [](const FigureRun& run) { return measured(critical_size_for(run)); };
+  using R = RunOnset;
+  return {
+      .name = "onsets",
+      .measures =
+          {of_run("critical_size",
+                  "grains of a critical crystallite in the supplement, by the nearest amplitude",
+                  +critical, "the critical size"),
+           of_run("onset_size_cycle",
+                  "cycle of the onset by method 1, where the largest crystallite reaches the "
+                  "critical size",
+                  at_onset<onset_by_size, &R::cycle>, "the cycle of the onset", true),
+           of_run("onset_size_phi", "volume fraction at that onset",
+                  at_onset<onset_by_size, &R::phi>, "phi at the onset"),
+           of_run(
+               "onset_slope_cycle",
+               "cycle of the onset by method 2, where the logarithm of its size rises most steeply",
+               at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by its slope"),
+           of_run("onset_slope_phi", "volume fraction at that onset",
+                  at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
+      .from = ComputedFrom::history};
 }
 
 Onset onset(RunGroup runs, OnsetMethod method) {

@@ -45,18 +45,6 @@ RunOnset onset_by_slope(const FigureRun& run);
 
 using OnsetMethod = RunOnset (*)(const FigureRun& run);
 
-/// One number of a whole run, for plots and claims, by its name in tables.
-struct RunMeasure {
-  std::string_view name;
-  OnsetMethod method;
-  double RunOnset::*value;
-
-  double of(const FigureRun& run) const;  ///< not a number where no onset was observed
-};
-std::span<const RunMeasure> all_run_measures();
-/// The one of that name, or null.
-const RunMeasure* find_run_measure(std::string_view name);
-
 /// Over independent runs. Censored runs do not enter the mean. They are counted, because without
 /// them the mean is biased towards early onsets.
 struct Onset {

@@ -46,12 +46,10 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
 /// The compared number. Of an expression: the runs must come from with_values().
 Scalar scalar_of(const ClaimSpec& claim) {
   Scalar scalar;
-  const RunMeasure* of_run = find_run_measure(claim.compare);
-  if (of_run != nullptr && of_run->value == &RunOnset::phi) {
-    scalar = onset_phi(of_run->method);
+  if (const Measure* of_run = find_measure(claim.compare, MeasureKind::run)) {
+    scalar = of_whole_run(*of_run);
   } else if (claim.cycles) {
-    scalar = over_cycles(claim.compare, quantity_of(claim.compare),
-                         static_cast<std::int64_t>(claim.cycles->at(0)),
+    scalar = over_cycles(claim.compare, claim.compare, static_cast<std::int64_t>(claim.cycles->at(0)),
                          static_cast<std::int64_t>(claim.cycles->at(1)));
   } else {
     const auto of = [text = claim.compare](const FigureRun& run) {
@@ -65,8 +63,8 @@ Scalar scalar_of(const ClaimSpec& claim) {
 
 /// Whether waiting times are compared: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim) {
-  const RunMeasure* of_run = find_run_measure(claim.compare);
-  return of_run != nullptr && of_run->value == &RunOnset::cycle && !claim.published;
+  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+  return of_run != nullptr && of_run->waits && !claim.published;
 }
 
 std::string published_in_words(const PublishedSpec& published) {
@@ -138,8 +136,7 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
     return {{}, {compare_with(decided, scalar_of(claim), sides[0], *claim.published->value)}};
   }
   return {{},
-          {waits ? compare_waits(decided, "the onset", waits_for_onset(sides[0]),
-                                 waits_for_onset(sides[1]))
+          {waits ? compare_waits(decided, "the onset", waits_for_onset, sides[0], sides[1])
                  : compare(decided, scalar_of(claim), sides[0], sides[1])}};
 }
 

@@ -21,20 +21,22 @@ namespace shearcell {
 namespace {
 
 /// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
-MeasureColumn column_of(std::string_view measure, std::string_view of, Quantity quantity = {}) {
+MeasureColumn column_of(std::string_view measure, std::string_view of) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
   if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  return {std::move(name), std::move(unit), std::move(quantity)};
+  return {std::move(name), std::move(unit), std::string(measure)};
 }
 
-/// The column of a scalar measure, or of an expression.
+/// The column of a number of checkpoints or runs, or of an expression.
 MeasureColumn scalar_column(const std::string& text) {
-  if (const ScalarMeasure* measure = find_measure(text)) {
-    return column_of(text, measure->unit, quantity_of(text));
-  }
-  return {is_expression(text) ? "(" + text + ")" : text, "", quantity_of(text)};
+  if (const Measure* measure = find_measure(text)) return column_of(text, measure->unit);
+  return {is_expression(text) ? "(" + text + ")" : text, "", text};
+}
+
+const Measure* find_curve(std::string_view name) {
+  return find_measure(name, MeasureKind::curve);
 }
 
 /// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
@@ -52,15 +54,16 @@ Axis axis_of(const std::string& key) {
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  if (const ScalarMeasure* measure = find_measure(key)) return named_axis(key, measure->unit);
-  if (const CurveMeasure* measure = find_curve_measure(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_measure(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_curve(key)) return named_axis(key, measure->unit);
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
 
 /// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
 std::string_view word_for_cycle(std::span<const FigureRun> runs) {
   const auto stiffens = [](const FigureRun& run) {
-    return !run.checkpoints.empty() && std::isfinite(run.checkpoints.front().stiffness_N_per_m);
+    return !run.checkpoints.empty() &&
+           std::isfinite(run.checkpoints.front().measures.number("raised_stiffness_N_per_m"));
   };
   if (std::ranges::none_of(runs, stiffens)) return "cycle";
   return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
@@ -76,7 +79,7 @@ void adapt(Axis& axis, const std::string& label, bool log) {
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
-  if (const CurveMeasure* y = find_curve_measure(plot.y)) return named_axis(y->x, y->x_unit);
+  if (const Measure* y = find_curve(plot.y)) return named_axis(y->x, y->x_unit);
   if (!plot.x_symbol.empty()) {
     return {.symbol = italic(plot.x_symbol),
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
@@ -147,9 +150,9 @@ void style_without_symbol(const PlotSpec& plot, std::size_t curve, Series& serie
   if (curve / safe_colours.size() % 2 == 1) series.join = Join::dashes;
 }
 
-/// Every run against the cycle, or against a number `x` of the checkpoints.
-FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Quantity& y,
-                   const Quantity& x) {
+/// Every run against the cycle, or against a number of the checkpoints.
+FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
+  const bool x = plot.x != "cycle";
   FigureTable table{.name = plot.name, .columns = {"variant", "seed"}};
   if (x) table.columns.emplace_back("cycle");
   table.columns.insert(table.columns.end(), {plot.x, plot.y});
@@ -165,7 +168,8 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves, const Qu
         style_without_symbol(plot, k, series);
       }
       for (const CheckpointMeasures& c : run->checkpoints) {
-        const double at = x ? x(c.measures) : c.cycle, value = y(c.measures);
+        const double at = x ? c.measures.number(plot.x) : c.cycle;
+        const double value = c.measures.number(plot.y);
         TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->seed});
         if (x) row.emplace_back(c.cycle);
         row.insert(row.end(), {at, value});
@@ -192,7 +196,7 @@ struct Points {
 /// Against a parameter: one number of each run, a trace for each seed. Of a curve measure: the
 /// curve of each run, a trace for each run. Checkpoints are those of `cycle`.
 Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
-  const CurveMeasure* of_curve = find_curve_measure(plot.y);
+  const Measure* of_curve = find_curve(plot.y);
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
@@ -203,13 +207,13 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
     if (of_curve == nullptr) {
-      points.add(run.seed, number_of(run, plot.x), scalar_column(plot.y).quantity(*measures));
+      points.add(run.seed, number_of(run, plot.x), measures->number(plot.y));
       continue;
     }
-    const MeasuredCurve measured = of_curve->of(*measures);
-    for (std::size_t i = 0; i < measured.x.size(); ++i) {
-      points.add(r, measured.x[i], measured.y[i]);
-    }
+    const auto measured = measures->curves.find(plot.y);
+    if (measured == measures->curves.end()) continue;
+    const auto& [x, y] = measured->second;
+    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, x[i], y[i]);
   }
   return points;
 }
@@ -230,7 +234,7 @@ std::string note_of(const PlotSpec& plot, std::optional<double> cycle,
 /// Against a parameter, or of a curve measure: the mean over the runs at each x, or each trace.
 FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
-  const CurveMeasure* of_curve = find_curve_measure(plot.y);
+  const Measure* of_curve = find_curve(plot.y);
   const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
   const bool of_whole_run = of_curve == nullptr && is_parameter(plot.y);
   const MeasureColumn y =
@@ -280,12 +284,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
 /// Means of both measures at each cycle, over the runs that have both.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
   std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
-  const std::array<Quantity, 2> quantities = {both[0].quantity, both[1].quantity};
-  for (std::size_t k = 0; k < 2; ++k) {
-    both[k].quantity = [own = quantities[k], other = quantities[1 - k]](const Measures& m) {
-      return std::isfinite(other(m)) ? own(m) : std::nan("");
-    };
-  }
+  both[0].known = plot.x, both[1].known = plot.y;
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
   table.chart.note.clear();  // of lines that are not drawn
@@ -338,7 +337,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
 
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
-  const CurveMeasure* measured = find_curve_measure(plot.y);
+  const Measure* measured = find_curve(plot.y);
   const bool by_parameter = measured == nullptr && is_parameter(plot.x);
   const bool grouped = by_parameter || !plot.by.empty() || !plot.panel.empty();
   const std::vector<FigureRun> groups =
@@ -346,10 +345,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   const std::vector<Curve> curves = curves_of(grouped ? groups : given, styles_of(plot));
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
-  if (plot.show != Show::mean) {
-    return traces(plot, curves, columns[0].quantity,
-                  plot.x == "cycle" ? Quantity() : scalar_column(plot.x).quantity);
-  }
+  if (plot.show != Show::mean) return traces(plot, curves);
   for (const std::string& measure : plot.also) columns.push_back(scalar_column(measure));
   if (plot.x == "cycle") return against_cycle(plot.name, curves, columns, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, columns[0], {});
@@ -475,12 +471,12 @@ std::vector<FigureRun> with_values(std::span<const FigureRun> given,
                                    const std::vector<std::string>& texts) {
   std::vector<FigureRun> runs(given.begin(), given.end());
   for (const std::string& text : texts) {
-    if (!is_expression(text) && find_run_measure(text) == nullptr) continue;
+    if (!is_expression(text) && find_measure(text, MeasureKind::run) == nullptr) continue;
     const Evaluate evaluate = evaluator_of(text);
     for (FigureRun& run : runs) {
       const auto of_run = [&run](const std::string& name) {
-        const RunMeasure* measure = find_run_measure(name);
-        return measure != nullptr ? measure->of(run) : number_of(run, name);
+        const Measure* measure = find_measure(name, MeasureKind::run);
+        return measure != nullptr ? measure->of_run(run).or_nan() : number_of(run, name);
       };
       if (is_parameter(text)) {
         run.parameters[text] = evaluate(of_run);
@@ -488,10 +484,8 @@ std::vector<FigureRun> with_values(std::span<const FigureRun> given,
       }
       for (CheckpointMeasures& checkpoint : run.checkpoints) {
         checkpoint.measures.numbers[text] = evaluate([&](const std::string& name) {
-          const ScalarMeasure* measure = find_measure(name);
-          return measure != nullptr ? measure->of(checkpoint.measures)
-                 : name == "cycle"  ? checkpoint.cycle
-                                    : of_run(name);
+          if (find_measure(name) != nullptr) return checkpoint.measures.number(name);
+          return name == "cycle" ? checkpoint.cycle : of_run(name);
         });
       }
     }
@@ -499,34 +493,27 @@ std::vector<FigureRun> with_values(std::span<const FigureRun> given,
   return runs;
 }
 
-Quantity quantity_of(const std::string& text) {
-  if (const ScalarMeasure* measure = find_measure(text)) {
-    return [measure](const Measures& m) { return measure->of(m); };
-  }
-  return [text](const Measures& m) { return m.numbers.at(text); };
-}
-
 std::vector<std::string> needs_of(const std::vector<std::string>& texts) {
   std::vector<std::string> needs;
   for (const std::string& text : texts) {
     for (const std::string& name : names_in(text)) {
-      if (const ScalarMeasure* one = find_measure(name)) needs.emplace_back(one->derived());
+      if (const Measure* one = find_measure(name)) needs.push_back(provider_of(*one).name);
     }
   }
   return needs;
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {
-  return find_curve_measure(plot.y) == nullptr && !is_parameter(plot.x);
+  return find_curve(plot.y) == nullptr && !is_parameter(plot.x);
 }
 
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
-  const CurveMeasure* measured = find_curve_measure(plot.y);
+  const Measure* measured = find_curve(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
   Figure figure{
       plot.name, plot.y + " against " + x,
       [plot, names](std::span<const FigureRun> runs) { return plot_runs(plot, runs, names); }};
-  if (measured != nullptr) figure.needs.emplace_back(measured->derived);
+  if (measured != nullptr) figure.needs.push_back(provider_of(*measured).name);
   std::vector<std::string> texts = plot.also;
   texts.insert(texts.end(), {plot.x, plot.y});
   for (const std::string& need : needs_of(texts)) figure.needs.push_back(need);

@@ -78,10 +78,10 @@ struct PublishedSpec {
 
 struct PlotSpec {
   std::string name;
-  /// A scalar or curve measure (measures.hpp), a run measure (onset.hpp), or an expression of
-  /// scalar measures and parameters, or of run measures and parameters.
+  /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
+  /// parameters, or of measures of a run and parameters.
   std::string y;
-  /// "cycle", a scalar measure, a parameter, or an expression of these; unused by curves.
+  /// "cycle", a number of a checkpoint, a parameter, or an expression of these; unused by curves.
   std::string x = "cycle";
   std::string by = {};      ///< a curve for each value of it; "": for each variant
   std::string figure = {};  ///< plots and claims of one figure are drawn together; "": alone
@@ -127,14 +127,11 @@ std::string words_of(const nlohmann::json& values);
 bool is_parameter(std::string_view x);
 
 /// A copy of the runs with the value of each expression, and of each run measure: of a number of
-/// the run, one of its parameters; else one of Measures::numbers of each checkpoint.
+/// the run, one of its parameters; else one of the measures of each checkpoint.
 std::vector<FigureRun> with_values(std::span<const FigureRun> runs,
                                    const std::vector<std::string>& texts);
 
-/// A scalar measure of a checkpoint, or an expression of runs from with_values().
-Quantity quantity_of(const std::string& text);
-
-/// Names of the derived measures that measures and expressions need (Figure::needs).
+/// Names of the providers of the measures in expressions (Figure::needs).
 std::vector<std::string> needs_of(const std::vector<std::string>& texts);
 
 /// Whether the plot draws every cycle, not one of them.

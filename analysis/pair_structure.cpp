@@ -173,4 +173,37 @@ MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
   return s;
 }
 
+namespace {
+
+/// A function of the positions of the interior grains.
+MeasuredCurve of_places(decltype(pair_correlation)* compute, const MeasureInput& input) {
+  const Checkpoint& c = *input.checkpoint;
+  return compute(c.cell, pose_of(c), c.state.position, input.analysis->grains.interior);
+}
+
+}  // namespace
+
+Provider pair_correlation_provider() {
+  return {
+      .name = "pair_correlation",
+      .parameters = with(interior_criteria(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
+      .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve, 0,
+                    "distance_d", "d"}},
+      .compute = [](const MeasureInput& input) {
+        return nlohmann::json{{"pair_correlation", to_json(of_places(pair_correlation, input))}};
+      }};
+}
+
+Provider structure_factor_provider() {
+  return {
+      .name = "structure_factor",
+      .parameters = with(interior_criteria(),
+                         {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
+      .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve, 0,
+                    "wave_number_per_d", "1/d"}},
+      .compute = [](const MeasureInput& input) {
+        return nlohmann::json{{"structure_factor", to_json(of_places(structure_factor, input))}};
+      }};
+}
+
 }  // namespace shearcell

@@ -122,4 +122,81 @@ MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures&
   return found;
 }
 
+Provider core_provider() {
+  using enum MeasureKind;
+  return {.name = "core",
+          .parameters = with(surface_criteria(), {{"core_distance_d", core_distance}}),
+          .measures = {{"core_grains", "1", "grains at least 4 d from the wall surfaces"},
+                       {"core_phi", "1", "volume fraction of those grains (Eq. S4)"}},
+          .compute = [](const MeasureInput& input) {
+            const Core found = core(*input.checkpoint, input.analysis->grains);
+            return nlohmann::json{{"core_grains", found.grains}, {"core_phi", found.phi}};
+          }};
+}
+
+Provider profile_provider() {
+  using enum MeasureKind;
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    Profiles found = profiles(*input.checkpoint, input.analysis->grains);
+    for (double& one : found.pressure) one *= mechanical_units(input).stress_Pa;
+    const auto against_height = [&](const std::vector<double>& values) {
+      return to_json(MeasuredCurve{found.height, values});
+    };
+    return {{"phi_profile", against_height(found.phi)},
+            {"pressure_profile_Pa", against_height(found.pressure)},
+            {"coordination_profile", against_height(found.coordination)},
+            {"crystalline_profile_percent", against_height(found.crystalline_percent)}};
+  };
+  return {.name = "profiles",
+          .parameters = with(crystal_criteria(), {{"units", "SI"}}),
+          .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, 0,
+                        "height_d", "d"},
+                       {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
+                        curve, 0, "height_d", "d"},
+                       {"coordination_profile", "1",
+                        "contacts per grain of a layer, with grains and wall grains", curve, 0,
+                        "height_d", "d"},
+                       {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
+                        0, "height_d", "d"}},
+          .compute = compute};
+}
+
+Provider wall_distance_provider() {
+  using enum MeasureKind;
+  return {.name = "wall_distance",
+          .parameters = surface_criteria(),
+          .measures =
+              {{"phi_by_wall_distance", "1",
+                "volume fraction of a layer by its distance from the nearest wall surface (Eq. S4)",
+                curve, 0, "wall_distance_d", "d"}},
+          .compute = [](const MeasureInput& input) {
+            return nlohmann::json{
+                {"phi_by_wall_distance",
+                 to_json(phi_by_wall_distance(*input.checkpoint, input.analysis->grains))}};
+          }};
+}
+
+Provider sensitivity_provider() {
+  using enum MeasureKind;
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const GrainMeasures& grains = input.analysis->grains;
+    return {{"crystalline_by_q6_window_percent", to_json(crystalline_by_window(grains))},
+            {"crystalline_by_phi_local_percent", to_json(crystalline_by_phi_local(grains))},
+            {"largest_by_face", to_json(largest_by_face(*input.checkpoint, grains))}};
+  };
+  return {.name = "sensitivity",
+          .parameters = crystal_criteria(),
+          .measures = {{"crystalline_by_q6_window_percent", "%",
+                        "crystalline grains, if |q6 - q6 of a lattice| is below this", curve, 0,
+                        "q6_window", "1"},
+                       {"crystalline_by_phi_local_percent", "%",
+                        "crystalline grains, if phi_local is above this", curve, 0,
+                        "phi_local_threshold", "1"},
+                       {"largest_by_face", "1",
+                        "grains in the largest crystallite, if grains are connected by faces of at "
+                        "least this share of the mean cell surface",
+                        curve, 0, "connecting_face", "1"}},
+          .compute = compute};
+}
+
 }  // namespace shearcell

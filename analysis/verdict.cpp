@@ -2,6 +2,7 @@
 #include "analysis/verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +26,8 @@ Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {
     if (interval.low >= -margin && interval.high <= margin) return Ruling::agrees;
     return is_above || interval.high < -margin ? Ruling::differs : Ruling::undecided;
   }
-  if (is_above) return claimed == Claimed::above ? Ruling::agrees : Ruling::differs;
-  if (is_below) return claimed == Claimed::below ? Ruling::agrees : Ruling::differs;
+  if (is_above) return claimed == Claimed::above ? Ruling::supported : Ruling::refuted;
+  if (is_below) return claimed == Claimed::below ? Ruling::supported : Ruling::refuted;
   return Ruling::undecided;
 }
 
@@ -57,6 +58,7 @@ json claim_of(const Verdict& verdict) {
           {"margin", rounded(verdict.margin, significant)},
           {"verdict", name_of(verdict.ruling)},
           {"runs", verdict.runs},
+          {"counted", name_of(verdict.counted)},
           {"runs_needed", runs_needed},
           {"note", verdict.note}};
 }
@@ -81,21 +83,44 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   return verdict;
 }
 
-std::optional<Ruling> overall(std::span<const Verdict> verdicts) {
-  if (verdicts.empty()) return std::nullopt;
-  Ruling result = Ruling::agrees;
-  for (const Verdict& verdict : verdicts) {
-    if (verdict.ruling == Ruling::differs) return Ruling::differs;
-    if (verdict.ruling == Ruling::undecided) result = Ruling::undecided;
+std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts) {
+  std::map<Ruling, std::size_t> counts;
+  for (const Verdict& verdict : verdicts) ++counts[verdict.ruling];
+  return counts;
+}
+
+std::string headline_of(const std::map<Ruling, std::size_t>& rulings) {
+  std::vector<std::string> words;
+  for (const auto& [ruling, count] : rulings) {
+    words.push_back(fmt::format("{} {}", count, name_of(ruling)));
   }
-  return result;
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+FigureTable entered_table(std::span<const Verdict> verdicts) {
+  FigureTable table{.name = "entered", .columns = {"claim"}};
+  for (const Verdict& verdict : verdicts) {
+    std::vector<std::size_t> places;
+    for (const std::string& column : verdict.entered.columns) {
+      const auto found = std::ranges::find(table.columns, column);
+      places.push_back(static_cast<std::size_t>(found - table.columns.begin()));
+      if (found == table.columns.end()) table.columns.push_back(column);
+    }
+    for (const TableRow& values : verdict.entered.rows) {
+      TableRow& row = table.rows.emplace_back(TableRow{verdict.claim});
+      row.resize(table.columns.size());
+      for (std::size_t k = 0; k < values.size(); ++k) row[places[k]] = values[k];
+    }
+  }
+  for (TableRow& row : table.rows) row.resize(table.columns.size());
+  return table;
 }
 
 json to_json(std::span<const Verdict> verdicts) {
   json claims = json::array();
   for (const Verdict& verdict : verdicts) claims.push_back(claim_of(verdict));
-  const std::optional<Ruling> ruling = overall(verdicts);
-  return {{"verdict", ruling ? json(name_of(*ruling)) : json()}, {"claims", std::move(claims)}};
+  const std::string words = headline_of(rulings_of(verdicts));
+  return {{"verdict", words.empty() ? json() : json(words)}, {"claims", std::move(claims)}};
 }
 
 std::string numbers_of(const Verdict& verdict) {
@@ -103,7 +128,9 @@ std::string numbers_of(const Verdict& verdict) {
                          ? fmt::format("{:.3g}, 90 % interval {:.3g} to {:.3g}", *verdict.estimate,
                                        verdict.interval.low, verdict.interval.high)
                          : std::string("not measured");
-  text += fmt::format(", margin {:.3g}, {}", verdict.margin, counted(verdict.runs, "run"));
+  text += fmt::format(", margin {:.3g}, {}{}", verdict.margin,
+                      counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
+                      verdict.counted == Counted::runs_per_variant ? " per variant" : "");
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
   return text;
 }

@@ -3,19 +3,24 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "analysis/chart.hpp"
 #include "analysis/statistics.hpp"
 #include "core/named.hpp"
 
 namespace shearcell {
 
-enum class Ruling { agrees, differs, undecided };
+/// Of a claim of equality: agrees or differs. Of a claim of a direction: supported or refuted.
+enum class Ruling { agrees, supported, differs, refuted, undecided };
 template <>
-inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "differs", "undecided");
+inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "supported", "differs",
+                                                              "refuted", "undecided");
 
 /// Where a claim puts its quantity: from -margin to margin, above the margin, or below it.
 enum class Claimed { within, above, below };
@@ -26,6 +31,18 @@ struct Claim {
   Claimed claimed = Claimed::within;
 };
 
+/// What the runs of a verdict are counted in.
+enum class Counted { runs, pairs, runs_per_variant };
+template <>
+inline constexpr auto kNames<Counted> = names_in_order<Counted>("runs", "pairs",
+                                                                "runs per variant");
+
+/// What entered a verdict, so that anyone can compute it again: rows of a CSV file.
+struct Entered {
+  std::vector<std::string> columns = {};
+  std::vector<TableRow> rows = {};
+};
+
 struct Verdict {
   std::string claim;
   std::string quantity;            ///< what is estimated, with its unit
@@ -33,29 +50,38 @@ struct Verdict {
   Interval interval;               ///< at confidence_level; only with an estimate
   double margin = 0;
   Ruling ruling = Ruling::undecided;
-  std::size_t runs = 0;                    ///< per group, or pairs
+  std::size_t runs = 0;  ///< as `counted` says
+  Counted counted = Counted::runs;
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
   std::string note;                        ///< how it was compared, what is missing
+  Entered entered = {};
 };
 
-/// agrees: the interval lies where the claim puts it. differs: the interval lies wholly outside.
-/// undecided: otherwise, and without an estimate. runs_needed decides with 90 % probability if the
-/// true value is 0 or twice the margin. If the interval excludes 0, or there are as many runs
-/// already, the true value is taken to be the estimate. It is always more than the runs of the
-/// estimate.
+/// agrees, supported: the interval lies where the claim puts it. differs, refuted: the interval
+/// lies wholly outside. undecided: otherwise, and without an estimate. runs_needed decides with 90
+/// % probability if the true value is 0 or twice the margin. If the interval excludes 0, or there
+/// are as many runs already, the true value is taken to be the estimate. It is always more than the
+/// runs of the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note);
 
-/// differs if a claim differs; else undecided if one is undecided; none without claims.
-std::optional<Ruling> overall(std::span<const Verdict> verdicts);
+/// How many claims have each ruling; without those that no claim has.
+std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
+
+/// "1 agrees, 1 refuted"; "" without claims.
+std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
+
+/// The rows of all verdicts, each after its claim, with the columns of all.
+FigureTable entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"claim", "quantity", "estimate", "interval": [low, high], "level",
-/// "margin", "verdict", "runs", "runs_needed", "note"}]}. Numbers have six significant digits; null
+/// "margin", "verdict", "runs", "counted", "runs_needed", "note"}]}. "verdict" is headline_of() or
+/// null. Numbers have six significant digits; null
 /// where there is none, for an infinite end of an interval too. The same verdicts give the same
 /// bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs of 24 needed".
+/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed".
 std::string numbers_of(const Verdict& verdict);
 
 }  // namespace shearcell

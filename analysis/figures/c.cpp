@@ -224,9 +224,7 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
 FigureTable largest_table(std::span<const FigureRun> runs, std::span<const AmplitudeGrowth> all) {
   std::vector<CurveStyle> styles;
   for (const AmplitudeGrowth& one : all) styles.push_back(one.style);
-  const MeasureColumn largest{"largest_crystallite", "grains", [](const Measures& m) {
-                                return std::max(1.0, static_cast<double>(m.largest_crystallite));
-                              }};
+  const MeasureColumn largest{"largest_crystallite", "grains", "largest_crystallite", 1};
   FigureTable table = against_phi("C_largest", curves_of(runs, styles), largest,
                                   {.name = "largest crystallite", .unit = "grains", .log = true});
   for (const AmplitudeGrowth& one : all) table.chart.lines.push_back(critical_line(one));
@@ -260,11 +258,23 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
       "; {} if the {} of {} that shrink by vanishing are left out",
       one.without_vanished ? fmt::format("{:.3g}", one.without_vanished->value) : "none",
       all.vanished, all.shrank);
-  return decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
-                             published),
-                 margin_critical_size},
-                fmt::format("critical size, relative difference from {} grains", published),
-                relative, one.runs.size(), note);
+  Verdict verdict =
+      decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
+                          published),
+              margin_critical_size},
+             fmt::format("critical size, relative difference from {} grains", published), relative,
+             one.runs.size(), note);
+  verdict.entered = Entered{run_columns()};
+  verdict.entered.columns.insert(verdict.entered.columns.end(),
+                                 {"size", "grew", "absorbed", "shrank", "vanished"});
+  for (const FigureRun* run : one.all_runs) {
+    for (const auto& [size, count] : growth_of(*run, one.published->n_bin)) {
+      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
+      row.insert(row.end(), {std::int64_t{size}, count.grew - count.absorbed, count.absorbed,
+                             count.shrank - count.vanished, count.vanished});
+    }
+  }
+  return verdict;
 }
 
 }  // namespace

@@ -61,14 +61,14 @@ std::vector<Verdict> similar(const std::string& section, const std::string& what
                                  "of 2, for {}",
                                  section, what),
                      margin_onset_cycle},
-                    "the onset", waits_for_onset(a), waits_for_onset(b)),
+                    "the onset", waits_for_onset, a, b),
       same_percentage(section, what, a, b)};
 }
 
 /// For the mean overlap or the contacts per grain.
 Verdict same_contacts(const std::string& section, const std::string& what, const char* name,
-                      Quantity quantity, RunGroup a, RunGroup b) {
-  Scalar scalar = over_cycles(name, std::move(quantity), 1, early_cycles);
+                      const char* measure, RunGroup a, RunGroup b) {
+  Scalar scalar = over_cycles(name, measure, 1, early_cycles);
   scalar.relative = true;
   return compare({fmt::format("{}: {} is the same for {}", section, name, what), margin_contacts},
                  scalar, a, b);
@@ -79,9 +79,9 @@ std::vector<Verdict> equal_physics(const std::string& what, RunGroup a, RunGroup
   const char* section = "time step";
   return {
       compare({fmt::format("{}: the onset is the same for {}", section, what), margin_onset_phi},
-              onset_phi(onset_by_size), a, b),
+              onset_phi(), a, b),
       same_percentage(section, what, a, b),
-      same_contacts(section, what, "mean overlap", &Measures::mean_overlap, a, b)};
+      same_contacts(section, what, "mean overlap", "mean_overlap_d", a, b)};
 }
 
 // Defaults of a manifest (experiments/manifest/README.md); a test compares them.
@@ -138,7 +138,7 @@ FigureResult figure_s3(Runs runs) {
   }
   verdicts.push_back(compare_with(
       {"B.4: at 4.4e-5 s the average overlap is less than 1e-3", published_overlap, Claimed::below},
-      over_cycles("mean overlap [d]", &Measures::mean_overlap, 1, early_cycles), main_text, 0));
+      over_cycles("mean overlap [d]", "mean_overlap_d", 1, early_cycles), main_text, 0));
   for (const auto& [steps, step] : {std::pair(20000, "1.0e-4"), std::pair(18000, "1.11e-4")}) {
     if (const RunGroup other = runs_with(curves, {{"steps_per_cycle", steps}}); !other.empty()) {
       add(equal_physics(steps_of(step), other, main_text));
@@ -160,10 +160,10 @@ FigureResult figure_s4(Runs runs) {
   const RunGroup top = runs_with(curves, styles[1].where);
   const RunGroup bottom = runs_with(curves, styles[0].where);
   std::vector<Verdict> verdicts = similar("B.6", "both moving walls", top, bottom);
-  verdicts.push_back(same_contacts("B.6", "both moving walls", "mean overlap",
-                                   &Measures::mean_overlap, top, bottom));
+  verdicts.push_back(
+      same_contacts("B.6", "both moving walls", "mean overlap", "mean_overlap_d", top, bottom));
   verdicts.push_back(same_contacts("B.6", "both moving walls", "contacts per grain",
-                                   &Measures::contacts_per_grain, top, bottom));
+                                   "contacts_per_grain", top, bottom));
   return {{phi_against_cycle("S4a", curves), crystallinity_against_phi("S4b", curves)},
           std::move(verdicts)};
 }
@@ -175,15 +175,14 @@ FigureResult figure_b5(Runs runs) {
   const auto curves = curves_of(runs, styles);
   const RunGroup paused = runs_with(curves, styles[1].where);
   const RunGroup continuous = runs_with(curves, styles[0].where);
-  return {
-      {phi_against_cycle("B5a", curves), crystallinity_against_cycle("B5b", curves),
-       crystallinity_against_phi("B5c", curves)},
-      {compare_early(
-           {fmt::format("B.5: at cycles 1 to {} phi of paused shear is higher by more than {}",
-                        early_cycles, margin_pause_gain),
-            margin_pause_gain, Claimed::above},
-           over_cycles("phi at rest", &Measures::phi_at_rest, 1, early_cycles), paused, continuous),
-       same_percentage("B.5", "both relaxations", paused, continuous)}};
+  return {{phi_against_cycle("B5a", curves), crystallinity_against_cycle("B5b", curves),
+           crystallinity_against_phi("B5c", curves)},
+          {compare_early(
+               {fmt::format("B.5: at cycles 1 to {} phi of paused shear is higher by more than {}",
+                            early_cycles, margin_pause_gain),
+                margin_pause_gain, Claimed::above},
+               over_cycles("phi at rest", "phi_at_rest", 1, early_cycles), paused, continuous),
+           same_percentage("B.5", "both relaxations", paused, continuous)}};
 }
 
 // Not in the supplement, which says only that crystallites appear away from the walls (E).
@@ -193,14 +192,12 @@ FigureResult figure_walls(Runs runs) {
   const auto curves = curves_of(runs, styles);
   const RunGroup rough = runs_with(curves, styles[0].where);
   const RunGroup smooth = runs_with(curves, styles[1].where);
-  const auto fifth = [](RunGroup group) {
-    return waits_for(group, &Measures::crystalline_percent, 20);
-  };
+  const auto fifth = [](RunGroup group) { return waits_for(group, "crystalline_percent", 20); };
   std::vector<Verdict> verdicts = {
       compare_waits({"walls: rough ones delay crystallization (20 % of the grains) by more than a "
                      "factor of 2",
                      margin_wall_delay, Claimed::above},
-                    "20 % crystalline grains", fifth(rough), fifth(smooth)),
+                    "20 % crystalline grains", fifth, rough, smooth),
       onset_is_published(rough, "walls: between rough ones the onset is phi = 0.646")};
   if (!rough.empty()) {
     const double grains = number_of(*rough.front(), "grains");

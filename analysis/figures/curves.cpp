@@ -106,16 +106,16 @@ std::vector<CurvePoint> points_of(RunGroup runs) {
   return points;
 }
 
-RunStatistics over(const CurvePoint& point, const Quantity& quantity) {
+RunStatistics over(const CurvePoint& point, const MeasureColumn& measure) {
   std::vector<double> values;
-  for (const Measures* measures : point.runs) values.push_back(quantity(*measures));
+  for (const Measures* measures : point.runs) values.push_back(measure.of(*measures));
   return over_runs(values);
 }
 
 /// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where
 /// the first run ends, and every run continues as a thin line. Returns whether the runs end at
 /// different cycles.
-bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
+bool follow_runs(const Curve& curve, const MeasureColumn& measure, Series& mean,
                  std::vector<Series>& single) {
   double first_end = std::numeric_limits<double>::infinity();
   for (const FigureRun* run : curve.runs) {
@@ -125,7 +125,7 @@ bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
   mean.columns = {};
   for (const CurvePoint& point : curve.points) {
     const auto cycle = static_cast<double>(point.cycle);
-    const RunStatistics statistics = over(point, quantity);
+    const RunStatistics statistics = over(point, measure);
     if (cycle > first_end || !statistics.mean) continue;
     mean.points.push_back({cycle, *statistics.mean, std::nullopt, statistics.standard_error,
                            static_cast<double>(statistics.runs)});
@@ -133,7 +133,7 @@ bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
   for (const FigureRun* run : curve.runs) {
     Series line = thin_line({}, mean.colour);
     for (const CheckpointMeasures& c : run->checkpoints) {
-      const double value = quantity(c.measures);
+      const double value = measure.of(c.measures);
       if (c.cycle >= first_end && std::isfinite(value)) line.points.push_back({c.cycle, value});
     }
     if (line.points.size() > 1) single.push_back(std::move(line));
@@ -141,9 +141,15 @@ bool follow_runs(const Curve& curve, const Quantity& quantity, Series& mean,
   return true;
 }
 
-const MeasureColumn crystalline = {"crystalline", "percent", &Measures::crystalline_percent};
+const MeasureColumn crystalline = {"crystalline", "percent", "crystalline_percent"};
 
 }  // namespace
+
+double MeasureColumn::of(const Measures& measures) const {
+  if (!known.empty() && !std::isfinite(measures.number(known))) return std::nan("");
+  const double value = measures.number(measure);
+  return value < least ? least : value;
+}
 
 std::string column_name(const MeasureColumn& measure, const char* statistic) {
   return measure.name + "_" + statistic + (measure.unit.empty() ? "" : "_" + measure.unit);
@@ -295,8 +301,8 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
   for (const Curve& curve : curves) {
     for (const CurvePoint& point : curve.points) {
       TableRow& row = table.rows.emplace_back(TableRow{curve.variant, point.cycle});
-      for (const MeasureColumn& measure : measures) add_values(over(point, measure.quantity), row);
-      row.emplace_back(over(point, measures.front().quantity).runs);
+      for (const MeasureColumn& measure : measures) add_values(over(point, measure), row);
+      row.emplace_back(over(point, measures.front()).runs);
     }
   }
   table.chart = {.x = cycle_axis(),
@@ -304,7 +310,7 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
                  .series = series_of(curves, columns_against("cycle", measures.front()))};
   std::vector<Series> single;
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    if (follow_runs(curves[k], measures.front().quantity, table.chart.series[k], single)) {
+    if (follow_runs(curves[k], measures.front(), table.chart.series[k], single)) {
       table.chart.note = "Thin lines: single runs, from where the first run of a curve has ended";
     }
   }
@@ -320,7 +326,7 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
   add_columns(measure, table.columns);
   table.columns.emplace_back("runs");
   for (const Curve& curve : curves) {
-    for (const PhiBin& bin : binned_by_phi(curve.runs, measure.quantity)) {
+    for (const PhiBin& bin : binned_by_phi(curve.runs, measure.measure, measure.least)) {
       TableRow& row = table.rows.emplace_back(TableRow{curve.variant, bin.low, bin.high});
       add_values(bin.phi, row);
       add_values(bin.value, row);
@@ -335,9 +341,7 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
 
 FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves) {
   static const std::array<MeasureColumn, 3> measures = {
-      {{"phi", "", &Measures::phi},
-       {"phi_u", "", &Measures::phi_uncorrected},
-       {"overlap", "d", &Measures::mean_overlap}}};
+      {{"phi", "", "phi"}, {"phi_u", "", "phi_uncorrected"}, {"overlap", "d", "mean_overlap_d"}}};
   return against_cycle(name, curves, measures, phi_axis());
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -88,7 +89,11 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
 struct MeasureColumn {
   std::string name;
   std::string unit;  ///< as part of a column's name: "d", "percent" or ""
-  Quantity quantity;
+  std::string measure;
+  double least = -std::numeric_limits<double>::infinity();  ///< lower values count as this
+  std::string known = {};  ///< only where this measure is known too; "" for none
+
+  double of(const Measures& measures) const;
 };
 
 /// Name of a column: "mean", "standard_error".

@@ -27,10 +27,11 @@ std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRu
   return groups;
 }
 
-double at_start(RunGroup runs, const Quantity& quantity) {
+double at_start(RunGroup runs, const std::string& measure) {
   std::vector<double> values;
   for (const FigureRun* run : runs) {
-    if (!run->checkpoints.empty()) values.push_back(quantity(run->checkpoints.front().measures));
+    if (!run->checkpoints.empty())
+      values.push_back(run->checkpoints.front().measures.number(measure));
   }
   return over_runs(values).mean.value_or(std::numeric_limits<double>::quiet_NaN());
 }
@@ -45,8 +46,7 @@ std::optional<double> published_interior(double grains) {
 
 Verdict interior_is_published(double grains, RunGroup runs) {
   const double published = published_interior(grains).value();
-  Scalar interior = over_cycles(
-      "N_inves", [](const Measures& m) { return static_cast<double>(m.interior_grains); }, 0, 0);
+  Scalar interior = over_cycles("N_inves", "interior_grains", 0, 0);
   interior.relative = true;
   return compare_with(
       {fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
@@ -55,8 +55,7 @@ Verdict interior_is_published(double grains, RunGroup runs) {
 }
 
 Verdict onset_is_published(RunGroup runs, std::string claim) {
-  return compare_with({std::move(claim), margin_onset_phi}, onset_phi(onset_by_size), runs,
-                      published_onset_phi);
+  return compare_with({std::move(claim), margin_onset_phi}, onset_phi(), runs, published_onset_phi);
 }
 
 }  // namespace shearcell

@@ -18,8 +18,8 @@ std::vector<const FigureRun*> pointers(std::span<const FigureRun> runs);
 std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
                                                         const std::string& parameter);
 
-/// Mean over runs of the quantity at their first checkpoint; NaN if there is none.
-double at_start(RunGroup runs, const Quantity& quantity);
+/// Mean over runs of the measure at their first checkpoint; NaN if there is none.
+double at_start(RunGroup runs, const std::string& measure);
 /// The supplement's N_inves of a packing of that size; none if it has no such size.
 std::optional<double> published_interior(double grains);
 /// The claim that runs of `grains` grains, a size of the supplement, have the supplement's N_inves.

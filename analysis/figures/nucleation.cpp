@@ -115,7 +115,7 @@ double exponent_of_walls(std::span<const FigureRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
   const auto& [largest, in_largest] = *sizes.rbegin();
-  const auto grains = [region](const Measures& m) { return grains_in(region, m); };
+  const std::string grains = grains_of(region);
   const double few = at_start(in_smallest, grains), many = at_start(in_largest, grains);
   if (!(few > 0 && many > few)) return std::nan("");
   return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
@@ -131,11 +131,23 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all, region);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  return {decide(
+  Verdict verdict = decide(
       {claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
       excess ? excess->runs : all.size(),
       excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
-             : "three runs, and runs of two sizes with onsets at the same phi, are needed")};
+             : "three runs, and runs of two sizes with onsets at the same phi, are needed");
+  verdict.entered = Entered{run_columns()};
+  verdict.entered.columns.insert(
+      verdict.entered.columns.end(),
+      {"amplitude_rad", "grains", "phi_low", "cycles", "grain_cycles", "onsets"});
+  for (const FigureRun* run : all) {
+    for (const Exposure& one : exposures_of(*run, region)) {
+      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
+      row.insert(row.end(), {number_of(*run, "amplitude_rad"), number_of(*run, "grains"),
+                             one.phi_low, one.cycles, one.grain_cycles, one.onsets});
+    }
+  }
+  return {std::move(verdict)};
 }
 
 }  // namespace

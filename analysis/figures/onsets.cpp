@@ -99,9 +99,9 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
 
 /// The difference of both methods in each run.
 Verdict methods_agree(double amplitude, RunGroup runs) {
-  Scalar shift = onset_phi(onset_by_slope);
+  Scalar shift = of_whole_run(*find_measure("onset_slope_phi", MeasureKind::run));
   shift.name = "phi at the onset by steepest growth less that by size";
-  shift.of = [by_slope = shift.of, by_size = onset_phi(onset_by_size).of](const FigureRun& run) {
+  shift.of = [by_slope = shift.of, by_size = onset_phi().of](const FigureRun& run) {
     RunValue value = by_slope(run);
     const RunValue other = by_size(run);
     if (other.missing != Missing::nothing) return other;
@@ -191,9 +191,9 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
 std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   std::vector<FigureTable> panels = {
       crystallinity_against_phi("S6_crystalline", curves),
-      against_phi("S6_contacts", curves, {"contacts_per_grain", "", &Measures::contacts_per_grain},
+      against_phi("S6_contacts", curves, {"contacts_per_grain", "", "contacts_per_grain"},
                   {.name = "contacts per grain"}),
-      against_phi("S6_overlap", curves, {"overlap", "d", &Measures::mean_overlap}, overlap_axis())};
+      against_phi("S6_overlap", curves, {"overlap", "d", "mean_overlap_d"}, overlap_axis())};
   for (FigureTable& panel : panels) {
     for (ReferenceLine line : onset_lines()) {
       line.vertical = true;
@@ -209,7 +209,7 @@ std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, Ru
       compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
                            amplitude),
                margin_onset_phi},
-              onset_phi(onset_by_size), without, with),
+              onset_phi(), without, with),
       compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
                            "and without gravity",
                            amplitude),
@@ -244,7 +244,7 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   bool converged = false;
   const auto groups = runs_by(runs, "grains");
   for (const auto& [grains, members] : groups) {
-    const double interior = at_start(members, &Measures::interior_grains);
+    const double interior = at_start(members, "interior_grains");
     table.rows.push_back(
         onset_row({grains, interior, published_interior(grains)}, onset(members, onset_by_size)));
     if (published_interior(grains)) {

@@ -30,15 +30,16 @@ std::map<int, Stiffness> by_stiffness(RunGroup runs) {
     const double settled = number_of(*run, "stiffness_N_per_m");
     std::map<int, const Measures*> own;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      const double ratio = std::log10(checkpoint.stiffness_N_per_m / settled);
+      const double ratio =
+          std::log10(checkpoint.measures.number("raised_stiffness_N_per_m") / settled);
       if (!std::isfinite(ratio)) continue;
       own[static_cast<int>(std::lround(100 * ratio))] = &checkpoint.measures;
     }
     for (const auto& [hundredths, measures] : own) {
       Stiffness& at = found[hundredths];
-      at.phi.push_back(measures->phi);
-      at.phi_u.push_back(measures->phi_uncorrected);
-      at.overlap.push_back(measures->mean_overlap);
+      at.phi.push_back(measures->number("phi"));
+      at.phi_u.push_back(measures->number("phi_uncorrected"));
+      at.overlap.push_back(measures->number("mean_overlap_d"));
     }
   }
   return found;

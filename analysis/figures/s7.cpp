@@ -126,8 +126,19 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   if (packings < least_bootstrap_runs) {
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
   }
-  return decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
-                std::move(note));
+  Verdict verdict = decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
+                           std::move(note));
+  verdict.entered = Entered{run_columns()};
+  verdict.entered.columns.insert(verdict.entered.columns.end(), {"place", "value"});
+  for (const FigureRun* run : runs) {
+    for (const double place : nucleus_places(*run, axis, Seen::first)) {
+      const std::optional<int> counted = side(place);
+      if (!counted) continue;
+      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
+      row.insert(row.end(), {place, std::int64_t{*counted}});
+    }
+  }
+  return verdict;
 }
 
 /// The inner half of the accessible width is compared with the outer half.

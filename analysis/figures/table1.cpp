@@ -95,7 +95,7 @@ Found found_in(const RunList& runs, const Parameter& parameter) {
       found.varied = found.varied || (run->swept.is_object() && run->swept.contains(key));
     }
     // A stiffening records the stiffness at each checkpoint.
-    const double stiffness = run->checkpoints.back().stiffness_N_per_m;
+    const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");
     if (parameter.keys.front() == "stiffness_N_per_m" && std::isfinite(stiffness)) {
       found.take(stiffness);
       found.varied = true;

@@ -46,9 +46,6 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
                    lines == &outcome.damage ? "damaged" : "pruned");
     }
   }
-  for (const std::string& sha256 : outcome.changed) {
-    print_stderr("checkpoint {:.12}: the cached measures differed and were replaced\n", sha256);
-  }
   if (!outcome.cache_trouble.empty()) {
     print_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
   }

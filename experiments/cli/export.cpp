@@ -193,6 +193,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const std::uint64_t every =
       checkpoint_cadence(run.places.empty() ? run.run.memberships : run.places);
   MeasureSources sources(store, {{run.run.id, every}});
+  sources.read_run(run.run.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame =
         frame_of(store.load_checkpoint(record), record, {run.run, shown_place(run)}, &sources);

@@ -56,12 +56,12 @@ nlohmann::json facts(const FigureSummary& result) {
           {"undrawn", result.undrawn},
           {"damage", result.damage},
           {"pruned", result.pruned},
-          {"changed", result.changed},
           {"verdict", to_json(result.verdicts)}};
 }
 
 void print_verdicts(const FigureSummary& result) {
-  if (const auto ruling = overall(result.verdicts)) print_text("  verdict: {}\n", name_of(*ruling));
+  if (result.verdicts.empty()) return;
+  print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
     print_text("    {}: {}\n      {}: {}{}{}\n", name_of(verdict.ruling), verdict.claim,
                verdict.quantity, numbers_of(verdict), verdict.note.empty() ? "" : "; ",
@@ -157,8 +157,6 @@ void add_figures(CLI::App& app, Context& context) {
           "Width of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
-  command->add_flag("--fresh", how.fresh,
-                    "Measure every checkpoint again and compare with the cache");
   add_common_options(*command, context);
   command->footer(
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their

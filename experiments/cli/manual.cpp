@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "analysis/figure.hpp"
-#include "analysis/onset.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -71,17 +70,24 @@ stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are
 |---|---|---|
 )";
   for (const TableColumn& column : table_columns()) {
-    const bool plots =
-        find_measure(column.name) != nullptr || find_run_measure(column.name) != nullptr;
+    const bool plots = find_measure(column.name) != nullptr ||
+                       find_measure(column.name, MeasureKind::run) != nullptr;
     text +=
         fmt::format("| `{}` | {} | {} |\n", column.name, plots ? "plot" : "", cell(column.meaning));
   }
   text +=
       "\nCurves, of `shearcell table --curve` and as `y` of `plots`:\n\n"
       "| curve | against | meaning |\n|---|---|---|\n";
-  for (const CurveMeasure& curve : all_curve_measures()) {
-    text += fmt::format("| `{}` | `{}` | {} |\n", curve.name, curve.x,
-                        cell(std::string(curve.meaning)));
+  for (const Measure* curve : all_measures(MeasureKind::curve)) {
+    text += fmt::format("| `{}` | `{}` | {} |\n", curve->name, curve->x,
+                        cell(std::string(curve->meaning)));
+  }
+  text +=
+      "\nOf each grain, in exports and in the report's packings:\n\n"
+      "| measure | unit | meaning |\n|---|---|---|\n";
+  for (const Measure* one : all_measures(MeasureKind::grains)) {
+    text +=
+        fmt::format("| `{}` | {} | {} |\n", one->name, one->unit, cell(std::string(one->meaning)));
   }
   return text;
 }

@@ -16,10 +16,10 @@
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
@@ -61,13 +61,16 @@ std::vector<Facts> facts_of_all(const Store& store, const RunRecord& run,
 
 /// The values of `table`; measured now if they are not cached.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
-  std::optional<Measures> measures;
+  Measures measures;
   try {
-    const MeasuredPackings found = measures_of(store, {&record, 1}, table_measures(), {});
+    const auto found = measure_checkpoints(store, {&record, 1}, table_providers(), {});
     print_problems(found, "not measured", context);
     measures = found.measures.front();
   } catch (const AnalysisError& problem) {  // a failed run may leave such a state
     print_stderr("not measured: {}\n", problem.what());
+    MeasureSources sources(store);
+    sources.read_run(record.run);
+    sources.add_recorded(record, measures);
   }
   Facts facts;
   for (const auto& [column, value] : facts_of(record, measures)) {

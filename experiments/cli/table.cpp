@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `table`: runs and their measures, for pandas, gnuplot and spreadsheets.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -18,7 +19,7 @@ struct TableOptions {
   std::string format = "csv";
   std::string curve;
   std::string out;
-  bool ledger = false;
+  std::vector<std::string> simulated;
 };
 
 void table(const TableOptions& options, Context& context) {
@@ -26,11 +27,11 @@ void table(const TableOptions& options, Context& context) {
   if (!options.out.empty()) require_ours(options.out, is_table);
   const MeasureOptions how{.workers = usable_cores(),
                            .report = terminal_counter("measuring checkpoint")};
-  const CurveMeasure* curve = find_curve_measure(options.curve);
-  const RunTable made = curve != nullptr
-                            ? curve_table(store, options.selection, *curve, how)
-                            : run_table(store, options.selection,
-                                        value_of<RowPer>(options.per).value(), how, options.ledger);
+  const Measure* curve = find_measure(options.curve, MeasureKind::curve);
+  const RunTable made =
+      curve != nullptr ? curve_table(store, options.selection, *curve, how)
+                       : run_table(store, options.selection, value_of<RowPer>(options.per).value(),
+                                   how, options.simulated);
   const std::string text = context.json               ? to_json_with_notes(made)
                            : options.format == "json" ? to_json(made)
                                                       : to_csv(made);
@@ -64,9 +65,9 @@ void add_table(CLI::App& app, Context& context) {
   }
   std::vector<std::string> curves;
   std::string curves_text;
-  for (const CurveMeasure& curve : all_curve_measures()) {
-    curves.emplace_back(curve.name);
-    curves_text += fmt::format("  {:<37} {}; against {}\n", curve.name, curve.meaning, curve.x);
+  for (const Measure* curve : all_measures(MeasureKind::curve)) {
+    curves.emplace_back(curve->name);
+    curves_text += fmt::format("  {:<37} {}; against {}\n", curve->name, curve->meaning, curve->x);
   }
   command
       ->add_option("--curve", options->curve,
@@ -76,11 +77,16 @@ void add_table(CLI::App& app, Context& context) {
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
                             ->check(CLI::IsMember({"csv", "json"}))
                             ->capture_default_str();
-  command
-      ->add_flag(
-          "--ledger", options->ledger,
-          "Add work and dissipation of each cycle; simulates each again, at 3 to 4 times its cost")
-      ->excludes(command->get_option("--curve"));
+  for (const std::string& name : simulating_providers()) {
+    const Provider& one = provider(name);
+    std::vector<std::string_view> added;
+    for (const Measure& measure : one.measures) added.push_back(measure.name);
+    command
+        ->add_flag_callback(
+            "--" + name, [options, name] { options->simulated.push_back(name); },
+            fmt::format("Add {}, which is simulated: {}", fmt::join(added, ", "), one.cost))
+        ->excludes(command->get_option("--curve"));
+  }
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
   add_common_options(*command, context);
@@ -90,7 +96,7 @@ void add_table(CLI::App& app, Context& context) {
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
       columns_text +
-      "Columns named per_cycle come with --ledger alone. The last ones, from critical_size on, are "
+      "Simulated columns come with their option alone. The last ones, from critical_size on, are "
       "those of --per run, whose measures are of the "
       "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
       "asks for.\n\nCurves:\n" +

@@ -5,10 +5,7 @@
 
 #include <cmath>
 
-#include "analysis/common_neighbours.hpp"
-#include "analysis/motion.hpp"
 #include "analysis/voronoi.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 
@@ -34,46 +31,31 @@ void add_grains(const Checkpoint& c, const Eigen::Matrix3Xd& sites, Frame& frame
   }
 }
 
-void add_columns(const Checkpoint& c, const WallPose& pose, const GrainMeasures& measures,
-                 const Motion& moved, Frame& frame) {
-  const auto add = [&](const char* name, const auto& of_grains, auto of_wall_grains) {
-    std::vector<decltype(of_wall_grains)> values;
-    for (const auto value : of_grains)
-      values.push_back(static_cast<decltype(of_wall_grains)>(value));
-    values.resize(frame.particles(), of_wall_grains);
-    frame.columns.push_back({name, std::move(values)});
-  };
-  const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
-  add("phi_local", measures.phi_local, 0.0);
-  add("q6", measures.q6, 0.0);
-  add("overlap", measures.largest_overlap, 0.0);
-  add("grain_pressure_Pa", measures.pressure, 0.0);
-  add("displacement_d", displacement, 0.0);
-  add("d2min_d2", moved.nonaffine, 0.0);
-  add("contacts", measures.contacts, 0);
-  add("structure", measures.structure, -1);
-  add("lattice", common_neighbour_analysis(c.cell, pose, c.state.position), -1);
-  std::vector<int> crystallite = measures.crystallites.label;
-  for (int& label : crystallite) ++label;
-  add("crystallite", crystallite, -1);
+bool enters_frames(const Provider& one) {
+  return one.from == ComputedFrom::checkpoint &&
+         (one.has(MeasureKind::number) || one.has(MeasureKind::grains));
 }
 
-/// Adds the measures of `table` that analyse_stored() does not give.
-void add_numbers(const Checkpoint& checkpoint, const CheckpointRecord& record,
-                 MeasureSources& sources, Analysis& analysis) {
-  sources.read_run(record.run);
-  UnreadCheckpoints unread;
-  for (const std::string& name : table_measures()) {
-    const DerivedMeasure& measure = derived_measure(name);
-    const auto result = sources.measure(record, checkpoint, analysis, measure, unread);
-    if (result) measure.read(*result, analysis.measures);
+void add_columns(const Measures& measures, Frame& frame) {
+  for (const Measure* measure : all_measures(MeasureKind::grains)) {
+    const auto found = measures.of_grains.find(measure->name);
+    std::vector<double> values(frame.grains, std::nan(""));
+    if (found != measures.of_grains.end()) values = found->second;
+    values.resize(frame.particles(), measure->scale.of_wall_grains);
+    FrameColumn& column = frame.columns.emplace_back();
+    column.name = measure->name;
+    if (measure->scale.whole) {
+      column.values = std::vector<std::int32_t>(values.begin(), values.end());
+    } else {
+      column.values = std::move(values);
+    }
   }
 }
 
 void add_wall_grains(const Checkpoint& c, const WallPose& pose, const Measures& measures,
                      Frame& frame) {
-  const auto rate = measures.numbers.find("shear_rate_per_s");  // only of a shear
-  const double shear_rate = rate == measures.numbers.end() ? 0 : rate->second;
+  const double rate = measures.number("shear_rate_per_s");  // only of a shear
+  const double shear_rate = std::isnan(rate) ? 0 : rate;
   frame.velocity.rightCols(static_cast<Eigen::Index>(c.cell.wall_grains.size())) =
       wall_grain_velocities(c.cell, pose, shear_rate, c.state.wall_velocity) * c.units.diameter_m;
   for (const WallGrain& grain : c.cell.wall_grains) {
@@ -111,12 +93,11 @@ std::string frame_name(const Frame& frame) {
 }
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
-               MeasureSources* sources) {
-  Analysis analysis = analyse_stored(record, checkpoint);
-  if (sources != nullptr) add_numbers(checkpoint, record, *sources, analysis);
-  analysis.measures.units = mechanical_units(run.run, record);
-  add_drive(run.run, record, analysis.measures);
-  for (double& pressure : analysis.grains.pressure) pressure *= analysis.measures.units.stress_Pa;
+               const MeasureSources* sources) {
+  const MeasureSources alone(record.run, run.run);
+  const Measures measures =
+      (sources == nullptr ? alone : *sources)
+          .measures_of(record, checkpoint, analyse_stored(record, checkpoint), enters_frames);
   const WallPose pose = pose_of(checkpoint);
   Frame frame;
   frame.step = checkpoint.state.step;
@@ -129,12 +110,11 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   const Eigen::Matrix3Xd sites = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
   frame.position = sites * checkpoint.units.diameter_m;
   frame.velocity.resize(3, sites.cols());
-  add_facts(record, run, analysis.measures, frame);
+  add_facts(record, run, measures, frame);
   place_cell(checkpoint, pose, frame);
   add_grains(checkpoint, sites, frame);
-  add_wall_grains(checkpoint, pose, analysis.measures, frame);
-  const auto earlier = sources == nullptr ? std::nullopt : sources->earlier(record, 1);
-  add_columns(checkpoint, pose, analysis.grains, motion_since(earlier, checkpoint), frame);
+  add_wall_grains(checkpoint, pose, measures, frame);
+  add_columns(measures, frame);
   return frame;
 }
 

@@ -21,7 +21,7 @@ struct FrameColumn {
 };
 
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
-/// grains have measures of zero, and structure, lattice and crystallite -1. They move with the
+/// grains have measures of zero, and classes of -1. They move with the
 /// shear (x of a wall point at y: (y - y_top) tan(theta)) and with the moving wall. Velocities of
 /// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
 struct Frame {
@@ -48,16 +48,7 @@ struct Frame {
   Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
   std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
-  /// Further measures of each particle:
-  ///   phi_local, q6
-  ///   overlap            largest, over the diameter
-  ///   grain_pressure_Pa  of each grain's contacts over its cell
-  ///   displacement_d     over the cycle before [d]; NaN if unknown
-  ///   d2min_d2           D^2_min over the cycle before [d^2]; NaN if unknown
-  ///   contacts           with grains and wall grains
-  ///   structure          0 disordered, 1 FCC, 2 HCP
-  ///   lattice            by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC
-  ///   crystallite        0 none; 1, 2, ... by their lowest grain id
+  /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
   std::vector<FrameColumn> columns;
 
   std::size_t particles() const { return type.size(); }
@@ -66,8 +57,9 @@ struct Frame {
 /// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".
 std::string frame_name(const Frame& frame);
 
-/// Without `sources`, measures that need earlier checkpoints are NaN. Throws as analyse_stored().
+/// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. Throws
+/// as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-               const SelectedRun& run = {}, MeasureSources* sources = nullptr);
+               const SelectedRun& run = {}, const MeasureSources* sources = nullptr);
 
 }  // namespace shearcell

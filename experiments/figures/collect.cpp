@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "analysis/derived_measures.hpp"
 #include "analysis/own_figure.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -203,9 +202,10 @@ std::string last_scale(const std::vector<SelectedRun>& runs,
 void share_needs(std::vector<WantedFigure>& figures) {
   std::map<std::string, std::set<std::string>> needs;  // of each experiment
   for (const WantedFigure& wanted : figures) {
-    for (const DerivedMeasure& one : all_derived_measures()) {
-      const bool needed = std::ranges::count(wanted.figure.needs, one.name) > 0;
-      if (needed && one.earlier.empty()) needs[wanted.experiment].insert(one.name);
+    for (const std::string& name : wanted.figure.needs) {
+      const Provider& one = provider(name);
+      const bool analyses = one.from == ComputedFrom::checkpoint && one.earlier.empty();
+      if (analyses) needs[wanted.experiment].insert(name);
     }
   }
   for (WantedFigure& wanted : figures) {

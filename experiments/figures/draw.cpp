@@ -12,7 +12,6 @@
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/host.hpp"
@@ -33,31 +32,27 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
     options.cadence[input.run.id] = input.membership.checkpoint_every;
   }
-  MeasuredPackings found;
-  if (figure.form == FigureForm::table) {
-    found.measures.resize(records.size(), Measures());
-  } else {
-    std::vector<std::string> names = figure.needs;
+  std::vector<std::string> names;  // none of a table, which is not measured
+  if (figure.form != FigureForm::table) {
+    names = figure.needs;
     names.insert(names.begin(), "scalars");
-    found = measures_of(store, records, names, options);
   }
-  outcome = std::move(found);
+  MeasuredCheckpoints found = measure_checkpoints(store, records, names, options);
   std::vector<FigureRun> runs;
-  auto measured = found.measures.begin();
+  std::size_t k = 0;
   for (const CollectedRun& input : inputs) {
     FigureRun run = unmeasured(input);
     for (const CheckpointRecord& record : input.checkpoints) {
-      std::optional<Measures>& one = *measured++;
-      if (!one) continue;
+      const std::size_t here = k++;
+      if (found.lacks(here, "scalars")) continue;
       CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
-      checkpoint.measures = std::move(*one);
+      checkpoint.measures = std::move(found.measures[here]);
       checkpoint.cycle = record.cycle;
       checkpoint.sha256 = record.sha256;
-      const auto stiffness = record.observables.find("stiffness_N_per_m");
-      if (stiffness != record.observables.end()) checkpoint.stiffness_N_per_m = stiffness->second;
     }
     runs.push_back(std::move(run));
   }
+  outcome = std::move(found);
   return runs;
 }
 
@@ -257,6 +252,7 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
     });
   };
   require(".verdict.json", "{\n \"claims\": [", "");
+  require(".verdict.csv", "claim,", "");
   require(".caption.txt", "Figure " + result.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + result.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
@@ -280,7 +276,9 @@ FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const Figure
   const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
   write(".caption.txt",
         drawn ? caption(result, computed.runs_by_variant, made.tables, options.runs) + "\n" : "");
-  write(".verdict.json", made.verdicts.empty() ? "" : verdict_text(computed));
+  const bool claims = !made.verdicts.empty();
+  write(".verdict.json", claims ? verdict_text(computed) : "");
+  write(".verdict.csv", claims ? to_csv(entered_table(made.verdicts)) : "");
 
   nlohmann::json& facts = computed.lineage;
   for (const auto& file : result.files) {

@@ -51,11 +51,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 
 /// Computes the figure and writes into FOLDER/EXPERIMENT/SCALE (FOLDER/SCALE for a figure of all
 /// experiments), where SCALE is scale_name(): PANEL.csv, .svg and, with librsvg, .pdf of each
-/// panel, NAME.caption.txt if something is drawn, NAME.verdict.json if there are claims, and
-/// NAME.lineage.json. Deletes a caption or verdict that an older figure left. Records a
-/// FigureGenerated event with host and build, unless the newest event of this figure says the same,
-/// or a drawing failed (gnuplot may be missing). The same checkpoints give the same bytes. Throws
-/// as compute_figure() and require_own_files().
+/// panel, NAME.caption.txt if something is drawn, NAME.verdict.json and NAME.verdict.csv (what
+/// entered it) if there are claims, and NAME.lineage.json. Deletes a caption or verdict that an
+/// older figure left. Records a FigureGenerated event with host and build, unless the newest event
+/// of this figure says the same, or a drawing failed (gnuplot may be missing). The same checkpoints
+/// give the same bytes. Throws as compute_figure() and require_own_files().
 FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/io/file.hpp"
@@ -19,6 +18,19 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t kBatch = 500;  // checkpoints whose results are in memory at a time
+
+bool is_simulated(const std::string& name) {
+  return provider(name).from == ComputedFrom::simulation;
+}
+
+/// All but the simulated ones.
+std::vector<std::string> analysing_providers() {
+  std::vector<std::string> names;
+  for (const Provider& one : all_providers()) {
+    if (one.is_kept() && !is_simulated(one.name)) names.push_back(one.name);
+  }
+  return names;
+}
 
 /// Measures checkpoints of whole runs in batches.
 class Keeping {
@@ -41,7 +53,7 @@ class Keeping {
       batch.insert(batch.end(), own.begin(), own.end());
       simulate(*run, own, options);
       if (++run != runs.end() && batch.size() < kBatch) continue;
-      take(measure_checkpoints(store_, batch, all_derived_measures(), options), batch,
+      take(measure_checkpoints(store_, batch, analysing_providers(), options), batch,
            MeasureSources(store_, options.cadence));
       batch.clear();
     }
@@ -55,10 +67,9 @@ class Keeping {
  private:
   void take(const MeasuredCheckpoints& found, const std::vector<CheckpointRecord>& records,
             MeasureSources sources) {
-    for (std::size_t k = 0; k < found.results.size(); ++k) {
-      for (std::size_t m = 0; m < found.results[k].size(); ++m) {
-        if (!found.results[k][m].is_null()) continue;
-        if (!needs_a_pruned_file(records[k], all_derived_measures()[m], sources)) {
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      for (const std::string& name : found.lacking[k]) {
+        if (!needs_a_pruned_file(records[k], provider(name), sources)) {
           unmeasured_.insert(records[k].sha256);
         }
       }
@@ -67,10 +78,10 @@ class Keeping {
   }
 
   /// Such a measure was lost before, as where a pruned run was continued.
-  static bool needs_a_pruned_file(const CheckpointRecord& record, const DerivedMeasure& measure,
+  static bool needs_a_pruned_file(const CheckpointRecord& record, const Provider& provider,
                                   MeasureSources& sources) {
     sources.read_run(record.run);
-    return std::ranges::any_of(measure.earlier, [&](std::uint64_t cycles) {
+    return std::ranges::any_of(provider.earlier, [&](std::uint64_t cycles) {
       const CheckpointRecord* earlier = sources.find(record, cycles);
       return earlier != nullptr && earlier->state == CheckpointState::pruned;
     });
@@ -94,7 +105,7 @@ class Keeping {
         });
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), "scalars");
-        take(measures_of(store_, taken, names, options));
+        take(measure_checkpoints(store_, taken, names, options));
       }
     }
   }

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "analysis/onset.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -25,14 +24,14 @@ using nlohmann::json;
 struct Row {
   const SelectedRun* selected = nullptr;
   const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not started
-  std::optional<Measures> measures = {};
+  Measures measures = {};
   const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
 };
 
 /// A run with its checkpoints and the measures of each.
 struct MeasuredRun : SelectedRun {
   std::vector<CheckpointRecord> records = {};
-  std::vector<std::optional<Measures>> measures = {};
+  std::vector<Measures> measures = {};
 };
 
 struct Column : TableColumn {
@@ -53,14 +52,6 @@ Column of_checkpoint(const char* name, const char* meaning, Value value) {
   return {{name, meaning}, [value](const Row& row) -> json {
             return row.checkpoint == nullptr ? json() : json(value(*row.checkpoint));
           }};
-}
-
-// `recorded`: the name in the checkpoint if it differs from the column's.
-Column observable(const char* name, const char* meaning, const char* recorded = nullptr) {
-  return of_checkpoint(name, meaning, [key = recorded == nullptr ? name : recorded](const auto& c) {
-    const auto found = c.observables.find(key);
-    return found == c.observables.end() ? json() : number(found->second);
-  });
 }
 
 std::vector<Column> names(const VariantNames& variants) {
@@ -84,65 +75,47 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-std::vector<Column> measures(bool ledger) {
+/// Counts are whole numbers.
+json cell_of(const Measure& measure, double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return measure.kind == MeasureKind::count ? json(static_cast<std::uint64_t>(value)) : json(value);
+}
+
+/// The numbers of a checkpoint; simulated ones only of the providers that `simulated` names.
+std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
-  for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    if (scalar.derived() == "ledger" && !ledger) continue;
-    columns.push_back({{std::string(scalar.name), std::string(scalar.meaning)},
-                       [&scalar](const Row& row) -> json {
-                         if (!row.measures) return nullptr;
-                         const auto* count = std::get_if<std::size_t Measures::*>(&scalar.member);
-                         return count == nullptr ? number(scalar.of(*row.measures))
-                                                 : json((*row.measures).**count);
-                       }});
+  for (const Measure* measure : all_measures(MeasureKind::number)) {
+    const Provider& by = provider_of(*measure);
+    const bool listed = std::ranges::find(simulated, by.name) != simulated.end();
+    if (by.from == ComputedFrom::simulation && !listed) continue;
+    columns.push_back(
+        {{std::string(measure->name), std::string(measure->meaning)}, [measure](const Row& row) {
+           return cell_of(*measure, row.measures.number(measure->name));
+         }});
   }
-  columns.push_back(of_checkpoint("time_s", "simulated time since the stage began",
-                                  [](const CheckpointRecord& c) { return number(c.time_s); }));
-  columns.insert(
-      columns.end(),
-      {observable("cell_height_d", "distance of the bottom and top wall"),
-       observable("largest_overlap_d",
-                  "largest overlap of two grains, or of a grain and a wall grain"),
-       observable("kinetic_energy_per_grain_m_d2_per_s2",
-                  "mean kinetic energy; m is the mass of a grain"),
-       observable("wall_force_imbalance", "load less contact force on the moving wall, over P A_w"),
-       observable("raised_stiffness_N_per_m", "spring constant of a stiffening",
-                  "stiffness_N_per_m"),
-       observable("force_residual_P_d2",
-                  "largest net force on a grain of a stiffening over P d^2")});
   return columns;
 }
 
-void add_onset(const std::string& method, const std::string& meaning, OnsetMethod find,
-               std::vector<Column>& columns) {
-  const auto add = [&](const std::string& ending, const std::string& what, auto value) {
-    columns.push_back({{"onset_" + method + ending, what}, [find, value](const Row& row) -> json {
-                         if (row.history == nullptr || row.history->checkpoints.empty()) return {};
-                         return value(find(*row.history));
-                       }});
-  };
-  add("", "observed, never, before_start or unclear: " + meaning,
-      [](const RunOnset& found) { return json(name_of(found.observed)); });
-  add("_cycle", "cycle of that onset", [](const RunOnset& found) {
-    return found.observed == Observed::yes ? json(found.cycle) : json();
-  });
-  add("_phi", "volume fraction at that onset", [](const RunOnset& found) {
-    return found.observed == Observed::yes ? json(found.phi) : json();
-  });
+/// Whether and when a method observed the onset.
+Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
+  return {{name, std::string("observed, never, before_start or unclear: outcome of ") + meaning},
+          [find](const Row& row) -> json {
+            if (row.history == nullptr || row.history->checkpoints.empty()) return {};
+            return name_of(find(*row.history).observed);
+          }};
 }
 
 std::vector<Column> ends() {
   std::vector<Column> columns;
-  columns.push_back(
-      {{"critical_size",
-        "grains of a critical crystallite in the supplement, by the nearest amplitude"},
-       [](const Row& row) -> json {
-         return row.history == nullptr ? json() : number(critical_size_for(*row.history));
-       }});
-  add_onset("size", "outcome of method 1, where the largest crystallite reaches the critical size",
-            onset_by_size, columns);
-  add_onset("slope", "outcome of method 2, where the logarithm of its size rises most steeply",
-            onset_by_slope, columns);
+  for (const Measure* measure : all_measures(MeasureKind::run)) {
+    columns.push_back(
+        {{std::string(measure->name), std::string(measure->meaning)}, [measure](const Row& row) {
+           if (row.history == nullptr) return json();
+           return number(measure->of_run(*row.history).or_nan());
+         }});
+  }
+  columns.push_back(outcome_of("onset_size", "method 1", onset_by_size));
+  columns.push_back(outcome_of("onset_slope", "method 2", onset_by_slope));
   columns.insert(
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
@@ -189,9 +162,10 @@ std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
 }
 
 std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per,
-                                const VariantNames& variants, bool ledger) {
+                                const VariantNames& variants,
+                                std::span<const std::string> simulated) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
-  std::ranges::move(measures(ledger), std::back_inserter(columns));
+  std::ranges::move(measures(simulated), std::back_inserter(columns));
   if (per == RowPer::run) std::ranges::move(ends(), std::back_inserter(columns));
   return columns;
 }
@@ -220,7 +194,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
   for (MeasuredRun& run : runs) groups[run.membership.checkpoint_every].push_back(&run);
   for (const auto& [every, group] : groups) {
     std::vector<CheckpointRecord> records;
-    std::vector<std::optional<Measures>*> measures;
+    std::vector<Measures*> measures;
     MeasureOptions with_cadence = options;
     for (MeasuredRun* run : group) {
       with_cadence.cadence[run->run.id] = every;
@@ -231,7 +205,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
       }
     }
     if (records.empty()) continue;
-    MeasuredPackings found = measures_of(store, records, names, with_cadence);
+    MeasuredCheckpoints found = measure_checkpoints(store, records, names, with_cadence);
     for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
     add_unread(found, table);
     if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
@@ -244,34 +218,48 @@ FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
   history.swept = selected.membership.swept;
   history.parameters = effective_parameters(selected.run.resolved);
   for (const Row& row : rows) {
-    if (!row.measures || row.checkpoint->cycle != std::floor(row.checkpoint->cycle)) continue;
+    if (!row.measures.numbers.contains("phi") ||
+        row.checkpoint->cycle != std::floor(row.checkpoint->cycle))
+      continue;
     history.checkpoints.emplace_back().cycle = row.checkpoint->cycle;
-    history.checkpoints.back().measures = *row.measures;
+    history.checkpoints.back().measures = row.measures;
   }
   return history;
 }
 
 }  // namespace
 
-std::span<const std::string> table_measures() {
-  static const std::array<std::string, 5> names = {"scalars", "mechanics", "lattices", "motion",
-                                                   "core"};
+std::vector<std::string> table_providers() {
+  std::vector<std::string> names;
+  for (const Provider& one : all_providers()) {
+    const bool analyses = one.from == ComputedFrom::checkpoint && one.has(MeasureKind::number);
+    if (analyses) names.push_back(one.name);
+  }
+  return names;
+}
+
+std::vector<std::string> simulating_providers() {
+  std::vector<std::string> names;
+  for (const Provider& one : all_providers()) {
+    if (one.from == ComputedFrom::simulation) names.push_back(one.name);
+  }
   return names;
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options, bool ledger) {
+                   const MeasureOptions& options, std::span<const std::string> simulated) {
   RunTable table;
   std::vector<MeasuredRun> runs = select(store, selection, options, table);
-  std::vector<std::string> names(table_measures().begin(), table_measures().end());
-  if (ledger) names.emplace_back("ledger");
+  std::vector<std::string> names = table_providers();
+  const std::vector<std::string> scalars = {names.front()};
+  names.insert(names.end(), simulated.begin(), simulated.end());
   const auto has_row = [per](const MeasuredRun& run, std::size_t k) {
     return per == RowPer::checkpoint || k + 1 == run.records.size();
   };
   measure_where(store, names, options, runs, has_row, table);
   // Onsets need only the scalars of the other checkpoints.
-  measure_where(store, table_measures().first(1), options, runs, std::not_fn(has_row), table);
-  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), ledger);
+  measure_where(store, scalars, options, runs, std::not_fn(has_row), table);
+  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), simulated);
   table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
@@ -294,22 +282,21 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   return table;
 }
 
-RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
+RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options) {
-  const std::string derived(measure.derived);
+  const std::string provider = provider_of(measure).name;
   RunTable table;
   std::vector<MeasuredRun> runs = select(store, selection, options, table);
   const auto all = [](const MeasuredRun&, std::size_t) { return true; };
-  measure_where(store, {&derived, 1}, options, runs, all, table);
+  measure_where(store, {&provider, 1}, options, runs, all, table);
   std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
   table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
-  for (const MeasuredRun& run : runs) {
+  for (MeasuredRun& run : runs) {
     for (std::size_t k = 0; k < run.records.size(); ++k) {
-      if (!run.measures[k]) continue;
-      const MeasuredCurve curve = measure.of(*run.measures[k]);
+      const MeasuredCurve& curve = run.measures[k].curves[std::string(measure.name)];
       std::vector<json> cells;
       for (const Column& column : columns) cells.push_back(column.cell({&run, &run.records[k]}));
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -323,14 +310,15 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Cu
 }
 
 std::vector<TableColumn> table_columns() {
-  const std::vector<Column> columns = columns_for({}, RowPer::run, VariantNames(), true);
+  const std::vector<Column> columns =
+      columns_for({}, RowPer::run, VariantNames(), simulating_providers());
   return {columns.begin(), columns.end()};
 }
 
 std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
-                                                   const std::optional<Measures>& found) {
+                                                   const Measures& found) {
   std::vector<std::pair<TableColumn, json>> facts;
-  for (const Column& column : measures(false)) {
+  for (const Column& column : measures({})) {
     facts.emplace_back(column, column.cell({nullptr, &record, found}));
   }
   return facts;

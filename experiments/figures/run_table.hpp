@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,25 +41,26 @@ struct RunTable : MeasureOutcome {
 
 /// The table of the selected newest_runs(), in their order, then by cycle. It has
 /// their checkpoints_for() up to end_for(). Onsets come from the checkpoints at whole cycles, as in
-/// the figures. `ledger` adds the energies of each cycle, which is simulated again for that. Throws
-/// NotFound as select_runs().
+/// the figures. `simulated` names providers whose measures are added, which takes longer than an
+/// analysis. Throws NotFound as select_runs().
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
-                   const MeasureOptions& options, bool ledger = false);
+                   const MeasureOptions& options, std::span<const std::string> simulated = {});
 
 /// The same with a row for each value of a measured curve at each checkpoint: the run's columns,
 /// the cycle, the checkpoint, x and y.
-RunTable curve_table(const Store& store, const RunSelection& selection, const CurveMeasure& measure,
+RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options);
 
-/// The names for measures_of() that give all columns of a checkpoint. The first is "scalars".
-std::span<const std::string> table_measures();
+/// The providers of all columns of a checkpoint but the simulated ones. The first is "scalars".
+std::vector<std::string> table_providers();
+std::vector<std::string> simulating_providers();
 
-/// Every column, including those of a ledger, except those of swept parameters.
+/// Every column, simulated ones too, except those of swept parameters.
 std::vector<TableColumn> table_columns();
 
 /// The columns of one checkpoint and their values.
 std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(
-    const CheckpointRecord& record, const std::optional<Measures>& measures);
+    const CheckpointRecord& record, const Measures& measures);
 
 /// RFC 4180 with a header row; numbers have the shortest digits that read back to the same double.
 std::string to_csv(const RunTable& table);

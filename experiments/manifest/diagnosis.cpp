@@ -12,7 +12,6 @@
 
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
-#include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
@@ -360,15 +359,14 @@ std::uint64_t length_of(const Variant& variant) {
 std::uint64_t cycles_back(string_view text) {
   std::uint64_t most = 0;
   for (const string& name : names_in(text)) {
-    if (const ScalarMeasure* found = find_measure(name))
-      most = std::max(most, found->cycles_back());
+    if (const Measure* found = find_measure(name)) most = std::max(most, found->cycles_back);
   }
   return most;
 }
 
 /// Whether the y of the plot is one number of a run.
 bool is_of_run(const PlotSpec& plot) {
-  return is_parameter(plot.y) && find_curve_measure(plot.y) == nullptr;
+  return is_parameter(plot.y) && find_measure(plot.y, MeasureKind::curve) == nullptr;
 }
 
 /// "a checkpoint at cycle 3 with another one 1 cycle before it".

@@ -15,7 +15,6 @@
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/figures/curves.hpp"
-#include "analysis/onset.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -130,9 +129,11 @@ void fields(PublishedSpec& published, const auto& visit) {
 }
 
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
-  static const Names scalars = names_of(all_scalar_measures()), runs = names_of(all_run_measures());
+  static const Names scalars = measure_names({MeasureKind::number});
+  static const Names runs = measure_names({MeasureKind::run});
   static const Names can_be_by = parameters(), can_be_x = joined({"cycle"}, scalars, can_be_by);
-  static const Names can_be_y = joined({}, scalars, names_of(all_curve_measures()), runs);
+  static const Names can_be_y = 
+      measure_names({MeasureKind::number, MeasureKind::curve, MeasureKind::run});
   static const Names x_terms = joined({"cycle"}, scalars, numbers());
   static const Names y_terms = joined(x_terms, runs);
   visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
@@ -205,7 +206,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
-  static const Names scalars = names_of(all_scalar_measures()), runs = names_of(all_run_measures());
+  static const Names scalars = measure_names({MeasureKind::number});
+  static const Names runs = measure_names({MeasureKind::run});
   static const Names can_be_compared = joined({}, scalars, runs);
   static const Names terms = joined({"cycle"}, scalars, runs, numbers());
   visit(claim.name, {.name = "name", .doc = "required", .required = true});
@@ -443,7 +445,7 @@ bool check_expression(const Entry& in, const Field& about) {
           "`shearcell manual --markdown` lists measures and parameters.");
       return false;
     }
-    of_run = of_run || find_run_measure(name) != nullptr;
+    of_run = of_run || find_measure(name, MeasureKind::run) != nullptr;
     of_checkpoint = of_checkpoint || !is_parameter(name);
   }
   if (of_run && of_checkpoint) {
@@ -877,13 +879,13 @@ struct Reader {
 
   static void check(const Entry& in, const Field&, Placed<PlotSpec>& plot) {
     const auto x = in.find("x"), cycles = in.find("cycles");
-    if (const CurveMeasure* curve = find_curve_measure(plot.y); curve != nullptr && x) {
+    if (const Measure* curve = find_measure(plot.y, MeasureKind::curve); curve != nullptr && x) {
       x->reject_value(fmt::format("does not go with {}", curve->name),
                       fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
     }
     if (x && plot.y == plot.x) x->reject_value("is also the y of this plot", "Name another one.");
-    const bool of_run =
-        !plot.y.empty() && is_parameter(plot.y) && find_curve_measure(plot.y) == nullptr;
+    const bool of_run = !plot.y.empty() && is_parameter(plot.y) &&
+                        find_measure(plot.y, MeasureKind::curve) == nullptr;
     if (of_run && !is_parameter(plot.x)) {
       in.reject(fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }

@@ -9,9 +9,6 @@
 #include <set>
 
 #include "analysis/chart.hpp"
-#include "analysis/common_neighbours.hpp"
-#include "analysis/motion.hpp"
-#include "analysis/profiles.hpp"
 #include "analysis/voronoi.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/report/html.hpp"
@@ -40,14 +37,17 @@ void put_word(double value, std::vector<std::byte>& bytes) {
 std::byte byte_of(const GrainField& field, double value) {
   constexpr double most = 254;
   constexpr auto unknown = std::byte{255};
-  if (!field.classes.empty()) return static_cast<std::byte>(static_cast<unsigned>(value));
+  if (std::isnan(value)) return unknown;
+  if (!field.measure->scale.classes.empty()) {
+    return static_cast<std::byte>(static_cast<unsigned>(value));
+  }
   double share = (value - field.low) / (field.high - field.low);
-  if (field.logarithmic) share = std::log(value / field.low) / std::log(field.high / field.low);
+  if (field.measure->scale.logarithmic)
+    share = std::log(value / field.low) / std::log(field.high / field.low);
   if (std::isnan(share)) return unknown;
   return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
 }
 
-constexpr std::size_t kFields = 6;          // those of make_fields()
 constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
 struct ChosenRun {
@@ -107,15 +107,24 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
+/// Those that encode_frame() has in more digits.
+bool has_more_digits(const Measure& measure) {
+  return measure.name == "phi_local" || measure.name == "q6" || measure.name == "structure" ||
+         measure.name == "crystallite";
+}
+
 /// Sets the sizes of each run from its newest readable checkpoint; removes runs without one.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
+  const auto all = all_measures(MeasureKind::grains);
+  const auto fields = static_cast<std::size_t>(
+      std::ranges::count_if(all, [](const Measure* one) { return !has_more_digits(*one); }));
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
       try {
         const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
         run.wall_grains = last.cell.wall_grains.size();
         run.grains = static_cast<std::size_t>(last.state.position.cols());
-        run.bytes = frame_size_in_page(run.grains, run.wall_grains, kFields) + kFactsInPage;
+        run.bytes = frame_size_in_page(run.grains, run.wall_grains, fields) + kFactsInPage;
       } catch (const StoreDamaged& damage) {
         packings.notes.emplace_back(damage.what());
         run.checkpoints.pop_back();
@@ -158,7 +167,7 @@ std::string frame_name(const CheckpointRecord& record) {
   return fmt::format("cycle {:.6g}", record.cycle);
 }
 
-json facts_of(const Measures& measures, double theta) {
+json facts_of(const PackingMeasures& measures, double theta) {
   json facts = json::array();
   if (measures.interior_grains > 0) {
     facts.push_back(to_json(italic("ϕ") + fmt::format(" = {:.4f}", measures.phi)));
@@ -170,25 +179,22 @@ json facts_of(const Measures& measures, double theta) {
 }
 
 /// Ranges are the same for all packings of a run, so that their colours are comparable.
-std::vector<GrainField> make_fields(const Checkpoint& checkpoint, const WallPose& pose,
-                                    const GrainMeasures& grains, Motion motion,
-                                    const MechanicalUnits& units, double pressure_Pa) {
-  GrainField lattice{"lattice", "", 0, 0, false, {"none", "FCC", "HCP", "BCC"}, {}};
-  for (const Lattice of :
-       common_neighbour_analysis(checkpoint.cell, pose, checkpoint.state.position)) {
-    lattice.value.push_back(static_cast<double>(of));
+std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains,
+                                    const RunFacts& run) {
+  std::vector<GrainField> fields;
+  for (const Measure* measure : all_measures(MeasureKind::grains)) {
+    if (has_more_digits(*measure)) continue;
+    GrainField& field = fields.emplace_back(GrainField{.measure = measure});
+    const GrainScale& scale = measure->scale;
+    double unit = 1;
+    if (!scale.parameter.empty()) unit = run.number(std::string(scale.parameter).c_str());
+    if (!(unit > 0)) unit = 1e3;  // the record of the run is damaged
+    field.low = scale.low * unit, field.high = scale.high * unit;
+    const auto found = measures.of_grains.find(measure->name);
+    field.value =
+        found == measures.of_grains.end() ? std::vector(grains, std::nan("")) : found->second;
   }
-  const double high_kPa = pressure_Pa > 0 ? 3e-3 * pressure_Pa : 3;
-  GrainField pressure{"pressure", "kPa", 0, high_kPa, false, {}, grains.pressure};
-  for (double& value : pressure.value) value *= 1e-3 * units.stress_Pa;
-  GrainField contacts{"contacts", "", 0, 12, false, {}, {}};
-  contacts.value.assign(grains.contacts.begin(), grains.contacts.end());
-  GrainField overlap{"overlap", "d", 0, 0.02, false, {}, grains.largest_overlap};
-  GrainField moved{"displacement", "d", 1e-3, 1, true, {}, {}};
-  for (const auto& way : motion.displacement.colwise()) moved.value.push_back(way.norm());
-  GrainField nonaffine{"d2min", "d\u00b2", 1e-6, 1, true, {}, std::move(motion.nonaffine)};
-  return {std::move(lattice), std::move(pressure), std::move(contacts),
-          std::move(overlap), std::move(moved),    std::move(nonaffine)};
+  return fields;
 }
 
 json four_decimals(const std::vector<double>& values, double unit = 1) {
@@ -200,14 +206,17 @@ json four_decimals(const std::vector<double>& values, double unit = 1) {
   return list;
 }
 
-json profiles_json(const Checkpoint& checkpoint, const GrainMeasures& grains,
-                   const MechanicalUnits& units) {
-  const Profiles found = profiles(checkpoint, grains);
-  return {{"height", four_decimals(found.height)},
-          {"phi", four_decimals(found.phi)},
-          {"pressure", four_decimals(found.pressure, 1e-3 * units.stress_Pa)},
-          {"coordination", four_decimals(found.coordination)},
-          {"crystalline", four_decimals(found.crystalline_percent)}};
+json profiles_json(const Measures& measures) {
+  const MeasuredCurve& phi = measures.curves.at("phi_profile");
+  return {{"height", four_decimals(phi.x)},
+          {"phi", four_decimals(phi.y)},
+          {"pressure", four_decimals(measures.curves.at("pressure_profile_Pa").y, 1e-3)},
+          {"coordination", four_decimals(measures.curves.at("coordination_profile").y)},
+          {"crystalline", four_decimals(measures.curves.at("crystalline_profile_percent").y)}};
+}
+
+bool enters_page(const Provider& one) {
+  return one.has(MeasureKind::grains) || one.name == "profiles";
 }
 
 struct PageFrame {
@@ -215,17 +224,13 @@ struct PageFrame {
   double step = 0;
 };
 
-PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointRecord& record,
-                     const MeasureSources& sources) {
-  const Checkpoint checkpoint = store.load_checkpoint(record);
+PageFrame make_frame(const CheckpointRecord& record, const MeasureSources& sources) {
+  const Checkpoint checkpoint = sources.load(record);
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
-  const MechanicalUnits units = mechanical_units(run, record);
-  const json stated = member_of(member_of(run.resolved, "parameters"), "pressure_Pa");
-  const double pressure_Pa = stated.is_number() ? stated.get<double>() : 0;
+  const Measures measures = sources.measures_of(record, checkpoint, analysis, enters_page);
   const std::vector<GrainField> fields =
-      make_fields(checkpoint, pose, analysis.grains,
-                  motion_since(sources.earlier(record, 1), checkpoint), units, pressure_Pa);
+      make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
   for (const GrainField& field : fields) described.push_back(to_json(field));
@@ -240,7 +245,7 @@ PageFrame make_frame(const Store& store, const RunRecord& run, const CheckpointR
              {"top", pose.top},
              {"tan_theta", pose.tan_theta}}},
            {"fields", std::move(described)},
-           {"profiles", profiles_json(checkpoint, analysis.grains, units)},
+           {"profiles", profiles_json(measures)},
            {"origin", std::vector(encoded.origin.begin(), encoded.origin.end())},
            {"step", std::vector(encoded.step.begin(), encoded.step.end())},
            {"data", base64(encoded.bytes)}},
@@ -276,8 +281,16 @@ EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
 }
 
 nlohmann::json to_json(const GrainField& field) {
-  if (!field.classes.empty()) return {{"key", field.key}, {"classes", field.classes}};
-  return {{"key", field.key}, {"unit", field.unit}, {"low", field.low}, {"high", field.high}};
+  const Measure& measure = *field.measure;
+  json described = {{"key", measure.name}, {"label", measure.words}};
+  if (!measure.scale.classes.empty()) {
+    described["classes"] = measure.scale.classes;
+  } else {
+    described.update({{"unit", measure.unit == "1" ? "" : measure.unit},
+                      {"low", field.low},
+                      {"high", field.high}});
+  }
+  return described;
 }
 
 std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {
@@ -306,19 +319,16 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   fit(runs, choice, packings);
 
   std::vector<CheckpointRecord> records;
-  std::vector<const RunRecord*> of_run;
   MeasureSources sources(store);
   for (const ChosenRun& run : runs) {
     for (const CheckpointRecord& record : run.checkpoints) {
       sources.read_run(record.run);
       records.push_back(record);
-      of_run.push_back(&run.run);
     }
   }
   std::vector<PageFrame> frames(records.size());  // null if a checkpoint cannot be read
   const UnreadCheckpoints unread = read_in_parallel(
-      records.size(), workers,
-      [&](std::size_t k) { frames[k] = make_frame(store, *of_run[k], records[k], sources); },
+      records.size(), workers, [&](std::size_t k) { frames[k] = make_frame(records[k], sources); },
       report);
   for (const auto* list : {&unread.damage, &unread.pruned}) {
     packings.notes.insert(packings.notes.end(), list->begin(), list->end());

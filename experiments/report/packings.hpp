@@ -60,17 +60,14 @@ struct EncodedFrame {
 };
 
 /// A further measure of each grain, by which a packing can be coloured. Its byte is a class, or
-/// 254 (value - low) / (high - low), with logarithms if `logarithmic`; 255 if it is unknown.
+/// 254 (value - low) / (high - low), with logarithms if its scale says so; 255 if it is unknown.
 struct GrainField {
-  std::string key;
-  std::string unit = {};
+  const Measure* measure = nullptr;
   double low = 0, high = 0;
-  bool logarithmic = false;
-  std::vector<std::string> classes = {};  ///< names of classes 0, 1, ...; empty for a quantity
-  std::vector<double> value;              ///< of each grain
+  std::vector<double> value = {};  ///< of each grain
 };
 
-/// {"key", "unit", "low", "high"} or {"key", "classes"}.
+/// {"key", "label", "unit", "low", "high"} or {"key", "label", "classes"}.
 nlohmann::json to_json(const GrainField& field);
 
 EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,

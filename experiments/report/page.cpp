@@ -55,7 +55,8 @@ std::string text_of(const Maker& maker) {
 
 /// A ruling with a mark that needs no colour.
 json ruling_json(Ruling ruling) {
-  const char* mark = ruling == Ruling::agrees ? "✓" : ruling == Ruling::differs ? "✗" : "?";
+  const bool good = ruling == Ruling::agrees || ruling == Ruling::supported;
+  const char* mark = ruling == Ruling::undecided ? "?" : good ? "✓" : "✗";
   return {{"name", name_of(ruling)}, {"mark", mark}};
 }
 

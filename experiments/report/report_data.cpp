@@ -169,10 +169,9 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
     json& run = all.emplace_back(json::object());
     for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
       run["cycle"].push_back(checkpoint.cycle);
-      for (const ScalarMeasure& scalar : all_scalar_measures()) {
-        if (scalar.derived() != table_measures().front()) continue;
-        run[std::string(scalar.name)].push_back(
-            rounded(scalar.of(checkpoint.measures), significant));
+      for (const Measure& measure : provider(table_providers().front()).measures) {
+        run[std::string(measure.name)].push_back(
+            rounded(checkpoint.measures.number(measure.name), significant));
       }
     }
     const std::vector<json>& row = runs.rows[k];
@@ -186,7 +185,7 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
 /// Adds the results and traces of each experiment's runs. An experiment without them is named in
 /// data.notes.
 void add_run_tables(const Store& store, const ReportOptions& options, ReportData& data) {
-  const MeasureOptions measuring{options.workers, false, options.measured};
+  const MeasureOptions measuring{.workers = options.workers, .report = options.measured};
   for (ReportExperiment& experiment : data.experiments) {
     RunSelection selection = options.runs;
     selection.experiments = {experiment.manifest.experiment};

@@ -12,8 +12,8 @@
 #include <random>
 #include <utility>
 
-#include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
+#include "analysis/measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/measure_sources.hpp"
@@ -123,14 +123,21 @@ std::string difference(const json& cached, const json& computed, const std::stri
   return a.size() == b.size() ? "" : measure + ": its structure is another one";
 }
 
-/// Of one checkpoint, in the order of all_derived_measures().
+std::vector<const Provider*> kept_providers() {
+  std::vector<const Provider*> kept;
+  for (const Provider& one : all_providers()) {
+    if (one.is_kept()) kept.push_back(&one);
+  }
+  return kept;
+}
+
+/// Of one checkpoint, in the order of kept_providers().
 using Cached = std::vector<std::optional<std::vector<std::byte>>>;
 
 std::vector<DerivedKey> keys_of(const CheckpointRecord& record, MeasureSources& sources) {
+  sources.read_run(record.run);
   std::vector<DerivedKey> keys;
-  for (const DerivedMeasure& measure : all_derived_measures()) {
-    keys.push_back(sources.key(record, measure));
-  }
+  for (const Provider* one : kept_providers()) keys.push_back(sources.key(record, *one));
   return keys;
 }
 
@@ -141,11 +148,11 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
     const Analysis analysis = analyse(checkpoint);
     for (std::size_t m = 0; m < cached.size(); ++m) {
       if (!cached[m]) continue;
-      const DerivedMeasure& measure = all_derived_measures()[m];
+      const Provider& one = *kept_providers()[m];
       UnreadCheckpoints unread;
-      const auto computed = sources.measure(record, checkpoint, analysis, measure, unread);
+      const auto computed = sources.compute(one, record, &checkpoint, &analysis, unread);
       if (!computed) continue;
-      auto found = difference(decode_result(*cached[m]), *computed, measure.name);
+      auto found = difference(decode_result(*cached[m]), *computed, one.name);
       if (!found.empty()) return found;
     }
   } catch (const AnalysisError& error) {

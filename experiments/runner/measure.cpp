@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <exception>
 #include <iterator>
 #include <map>
@@ -17,7 +16,6 @@
 #include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -31,42 +29,38 @@ constexpr std::size_t kBatch = 64;
 class Measuring {
  public:
   Measuring(const Store& store, std::span<const CheckpointRecord> records,
-            std::span<const DerivedMeasure> measures, const MeasureOptions& options)
-      : store_(store),
+            std::span<const std::string> names, const MeasureOptions& options)
+      : records_(records),
         sources_(store, options.cadence),
-        measures_(measures),
         options_(options),
         cache_(store.folder()) {
+    for (const std::string& name : names) add(provider(name));
+    wanted_ = providers_.size();
+    for (const std::string& name : options.also) add(provider(name));
     std::map<std::string_view, std::size_t> known;  // a run of two experiments is listed twice
     for (const CheckpointRecord& record : records) {
+      sources_.read_run(record.run);
       const auto [entry, fresh] = known.try_emplace(record.sha256, distinct_.size());
       if (fresh) distinct_.push_back(&record);
       place_.push_back(entry->second);
     }
-    for (const std::string& name : options.also) {
-      const bool listed = std::ranges::count(measures_, name, &DerivedMeasure::name) > 0;
-      if (!listed && !options.fresh && !options.instead) also_.push_back(&derived_measure(name));
-    }
     for (const CheckpointRecord* record : distinct_) {
-      for (const DerivedMeasure* one : also_) also_keys_.push_back(sources_.key(*record, *one));
-      for (const DerivedMeasure& measure : measures_) {
-        keys_.push_back(sources_.key(*record, measure));
-        for (const std::uint64_t cycles : measure.earlier) {
+      for (std::size_t p = 0; p < providers_.size(); ++p) {
+        keys_.push_back(sources_.key(*record, *providers_[p]));
+        for (const std::uint64_t cycles : providers_[p]->earlier) {
           const CheckpointRecord* other = sources_.find(*record, cycles);
           if (other != nullptr) outcome_.earlier[other->run].emplace(other->step, other->sha256);
         }
       }
     }
-    results_.assign(distinct_.size(), Results(measures_.size()));
+    results_.assign(distinct_.size(), Results(providers_.size()));
   }
 
   MeasuredCheckpoints run() {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const bool lacks = std::ranges::any_of(results_[i], &json::is_null);
-      // A pruned checkpoint cannot be measured again.
-      const bool again = options_.fresh && distinct_[i]->state != CheckpointState::pruned;
-      if (again || lacks) todo_.push_back(i);
+      const auto wanted = std::span(results_[i]).first(wanted_);
+      if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
     }
     outcome_.cached = distinct_.size() - todo_.size();
     UnreadCheckpoints& unread = outcome_;
@@ -81,22 +75,23 @@ class Measuring {
     flush();
     outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
     add_unread(unread_earlier_, outcome_);
-    std::sort(outcome_.changed.begin(), outcome_.changed.end());
-    const bool distinct = place_.size() == distinct_.size();
-    for (const std::size_t i : place_) {
-      outcome_.results.push_back(distinct ? std::move(results_[i]) : results_[i]);
-    }
+    for (std::size_t k = 0; k < records_.size(); ++k) read(records_[k], results_[place_[k]]);
     outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
   }
 
  private:
+  void add(const Provider& one) {
+    const bool listed = std::ranges::find(providers_, &one) != providers_.end();
+    if (one.is_kept() && !listed) providers_.push_back(&one);
+  }
+
   void look_up() {
     const auto found = cache_.get(keys_);
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       if (!found[k]) continue;
       try {
-        results_[k / measures_.size()][k % measures_.size()] = decode_result(*found[k]);
+        results_[k / providers_.size()][k % providers_.size()] = decode_result(*found[k]);
       } catch (const AnalysisError&) {
         // Foreign bytes with a correct hash: computed again and replaced.
       }
@@ -105,35 +100,20 @@ class Measuring {
 
   void compute(std::size_t i) {
     const CheckpointRecord& record = *distinct_[i];
-    const Results before =
-        options_.fresh ? std::exchange(results_[i], Results(measures_.size())) : results_[i];
-    const Checkpoint checkpoint = store_.load_checkpoint(record);
-    const Analysis analysis = options_.instead ? Analysis() : analyse_stored(record, checkpoint);
+    const Checkpoint checkpoint = sources_.load(record);
+    const Analysis analysis = analyse_stored(record, checkpoint);
     std::vector<DerivedObject> objects;
     UnreadCheckpoints unread;
-    bool changed = false;
-    for (std::size_t m = 0; m < measures_.size(); ++m) {
-      if (!results_[i][m].is_null()) continue;
-      auto result = options_.instead
-                        ? std::optional(options_.instead(record, checkpoint))
-                        : sources_.measure(record, checkpoint, analysis, measures_[m], unread);
-      if (!result) {
-        results_[i][m] = before[m];
-        continue;
-      }
-      objects.push_back({keys_[i * measures_.size() + m], encode_result(*result)});
-      const bool known = !before[m].is_null();
-      changed = changed || (known && encode_result(before[m]) != objects.back().content);
-      results_[i][m] = std::move(*result);
-    }
-    for (std::size_t m = 0; m < also_.size(); ++m) {
-      const auto result = sources_.measure(record, checkpoint, analysis, *also_[m], unread);
-      if (result) objects.push_back({also_keys_[i * also_.size() + m], encode_result(*result)});
+    for (std::size_t p = 0; p < providers_.size(); ++p) {
+      if (!results_[i][p].is_null()) continue;
+      auto result = sources_.compute(*providers_[p], record, &checkpoint, &analysis, unread);
+      if (!result) continue;
+      objects.push_back({keys_[i * providers_.size() + p], encode_result(*result)});
+      results_[i][p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
     std::ranges::move(unread.damage, std::back_inserter(unread_earlier_.damage));
     std::ranges::move(unread.pruned, std::back_inserter(unread_earlier_.pruned));
-    if (changed) outcome_.changed.push_back(record.sha256);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
   }
@@ -143,17 +123,33 @@ class Measuring {
     pending_.clear();
   }
 
-  const Store& store_;
+  /// Adds the measures of one record.
+  void read(const CheckpointRecord& record, const Results& results) try {
+    std::vector<std::string>& lacking = outcome_.lacking.emplace_back();
+    Measures& found = outcome_.measures.emplace_back();
+    for (std::size_t p = 0; p < wanted_; ++p) {
+      if (results[p].is_null()) {
+        lacking.push_back(providers_[p]->name);
+      } else {
+        providers_[p]->read(results[p], found);
+      }
+    }
+    sources_.add_recorded(record, found);
+  } catch (const AnalysisError& problem) {
+    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
+                        problem.what() + "); delete it, and the measures are computed again");
+  }
+
+  const std::span<const CheckpointRecord> records_;
   MeasureSources sources_;
-  const std::span<const DerivedMeasure> measures_;
   const MeasureOptions& options_;
+  std::vector<const Provider*> providers_;  // those that are asked for, then MeasureOptions::also
+  std::size_t wanted_ = 0;                  // the number of those that are asked for
   std::vector<const CheckpointRecord*> distinct_;
   std::vector<std::size_t> place_;  // of each record in distinct_
-  std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the measures
-  std::vector<const DerivedMeasure*> also_;
-  std::vector<DerivedKey> also_keys_;  // of each in distinct_, in the order of also_
+  std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the providers
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // of each checkpoint that is left; a thread writes only its own
+  std::vector<Results> results_;  // of each in distinct_; a thread writes only its own
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
@@ -162,6 +158,10 @@ class Measuring {
 };
 
 }  // namespace
+
+bool MeasuredCheckpoints::lacks(std::size_t record, std::string_view provider) const {
+  return std::ranges::find(lacking[record], provider) != lacking[record].end();
+}
 
 void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
   for (const auto lines : {&UnreadCheckpoints::damage, &UnreadCheckpoints::pruned}) {
@@ -218,36 +218,11 @@ Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkp
   }
 }
 
-Measures read_results(std::span<const DerivedMeasure> measures, std::span<const json> results) {
-  Measures found;
-  try {
-    for (std::size_t m = 0; m < measures.size(); ++m) {
-      if (!results[m].is_null()) measures[m].read(results[m], found);
-    }
-  } catch (const AnalysisError& problem) {
-    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
-                        problem.what() + "); delete it, or measure again with --fresh");
-  }
-  return found;
-}
-
-MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint) {
-  const json known = member_of(run.resolved, "parameters");
-  const auto number = [&](const char* key) {
-    const json found = member_of(known, key);
-    return found.is_number() ? found.get<double>() : std::nan("");
-  };
-  const auto raised = checkpoint.observables.find("stiffness_N_per_m");
-  return mechanical_units(
-      raised == checkpoint.observables.end() ? number("stiffness_N_per_m") : raised->second,
-      number("mass_kg"), number("diameter_m"), number("gravity_m_per_s2"));
-}
-
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,
-                                        std::span<const DerivedMeasure> measures,
+                                        std::span<const std::string> providers,
                                         const MeasureOptions& options) {
-  return Measuring(store, records, measures, options).run();
+  return Measuring(store, records, providers, options).run();
 }
 
 }  // namespace shearcell

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -22,16 +22,12 @@ using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 struct MeasureOptions {
   std::size_t workers = 1;
-  bool fresh = false;   ///< compute all of them again and replace the cached ones
-  ReadProgress report;  ///< called as checkpoints are computed
-  /// If given, computes the only measure instead of an analysis.
-  std::function<nlohmann::json(const CheckpointRecord& record, const Checkpoint& checkpoint)>
-      instead = {};
+  ReadProgress report = {};  ///< called as checkpoints are computed
   /// Cycles between the checkpoints that the experiment asks of a run, by its id; 1 for others.
   /// Measures over two checkpoints do not use those that interruptions and other experiments left.
   std::map<std::string, std::uint64_t> cadence = {};
-  /// Names of further measures, which are cached too whenever a checkpoint is analysed (not with
-  /// `fresh`), so that one analysis serves many callers. None may need earlier checkpoints.
+  /// Names of further providers, whose results are cached too whenever a checkpoint is analysed, so
+  /// that one analysis serves many callers. None may need earlier checkpoints.
   std::vector<std::string> also = {};
 };
 
@@ -44,39 +40,32 @@ struct UnreadCheckpoints {
 struct MeasureOutcome : UnreadCheckpoints {
   std::size_t measured = 0;  ///< checkpoints that were analysed now
   std::size_t cached = 0;    ///< checkpoints whose results were in the cache
-  /// With `fresh`: checkpoints whose cached results were different.
-  std::vector<std::string> changed;
   /// SHA-256 of the earlier checkpoints that measures were taken from too, by run and step.
   std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
   std::string cache_trouble;  ///< why results cannot be cached; "" if they can
 };
 
 struct MeasuredCheckpoints : MeasureOutcome {
-  /// In the order of the records; for each, results in the order of the measures. A result is null
-  /// if the checkpoint, or an earlier one that it needs, could not be read.
-  std::vector<std::vector<nlohmann::json>> results;
+  std::vector<Measures> measures;  ///< in the order of the records
+  /// In the order of the records: names of the providers without a result, because the checkpoint,
+  /// or an earlier one that they need, could not be read.
+  std::vector<std::vector<std::string>> lacking;
+
+  bool lacks(std::size_t record, std::string_view provider) const;
 };
 
+/// The measures of these providers, and those that follow from the log (ComputedFrom::record).
 /// Results are cached under the checkpoint's recorded SHA-256, so for a cached result the file is
 /// not read and may be missing; `verify` checks files. Cached and computed results are the same
-/// bytes.
+/// bytes. Throws AnalysisError, with a remedy, for a cached result that is not what its key says.
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,
-                                        std::span<const DerivedMeasure> measures,
+                                        std::span<const std::string> providers,
                                         const MeasureOptions& options);
 
 /// The analysis of a stored checkpoint. Throws StoreDamaged, which names the checkpoint and its
 /// run, if analyse() throws AnalysisError: this program records no such state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
-
-/// All results of one checkpoint, each read by its measure. Throws AnalysisError, with a remedy,
-/// for a result that is not what its key says.
-Measures read_results(std::span<const DerivedMeasure> measures,
-                      std::span<const nlohmann::json> results);
-
-/// SI units of the mechanics of a checkpoint, from the run's resolved parameters; the spring
-/// constant is the checkpoint's own if it records one (stiffening). NaN for what the store lacks.
-MechanicalUnits mechanical_units(const RunRecord& run, const CheckpointRecord& checkpoint);
 
 /// Adds lines; `all` stays sorted and without repetitions.
 void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all);

@@ -4,33 +4,52 @@
 #include <utility>
 
 #include "core/drive.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/outlook.hpp"
+#include "protocols/ledger.hpp"
+#include "protocols/rest.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 
-MeasureSources::Shear MeasureSources::read_shear(const std::string& id) const {
-  Shear shear;
-  const std::optional<Drive> motion = shear_drive(store_.run(id));
-  if (!motion) return shear;
-  shear.cycle_steps = cycle_steps(*motion);
-  for (CheckpointRecord& one : store_.checkpoints(id, Listed::and_pruned)) {
-    const std::uint64_t step = one.step;
-    shear.checkpoints.insert_or_assign(step, std::move(one));
-  }
-  return shear;
+namespace {
+
+RunFacts facts_of(const RunRecord& run) {
+  RunFacts facts{.parameters = member_of(run.resolved, "parameters"), .drive = shear_drive(run)};
+  if (!facts.drive) return facts;
+  const Scene scene = shear_scene(read_stage(run.resolved).parameters);
+  facts.rest = [scene](const Checkpoint& from, double seconds) {
+    return rested(from.cell, scene, from.state, seconds);
+  };
+  facts.next_cycle = [scene, drive = *facts.drive](const Checkpoint& from, std::uint64_t stride) {
+    const Ledger sum = ledger(from.cell, scene, drive, from.state, cycle_steps(drive), stride);
+    return CycleEnergies{sum.work_of_walls, sum.dissipation(), sum.stored()};
+  };
+  return facts;
+}
+
+}  // namespace
+
+MeasureSources::MeasureSources(const std::string& id, const RunRecord& run) {
+  runs_[id].facts = facts_of(run);
 }
 
 void MeasureSources::read_run(const std::string& run) {
   const auto [entry, first] = runs_.try_emplace(run);
-  if (first) entry->second = read_shear(run);
+  if (!first) return;
+  entry->second.facts = facts_of(store_->run(run));
+  if (!entry->second.facts.drive) return;
+  for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
+    const std::uint64_t step = one.step;
+    entry->second.checkpoints.insert_or_assign(step, std::move(one));
+  }
 }
 
-DerivedKey MeasureSources::key(const CheckpointRecord& record, const DerivedMeasure& measure) {
-  if (measure.earlier.empty()) return {record.sha256, measure.key(), analysis_version};
-  read_run(record.run);
-  std::string text = measure.key();
-  for (const std::uint64_t cycles : measure.earlier) {
+DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider) const {
+  std::string text = provider.key();
+  for (const std::uint64_t cycles : provider.earlier) {
     const CheckpointRecord* other = find(record, cycles);
     text += " " + (other == nullptr ? "none" : other->sha256);
   }
@@ -40,32 +59,32 @@ DerivedKey MeasureSources::key(const CheckpointRecord& record, const DerivedMeas
 const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record,
                                              std::uint64_t cycles) const {
   const auto run = runs_.find(record.run);
-  if (run == runs_.end()) return nullptr;
-  const Shear& shear = run->second;
-  const std::uint64_t back = cycles * shear.cycle_steps;
-  if (shear.cycle_steps == 0 || record.step < back) return nullptr;
+  if (run == runs_.end() || !run->second.facts.drive) return nullptr;
+  const std::uint64_t steps = cycle_steps(*run->second.facts.drive), back = cycles * steps;
+  if (record.step < back) return nullptr;
   const auto every = cadence_.find(record.run);
-  const std::uint64_t step = record.step - back, cycle = step / shear.cycle_steps;
-  const bool whole = step % shear.cycle_steps == 0;
+  const std::uint64_t step = record.step - back, cycle = step / steps;
+  const bool whole = step % steps == 0;
   if (whole && every != cadence_.end() && cycle % every->second != 0) return nullptr;
-  const auto found = shear.checkpoints.find(step);
-  return found == shear.checkpoints.end() ? nullptr : &found->second;
+  const auto found = run->second.checkpoints.find(step);
+  return found == run->second.checkpoints.end() ? nullptr : &found->second;
 }
 
-std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& record,
-                                                      const Checkpoint& checkpoint,
-                                                      const Analysis& analysis,
-                                                      const DerivedMeasure& measure,
+std::optional<nlohmann::json> MeasureSources::compute(const Provider& provider,
+                                                      const CheckpointRecord& record,
+                                                      const Checkpoint* checkpoint,
+                                                      const Analysis* analysis,
                                                       UnreadCheckpoints& unread) const {
   Checkpoint other;
-  const auto load = [&](std::uint64_t cycles) -> const Checkpoint* {
+  const auto load_earlier = [&](std::uint64_t cycles) -> const Checkpoint* {
     const CheckpointRecord* found = find(record, cycles);
     if (found == nullptr) return nullptr;
-    other = store_.load_checkpoint(*found);
+    other = load(*found);
     return &other;
   };
   try {
-    return measure.from({analysis, &checkpoint, load});
+    return provider.compute(
+        {analysis, checkpoint, load_earlier, &record, &runs_.at(record.run).facts});
   } catch (const FilePruned& pruned) {
     unread.pruned.emplace_back(pruned.what());
   } catch (const StoreDamaged& damage) {
@@ -74,10 +93,28 @@ std::optional<nlohmann::json> MeasureSources::measure(const CheckpointRecord& re
   return std::nullopt;
 }
 
-std::optional<Checkpoint> MeasureSources::earlier(const CheckpointRecord& record,
-                                                  std::uint64_t cycles) const {
-  const CheckpointRecord* found = find(record, cycles);
-  return found == nullptr ? std::nullopt : store_.load_if_readable(*found);
+void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& measures) const {
+  UnreadCheckpoints none;
+  for (const Provider& one : all_providers()) {
+    if (one.from != ComputedFrom::record) continue;
+    if (const auto result = compute(one, record, nullptr, nullptr, none)) {
+      one.read(*result, measures);
+    }
+  }
+}
+
+Measures MeasureSources::measures_of(const CheckpointRecord& record, const Checkpoint& checkpoint,
+                                     const Analysis& analysis,
+                                     bool (*wanted)(const Provider&)) const {
+  UnreadCheckpoints unread;
+  Measures measures;
+  for (const Provider& one : all_providers()) {
+    if (!wanted(one)) continue;
+    const auto result = compute(one, record, &checkpoint, &analysis, unread);
+    if (result) one.read(*result, measures);
+  }
+  add_recorded(record, measures);
+  return measures;
 }
 
 }  // namespace shearcell

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The checkpoints of a store that a measure is taken from: its own, and earlier ones of its run.
+// What the measures of a store's checkpoints are computed from: the checkpoint, earlier ones of its
+// run, and the run.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 #include "experiments/runner/measure.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/store.hpp"
@@ -20,42 +21,48 @@ class MeasureSources {
  public:
   /// `cadence` is MeasureOptions::cadence.
   explicit MeasureSources(const Store& store, std::map<std::string, std::uint64_t> cadence = {})
-      : store_(store), cadence_(std::move(cadence)) {}
+      : store_(&store), cadence_(std::move(cadence)) {}
+  /// Of one run, under this id, without its earlier checkpoints.
+  MeasureSources(const std::string& id, const RunRecord& run);
 
-  /// Reads the log for find(), measure() and earlier(), unless it has; key() does it where needed.
+  /// Reads the log, unless it has. The other functions need this of the checkpoint's run, and then
+  /// any number of threads may call them.
   void read_run(const std::string& run);
 
   /// The checkpoint of the same run so many cycles earlier, which the experiment asks for; null if
-  /// it does not exist. Call read_run() first. Valid as long as this object.
+  /// it does not exist. Valid as long as this object.
   const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles) const;
 
-  /// The key under which a result is cached; it also names the earlier checkpoints that the measure
-  /// needs, for which the log is read.
-  DerivedKey key(const CheckpointRecord& record, const DerivedMeasure& measure);
+  /// The key under which a result is cached; it also names the earlier checkpoints that the
+  /// provider needs.
+  DerivedKey key(const CheckpointRecord& record, const Provider& provider) const;
 
-  /// The measure of a loaded checkpoint; nothing, and a line in `unread`, if an earlier checkpoint
-  /// cannot be read. For a measure that needs earlier checkpoints, call read_run() first. Then any
-  /// number of threads may call this.
-  std::optional<nlohmann::json> measure(const CheckpointRecord& record,
-                                        const Checkpoint& checkpoint, const Analysis& analysis,
-                                        const DerivedMeasure& measure,
+  const RunFacts& facts(const std::string& run) const { return runs_.at(run).facts; }
+  Checkpoint load(const CheckpointRecord& record) const { return store_->load_checkpoint(record); }
+
+  /// The provider's result; nothing, and a line in `unread`, if an earlier checkpoint cannot be
+  /// read. Without `checkpoint`, for a provider that needs only the record.
+  std::optional<nlohmann::json> compute(const Provider& provider, const CheckpointRecord& record,
+                                        const Checkpoint* checkpoint, const Analysis* analysis,
                                         UnreadCheckpoints& unread) const;
 
-  /// The checkpoint of the same run so many cycles earlier; nothing if it does not exist or cannot
-  /// be read. Call read_run() first.
-  std::optional<Checkpoint> earlier(const CheckpointRecord& record, std::uint64_t cycles) const;
+  /// Adds the measures that follow from the log.
+  void add_recorded(const CheckpointRecord& record, Measures& measures) const;
+
+  /// The measures of a loaded checkpoint by these providers, and those that follow from the log,
+  /// without those that need an earlier checkpoint that cannot be read.
+  Measures measures_of(const CheckpointRecord& record, const Checkpoint& checkpoint,
+                       const Analysis& analysis, bool (*wanted)(const Provider&)) const;
 
  private:
-  struct Shear {
-    std::uint64_t cycle_steps = 0;
-    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step
+  struct Run {
+    RunFacts facts = {};
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // of a shear, by step
   };
 
-  Shear read_shear(const std::string& id) const;
-
-  const Store& store_;
+  const Store* store_ = nullptr;
   std::map<std::string, std::uint64_t> cadence_;
-  std::map<std::string, Shear> runs_;  // by id; empty for a run that does not shear
+  std::map<std::string, Run> runs_;  // by id
 };
 
 }  // namespace shearcell

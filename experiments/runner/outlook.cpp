@@ -62,7 +62,7 @@ End end_for(const RunRecord& stage, const Membership& ask,
   End end{static_cast<double>(ask.target_cycles)};
   const std::optional<Until> until = until_of(ask);
   if (!until) return end;
-  const ScalarMeasure* measure = find_measure(name_of(until->measure));
+  const std::string_view measure = name_of(until->measure);
   const auto every = static_cast<double>(ask.checkpoint_every);
   for (const SeenCheckpoint& one : checkpoints) {
     if (std::fmod(one.record.cycle, every) != 0) continue;
@@ -74,7 +74,7 @@ End end_for(const RunRecord& stage, const Membership& ask,
       if (!end.reached) end.undecided = &one.record;
       break;
     }
-    if (measure->of(*one.measures) < until->value) continue;
+    if (one.measures->number(measure) < until->value) continue;
     end.reached = one.record.cycle;
     break;
   }
@@ -274,12 +274,12 @@ void measure_from(const Store& store, const CheckpointRecord& first,
     if (chosen.size() == options.workers) break;
   }
   // The crystallites come from the same analysis, and figures need them.
-  static const std::array measures = {derived_measure("scalars"), derived_measure("crystallites")};
-  const auto results = measure_checkpoints(store, records, measures,
-                                           {.workers = options.workers, .report = options.report})
-                           .results;
+  static const std::array<std::string, 1> scalars = {"scalars"};
+  const MeasureOptions also = {
+      .workers = options.workers, .report = options.report, .also = {"crystallites"}};
+  MeasuredCheckpoints found = measure_checkpoints(store, records, scalars, also);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (!results[k].front().is_null()) chosen[k]->measures = read_results(measures, results[k]);
+    if (!found.lacks(k, "scalars")) chosen[k]->measures = std::move(found.measures[k]);
   }
   if (!chosen.front()->measures) refuse_unread(first);
 }

@@ -53,7 +53,10 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
   for (int n = 0; n <= cycles; ++n) {
     CheckpointMeasures checkpoint;
     checkpoint.cycle = n;
-    checkpoint.measures.interior_grains = 3335;
+    checkpoint.measures.numbers = {{"interior_grains", 3335},  {"largest_crystallite", 0},
+                                   {"crystalline_percent", 0}, {"phi", 0},
+                                   {"phi_uncorrected", 0},     {"mean_overlap_d", 0},
+                                   {"contacts_per_grain", 0}};
     fill(n, checkpoint.measures);
     run.checkpoints.push_back(checkpoint);
   }
@@ -64,10 +67,10 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
 inline FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles,
                             double shift) {
   return made_up_run("fluid", fluid, seed, cycles, [shift](int n, Measures& m) {
-    m.phi = 0.6005 + 0.01 * n + shift;
-    m.phi_uncorrected = 0.61 + 0.01 * n + shift;
-    m.mean_overlap = 0.002;
-    m.crystalline_percent = n + 100 * shift;
+    m.numbers["phi"] = 0.6005 + 0.01 * n + shift;
+    m.numbers["phi_uncorrected"] = 0.61 + 0.01 * n + shift;
+    m.numbers["mean_overlap_d"] = 0.002;
+    m.numbers["crystalline_percent"] = n + 100 * shift;
   });
 }
 

@@ -18,10 +18,10 @@ namespace {
 FigureRun rising(std::uint64_t seed, double start, double gain = 0, double excess = 0,
                  int cycles = 60) {
   FigureRun run = made_up_run("fluid", "still", seed, cycles, [=](int n, Measures& m) {
-    m.phi = start + 0.001 * n + (n > 0 ? gain : 0);
-    m.crystalline_percent = 1000 * (m.phi - 0.646) + excess;
-    m.mean_overlap = 0.002 * (1 + excess);
-    m.largest_crystallite = static_cast<std::size_t>(n);
+    m.numbers["phi"] = start + 0.001 * n + (n > 0 ? gain : 0);
+    m.numbers["crystalline_percent"] = 1000 * (m.numbers["phi"] - 0.646) + excess;
+    m.numbers["mean_overlap_d"] = 0.002 * (1 + excess);
+    m.numbers["largest_crystallite"] = n;
   });
   run.parent = std::to_string(seed);
   return run;
@@ -45,9 +45,9 @@ const Claim equal = {"equal", 0.001};
 
 TEST(Scalars, AtOneCycleOrOverSeveral) {
   const FigureRun run = rising(1, 0.62);
-  EXPECT_NEAR(over_cycles("phi", &Measures::phi, 10, 10).of(run).value, 0.63, 1e-12);
+  EXPECT_NEAR(over_cycles("phi", "phi", 10, 10).of(run).value, 0.63, 1e-12);
   EXPECT_NEAR(early_phi().of(run).value, 0.628, 1e-12);
-  EXPECT_EQ(over_cycles("phi", &Measures::phi, 10, 10).name, "phi at cycle 10");
+  EXPECT_EQ(over_cycles("phi", "phi", 10, 10).name, "phi at cycle 10");
 }
 
 TEST(Scalars, ReportWhyARunHasNone) {
@@ -60,7 +60,7 @@ TEST(Scalars, ReportWhyARunHasNone) {
   EXPECT_EQ(early_phi().of(run).missing, Missing::undefined);
   EXPECT_EQ(percentage_over_phi().of(rising(1, 0.62, 0, 0, 30)).missing, Missing::too_short);
   EXPECT_EQ(percentage_over_phi().of(rising(1, 0.66)).missing, Missing::too_late);
-  EXPECT_EQ(onset_phi(onset_by_size).of(rising(1, 0.62, 0, 0, 10)).missing, Missing::too_short);
+  EXPECT_EQ(onset_phi().of(rising(1, 0.62, 0, 0, 10)).missing, Missing::too_short);
 }
 
 TEST(Scalars, PercentageIsTheMeanOverTheWindow) {
@@ -83,7 +83,7 @@ TEST(Compare, RunsThatShareAPackingArePaired) {
 TEST(Compare, RunsArePairedWithoutTheirFirstCheckpointAndWithoutInteriorGrains) {
   Runs a = group(4, 0.0002), b = group(4, 0);
   for (FigureRun& run : a) run.checkpoints.erase(run.checkpoints.begin());
-  for (FigureRun& run : b) run.checkpoints.front().measures.phi = std::nan("");
+  for (FigureRun& run : b) run.checkpoints.front().measures.numbers["phi"] = std::nan("");
   EXPECT_EQ(compare(equal, early_phi(), pointers(a), pointers(b)).note,
             "4 pairs of runs that share a packing");
 }
@@ -97,7 +97,7 @@ TEST(Compare, OthersAreIndependent) {
 }
 
 TEST(Compare, RelativeDifferences) {
-  Scalar overlap = over_cycles("overlap", &Measures::mean_overlap, 1, 1);
+  Scalar overlap = over_cycles("overlap", "mean_overlap_d", 1, 1);
   overlap.relative = true;
   const Claim claim = {"overlap", 0.03};
   const Verdict verdict =
@@ -109,15 +109,17 @@ TEST(Compare, RelativeDifferences) {
 }
 
 TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
-  Scalar overlap = over_cycles("overlap", &Measures::mean_overlap, 1, 1);
+  Scalar overlap = over_cycles("overlap", "mean_overlap_d", 1, 1);
   overlap.relative = true;
   Runs a = group(4, 0, 0.02, 11);
-  for (CheckpointMeasures& checkpoint : a[0].checkpoints) checkpoint.measures.mean_overlap = 0;
+  for (CheckpointMeasures& checkpoint : a[0].checkpoints)
+    checkpoint.measures.numbers["mean_overlap_d"] = 0;
   const Claim claim = {"overlap", 0.03};
   const Verdict one = compare(claim, overlap, pointers(a), pointers(group(4, 0)));
   EXPECT_EQ(one.note, "3 and 4 independent runs; 1 of 8 runs have no value at cycle 1");
   EXPECT_EQ(one.runs, 3U);
-  for (CheckpointMeasures& checkpoint : a[1].checkpoints) checkpoint.measures.mean_overlap = 0;
+  for (CheckpointMeasures& checkpoint : a[1].checkpoints)
+    checkpoint.measures.numbers["mean_overlap_d"] = 0;
   EXPECT_FALSE(compare(claim, overlap, pointers(a), pointers(group(4, 0))).estimate.has_value());
 }
 
@@ -166,13 +168,17 @@ TEST(Compare, MostRunsOfTheLargerGroupMustHavePartners) {
 TEST(CompareWaits, CountsRunsThatEndBefore) {
   Runs a = group(4, 0), b = group(4, 0, 0, 11);
   a[0].checkpoints.resize(12);
-  const Verdict verdict = compare_waits({"onset", 1}, "the onset", waits_for_onset(pointers(a)),
-                                        waits_for_onset(pointers(b)));
+  const Verdict verdict =
+      compare_waits({"onset", 1}, "the onset", waits_for_onset, pointers(a), pointers(b));
+  const FigureTable entered = entered_table(std::span(&verdict, 1));
+  EXPECT_EQ(entered.rows.size(), 8U);
+  EXPECT_EQ(std::get<std::string>(entered.rows[0].back()), "ends before");
+  EXPECT_EQ(std::get<std::string>(entered.rows[1].back()), "");
   EXPECT_EQ(
       verdict.note,
       "first: median cycle 16 (1 of 4 runs end before theirs); second: median cycle 16 (0 of 4 "
       "runs end before theirs)");
-  const std::vector<Waiting> waits = waits_for(pointers(a), &Measures::crystalline_percent, 5);
+  const std::vector<Waiting> waits = waits_for(pointers(a), "crystalline_percent", 5);
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);
   EXPECT_EQ(waits[1].cycle, 29) << "phi = 0.622 + 0.029";

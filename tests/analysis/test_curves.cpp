@@ -138,7 +138,7 @@ TEST(Curves, TheKeyIsSilentWhereAMeanEndsWithTheFirstRun) {
 
 TEST(Curves, TheKeyCountsRunsThatHaveTheMeasure) {
   std::vector<FigureRun> runs = ten_runs();
-  for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.phi = std::nan("");
+  for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.numbers["phi"] = std::nan("");
   const Key key = key_of(plot_figure({.name = "own", .y = "phi"}).make(runs).tables.at(0));
   EXPECT_EQ(std::ranges::count_if(key, [](auto& t) { return has(t, "(4 of 5 runs)"); }), 1);
 }
@@ -231,7 +231,7 @@ TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
   ASSERT_EQ(rest.size(), 3U);
   for (std::size_t n = 0; n < rest.size(); ++n) {
     EXPECT_EQ(rest[n].x, static_cast<double>(4 + n));
-    EXPECT_EQ(rest[n].y, runs[0].checkpoints[4 + n].measures.phi);
+    EXPECT_EQ(rest[n].y, runs[0].checkpoints[4 + n].measures.numbers["phi"]);
   }
   EXPECT_TRUE(table.chart.series[1].thin);
   EXPECT_TRUE(table.chart.series[1].title.empty());
@@ -314,8 +314,8 @@ TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
 /// A crystallite grows by one grain a cycle from `first` on.
 FigureRun crystallizing(double drag, std::uint64_t seed, int first, int cycles) {
   FigureRun run = made_up_run("drag_kg_per_s", drag, seed, cycles, [=](int n, Measures& m) {
-    m.phi = 0.6 + 0.001 * n;
-    m.largest_crystallite = static_cast<std::size_t>(std::max(0, n - first));
+    m.numbers["phi"] = 0.6 + 0.001 * n;
+    m.numbers["largest_crystallite"] = std::max(0, n - first);
   });
   return run;
 }
@@ -354,7 +354,7 @@ TEST(OwnPlot, NamesTheStepsOfAStiffening) {
   };
   EXPECT_EQ(x_name(), "shear cycle");
   for (FigureRun& run : runs) {
-    run.checkpoints.front().stiffness_N_per_m = 654;
+    run.checkpoints.front().measures.numbers["raised_stiffness_N_per_m"] = 654;
     EXPECT_EQ(x_name(),
               &run == &runs.back() ? "step of the stiffening" : "cycle or step of the stiffening");
   }
@@ -383,7 +383,8 @@ TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   EXPECT_NEAR(verdict().estimate.value(), -3, 1e-9);
   claim.between = {hard, soft};
   claim.is = Relation::higher;
-  EXPECT_EQ(verdict().ruling, Ruling::agrees);
+  EXPECT_EQ(verdict().ruling, Ruling::supported);
+  EXPECT_EQ(verdict().entered.rows.size(), 2 * verdict().runs) << "each run of both sides";
   EXPECT_EQ(verdict().claim,
             "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for fluid=still, b=0.004 "
             "kg/s than for fluid=still, b=0.001 kg/s")

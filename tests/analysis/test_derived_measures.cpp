@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cached results are restored bit by bit, and change only together with analysis_version.
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,14 +27,22 @@ Analysis pinned_analysis() {
   return analyse(p.cell, p.pose, p.grains);
 }
 
+nlohmann::json scalars_of(const Analysis& analysis) {
+  return provider("scalars").compute({&analysis});
+}
+
+nlohmann::json crystallites_of(const Analysis& analysis) {
+  return provider("crystallites").compute({&analysis});
+}
+
 TEST(DerivedMeasures, ResultsArePinnedToTheVersion) {
-  const nlohmann::json result = derived_measure("scalars").from({pinned_analysis()});
+  const nlohmann::json result = scalars_of(pinned_analysis());
   const std::string hash = sha256_hex(encode_result(result));
   // When this fails the results have changed: raise analysis_version, then state the new hash.
   ASSERT_EQ(analysis_version, 2U);
   EXPECT_EQ(hash, "20681c6fb6351d74f819276ed6e57db8cc5e725a96c76234e52818dbf1d320ed")
       << result.dump(1);
-  EXPECT_EQ(derived_measure("scalars").key(),
+  EXPECT_EQ(provider("scalars").key(),
             "scalars {\"connecting_face\":0.01,\"crystalline_phi_local\":0.72,"
             "\"interior_distance_d\":1.5,\"q6_fcc\":0.575,\"q6_hcp\":0.485,\"q6_tolerance\":0.02,"
             "\"rough_wall_surface_d\":0.375}");
@@ -42,28 +50,26 @@ TEST(DerivedMeasures, ResultsArePinnedToTheVersion) {
 
 Measures read_scalars(const nlohmann::json& result) {
   Measures measures;
-  derived_measure("scalars").read(result, measures);
+  provider("scalars").read(result, measures);
   return measures;
 }
 
 TEST(DerivedMeasures, EveryScalarIsRestoredBitByBit) {
   const Analysis analysis = pinned_analysis();
-  const Measures& m = analysis.measures;
-  const nlohmann::json kept = derived_measure("scalars").from({analysis});
+  const PackingMeasures& m = analysis.measures;
+  const nlohmann::json kept = scalars_of(analysis);
   const Measures back = read_scalars(decode_result(encode_result(kept)));
-  std::size_t scalars = 0;
-  for (const ScalarMeasure& scalar : cached_scalar_measures()) {
-    if (scalar.derived() != "scalars") continue;
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(scalar.of(back)),
-              std::bit_cast<std::uint64_t>(scalar.of(m)))
-        << scalar.name;
-    ++scalars;
+  // Each of PackingMeasures, and N, which is not a measure.
+  EXPECT_EQ(kept.size() * sizeof(double), sizeof(PackingMeasures)) << "a member is not kept";
+  EXPECT_EQ(back.numbers.size() + 1, kept.size());
+  for (const auto& [name, value] : back.numbers) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(value),
+              std::bit_cast<std::uint64_t>(kept.at(name).get<double>()))
+        << name;
   }
-  // Each but phi_at_rest, which is kept by itself.
-  EXPECT_EQ((scalars + 1) * sizeof(double), sizeof(Measures) - sizeof(m.mechanics) -
-                                                sizeof(MechanicalUnits) - sizeof(m.numbers) -
-                                                sizeof(m.curves) - sizeof(m.crystallite_map))
-      << "a scalar has no entry";
+  EXPECT_EQ(back.number("phi"), m.phi);
+  EXPECT_EQ(back.number("hcp_percent"), m.hcp_percent);
+  EXPECT_EQ(back.number("largest_crystallite"), static_cast<double>(m.largest_crystallite));
 }
 
 TEST(DerivedMeasures, EveryKindOfNumberIsRestored) {
@@ -79,8 +85,7 @@ TEST(DerivedMeasures, CrystallitesAreRestoredBitByBit) {
   const Analysis analysis = pinned_analysis();
   const CrystalliteMap& map = analysis.crystallites;
   ASSERT_FALSE(map.grain.empty());
-  const std::vector<std::byte> bytes =
-      encode_result(derived_measure("crystallites").from({analysis}));
+  const std::vector<std::byte> bytes = encode_result(crystallites_of(analysis));
   const CrystalliteMap back = read_crystallite_map(decode_result(bytes));
   EXPECT_EQ(back.grain, map.grain);
   EXPECT_EQ(back.label, map.label);
@@ -94,7 +99,7 @@ TEST(DerivedMeasures, CrystallitesAreRestoredBitByBit) {
 }
 
 TEST(DerivedMeasures, InconsistentCrystallitesAreRejected) {
-  const nlohmann::json good = derived_measure("crystallites").from({pinned_analysis()});
+  const nlohmann::json good = crystallites_of(pinned_analysis());
   for (const char* key : {"grain", "label", "size", "centre_d", "width_d"}) {
     nlohmann::json bad = good;
     bad.erase(key);
@@ -122,19 +127,37 @@ TEST(DerivedMeasures, InconsistentCrystallitesAreRejected) {
   EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a cell without width";
 }
 
-TEST(DerivedMeasures, AScalarSaysWhichEarlierCheckpointItNeeds) {
-  for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    const std::uint64_t back = scalar.cycles_back();
-    if (scalar.derived() == "drive" || scalar.derived() == "ledger") {
-      EXPECT_EQ(back, scalar.derived() == "ledger" ? 1U : 0U) << scalar.name;
-      continue;
+TEST(DerivedMeasures, AMeasureSaysWhichEarlierCheckpointItNeeds) {
+  for (const Provider& one : all_providers()) {
+    for (const Measure& measure : one.measures) {
+      const std::uint64_t back = measure.cycles_back;
+      EXPECT_EQ(back == 0, one.earlier.empty()) << measure.name;
+      EXPECT_EQ(std::ranges::count(one.earlier, back), back == 0 ? 0 : 1) << measure.name;
+      EXPECT_EQ(&provider_of(measure), &one) << measure.name << " is the name of two measures";
     }
-    const std::vector<std::uint64_t>& earlier = derived_measure(scalar.derived()).earlier;
-    EXPECT_EQ(back == 0, earlier.empty()) << scalar.name;
-    EXPECT_EQ(std::ranges::count(earlier, back), earlier.empty() ? 0 : 1) << scalar.name;
   }
-  EXPECT_EQ(find_measure("d2min_10_cycles_d2")->cycles_back(), 10U);
-  EXPECT_EQ(find_measure("msd_100_cycles_d2")->cycles_back(), 100U);
+  EXPECT_EQ(find_measure("d2min_10_cycles_d2")->cycles_back, 10U);
+  EXPECT_EQ(find_measure("msd_100_cycles_d2")->cycles_back, 100U);
+}
+
+TEST(DerivedMeasures, AProviderComputesTheMeasuresThatItLists) {
+  const Checkpoint checkpoint = checkpoint_of(jammed(300, true, 0, 5));
+  const Analysis analysis = analyse(checkpoint);
+  const RunFacts run;
+  std::size_t providers = 0;
+  for (const Provider& one : all_providers()) {
+    if (one.from != ComputedFrom::checkpoint) continue;
+    const auto earlier = [&](std::uint64_t) { return &checkpoint; };
+    const auto result = one.compute({&analysis, &checkpoint, earlier, nullptr, &run});
+    Measures found;
+    one.read(result, found);
+    EXPECT_EQ(found.numbers.size() + found.curves.size() + found.of_grains.size(),
+              one.measures.size())
+        << one.name;
+    for (const auto& [name, values] : found.of_grains) EXPECT_EQ(values.size(), 300U) << name;
+    ++providers;
+  }
+  EXPECT_GT(providers, 10U);
 }
 
 TEST(DerivedMeasures, OtherBytesAreRejected) {
@@ -143,7 +166,7 @@ TEST(DerivedMeasures, OtherBytesAreRejected) {
   EXPECT_THROW(decode_result(broken), AnalysisError);
   EXPECT_THROW(read_scalars(nlohmann::json::object()), AnalysisError);
   EXPECT_THROW(read_scalars(nlohmann::json::array({1})), AnalysisError);
-  nlohmann::json forged = derived_measure("scalars").from({pinned_analysis()});
+  nlohmann::json forged = scalars_of(pinned_analysis());
   forged.at("phi") = 1e300;
   EXPECT_THROW(read_scalars(forged), AnalysisError);
 }

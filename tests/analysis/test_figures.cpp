@@ -46,9 +46,9 @@ TEST(FigureS2, ARowPerVariantAndCycle) {
 TEST(FigureS2, ARowPerVariantAndBinOfPhi) {
   std::vector<FigureRun> runs = {rising_run("still", 1, 2, 0), rising_run("still", 2, 2, 0.01)};
   for (Measures* m : {&runs[0].checkpoints[1].measures, &runs[0].checkpoints[2].measures}) {
-    m->phi = 0.6105;  // a run that stays in a bin counts once there
+    m->numbers["phi"] = 0.6105;  // a run that stays in a bin counts once there
   }
-  runs[0].checkpoints[0].measures.phi = std::nan("");
+  runs[0].checkpoints[0].measures.numbers["phi"] = std::nan("");
   EXPECT_EQ(to_csv(s2(runs)[1]),
             "variant,phi_low,phi_high,phi_mean,phi_standard_error,crystalline_mean_percent,"
             "crystalline_standard_error_percent,runs\n"
@@ -99,8 +99,8 @@ TEST(FigureS7, HasBothHeightsAndEachStiffness) {
 
 TEST(FigureC, DrawsTheLargestCrystalliteAgainstPhi) {
   const auto run = made_up_run("amplitude_rad", 0.1, 1, 1, [](int n, Measures& m) {
-    m.phi = 0.6401 + 0.01 * n;
-    m.largest_crystallite = 30 * static_cast<std::size_t>(n);
+    m.numbers["phi"] = 0.6401 + 0.01 * n;
+    m.numbers["largest_crystallite"] = 30 * n;
   });
   const FigureResult made = find_figure("C")->make(std::vector{run});
   const FigureTable& table = panel(made, "C_largest");
@@ -158,8 +158,8 @@ TEST(FigureS5, TheExperimentHasTheStandardDeviationOfOurRuns) {
   std::vector<FigureRun> runs;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     runs.push_back(made_up_run("amplitude_rad", 0.05, seed, 40, [seed](int n, Measures& m) {
-      m.phi = 0.64 + 0.0005 * n + 0.001 * static_cast<double>(seed);
-      m.largest_crystallite = n < 10 ? 9 : 11;
+      m.numbers["phi"] = 0.64 + 0.0005 * n + 0.001 * static_cast<double>(seed);
+      m.numbers["largest_crystallite"] = n < 10 ? 9 : 11;
     }));
   }
   const FigureResult made = find_figure("S5a")->make(runs);
@@ -249,8 +249,7 @@ TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithoutRuns) {
   for (const Figure& figure : all_figures()) {
     for (const std::vector<FigureRun>& runs : {few, std::vector<FigureRun>{}}) {
       const FigureResult made = figure.make(runs);
-      EXPECT_EQ(overall(made.verdicts).value_or(Ruling::undecided), Ruling::undecided)
-          << figure.name;
+      EXPECT_EQ(rulings_of(made.verdicts)[Ruling::undecided], made.verdicts.size()) << figure.name;
       for (const FigureTable& table : made.tables) {
         EXPECT_GT(fs::file_size(draw(table)), 1000U) << table.name;
       }

@@ -41,6 +41,8 @@ TEST(Follow, BothOfTwoThatMergeGrow) {
   follow(map_of({{1, 2, 3}, {7, 8}}), map_of({{1, 2, 3, 7, 8}}), counts);
   EXPECT_EQ(counts[3].grew, 1U);
   EXPECT_EQ(counts[2].grew, 1U);
+  EXPECT_EQ(counts[2].absorbed, 1U);
+  EXPECT_EQ(counts[3].absorbed, 0U) << "the larger of both";
 }
 
 TEST(GrowthOf, PairsAreTheStatedCyclesApart) {

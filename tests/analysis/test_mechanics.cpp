@@ -9,7 +9,6 @@
 #include <cstring>
 #include <vector>
 
-#include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "core/contact.hpp"
@@ -64,7 +63,7 @@ TEST(Mechanics, OfASqueezedLatticeIsKnown) {
   // A linear flow has no temperature.
   checkpoint.state.velocity.row(0) = (3 * checkpoint.state.position.row(1).array() - 7).matrix();
   const Analysis found = analyse(checkpoint);
-  const Mechanics& m = *found.measures.mechanics;
+  const Mechanics& m = *found.mechanics;
   ASSERT_EQ(found.measures.interior_grains, static_cast<std::size_t>(2 * 2 * n));
   const double stress = overlap / (spacing * spacing);
   EXPECT_LT(largest(stress_of(m) - stress * Eigen::Matrix3d::Identity()), 1e-12);
@@ -90,14 +89,13 @@ TEST(Mechanics, OfASqueezedLatticeIsKnown) {
 
 TEST(Mechanics, TheTemperatureIsThatOfTheFluctuations) {
   Checkpoint checkpoint = squeezed_lattice(6, 0.01);
-  const double without = analyse(checkpoint).measures.mechanics->kinetic_pressure;
+  const double without = analyse(checkpoint).mechanics->kinetic_pressure;
   EXPECT_EQ(without, 0);
   for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
     checkpoint.state.velocity(2, i) = i % 2 == 0 ? 0.5 : -0.5;  // z alternates
   }
   // One grain a cell: a density of 1 / spacing^3.
-  EXPECT_NEAR(analyse(checkpoint).measures.mechanics->kinetic_pressure,
-              0.25 / 3 / std::pow(0.99, 3), 1e-12);
+  EXPECT_NEAR(analyse(checkpoint).mechanics->kinetic_pressure, 0.25 / 3 / std::pow(0.99, 3), 1e-12);
 }
 
 TEST(Mechanics, AGrainWithoutSupportIsARattler) {
@@ -113,7 +111,7 @@ TEST(Mechanics, AGrainWithoutSupportIsARattler) {
   checkpoint.state.position = all(Eigen::all, kept);
   checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, checkpoint.state.position.cols());
   const Analysis found = analyse(checkpoint);
-  EXPECT_NEAR(found.measures.mechanics->rattlers,
+  EXPECT_NEAR(found.mechanics->rattlers,
               100.0 / static_cast<double>(found.measures.interior_grains), 1e-12);
 }
 
@@ -201,7 +199,7 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
     SCOPED_TRACE(theta);
     const Checkpoint checkpoint = checkpoint_of(jammed(700, true, theta, 3));
     const Analysis found = analyse(checkpoint);
-    const Mechanics& m = *found.measures.mechanics;
+    const Mechanics& m = *found.mechanics;
     const BruteForce all = brute_force(checkpoint, found.grains);
     const double scale = all.stress.norm();
     ASSERT_GT(scale, 0);
@@ -228,23 +226,35 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
   }
 }
 
-TEST(Mechanics, IsRestoredBitByBitAndInSIUnits) {
-  const Analysis found = analyse(checkpoint_of(jammed(300, true, 0, 5)));
-  const nlohmann::json kept = derived_measure("mechanics").from({found});
-  EXPECT_EQ(kept.size() * sizeof(double), sizeof(Mechanics)) << "a member is not kept";
-  Measures back;
-  EXPECT_TRUE(std::isnan(find_measure("coordination")->of(back))) << "not measured";
-  derived_measure("mechanics").read(decode_result(encode_result(kept)), back);
-  EXPECT_EQ(std::memcmp(&*back.mechanics, &*found.measures.mechanics, sizeof(Mechanics)), 0);
-  EXPECT_THROW(derived_measure("mechanics").read(nlohmann::json::object(), back), AnalysisError);
-
-  EXPECT_TRUE(std::isnan(find_measure("contact_pressure_Pa")->of(back))) << "k and d are unknown";
-  EXPECT_EQ(find_measure("coordination")->of(back), back.mechanics->coordination);
-  back.units = mechanical_units(654, 2e-5, 3e-3, 9.81);
-  const auto expect = [&](const char* name, double value) {
-    EXPECT_NEAR(find_measure(name)->of(back), value, 1e-12 * std::fabs(value)) << name;
+TEST(Mechanics, IsKeptBitByBitAndInSIUnits) {
+  const Checkpoint checkpoint = checkpoint_of(jammed(300, true, 0, 5));
+  const Analysis found = analyse(checkpoint);
+  const Provider& mechanics = provider("mechanics");
+  EXPECT_EQ(mechanics.measures.size() * sizeof(double), sizeof(Mechanics))
+      << "a member has no measure";
+  const auto measures_of = [&](const RunFacts& run) {
+    Measures back;
+    EXPECT_TRUE(std::isnan(back.number("coordination"))) << "not measured";
+    const nlohmann::json kept = mechanics.compute({&found, &checkpoint, {}, nullptr, &run});
+    mechanics.read(decode_result(encode_result(kept)), back);
+    return back;
   };
-  const Mechanics& m = *back.mechanics;
+  Measures none;
+  EXPECT_THROW(mechanics.read(nlohmann::json::object(), none), AnalysisError);
+
+  const Mechanics& m = *found.mechanics;
+  EXPECT_TRUE(std::isnan(measures_of({}).number("contact_pressure_Pa"))) << "k and d are unknown";
+  EXPECT_EQ(measures_of({}).number("coordination"), m.coordination);
+  const Measures back = measures_of({.parameters = {{"stiffness_N_per_m", 654},
+                                                    {"mass_kg", 2e-5},
+                                                    {"diameter_m", 3e-3},
+                                                    {"gravity_m_per_s2", 9.81}}});
+  const MechanicalUnits units = mechanical_units(654, 2e-5, 3e-3, 9.81);
+  EXPECT_EQ(back.number("stress_xy_Pa"), m.stress_xy * units.stress_Pa);
+  EXPECT_EQ(back.number("rattlers_percent"), m.rattlers);
+  const auto expect = [&](const char* name, double value) {
+    EXPECT_NEAR(back.number(name), value, 1e-12 * std::fabs(value)) << name;
+  };
   expect("contact_pressure_Pa", m.pressure * 654 / 3e-3);
   expect("force_bottom_y_N", m.force_bottom_y * 654 * 3e-3);
   expect("elastic_energy_per_grain_J", m.elastic_energy * 654 * 9e-6);

@@ -7,8 +7,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
+#include "analysis/measures.hpp"
 #include "core/contact.hpp"
 #include "tests/analysis/packings.hpp"
 
@@ -102,12 +102,12 @@ TEST(Motion, MeansAreOverTheRightGrains) {
   later.state.position(2, static_cast<Eigen::Index>(still)) -= 0.02;
   const auto lag = [&](std::uint64_t cycles) { return cycles == 1 ? &earlier : nullptr; };
   Measures m;
-  derived_measure("motion").read(derived_measure("motion").from({analysis, &later, lag}), m);
+  provider("motion").read(provider("motion").compute({&analysis, &later, lag}), m);
   const auto interior = static_cast<double>(analysis.measures.interior_grains);
   EXPECT_NEAR(m.numbers.at("msd_1_cycle_d2"), 4e-4 * (interior - 1) / interior, 1e-15);
   EXPECT_NEAR(m.numbers.at("reversible_percent"), 100 / interior, 1e-12);
   EXPECT_GT(m.numbers.at("d2min_1_cycle_d2"), 0);
-  EXPECT_TRUE(std::isnan(find_measure("msd_10_cycles_d2")->of(m))) << "there is no such checkpoint";
+  EXPECT_TRUE(std::isnan(m.number("msd_10_cycles_d2"))) << "there is no such checkpoint";
 }
 
 TEST(Motion, TheBoundaryOfACrystalHasOtherNeighbours) {

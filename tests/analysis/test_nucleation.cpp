@@ -149,9 +149,9 @@ TEST(FigureS7, CountsRunsOfOnePackingTogether) {
 /// Of `grains` interior grains, at one phi, with an onset just before cycle `onset` (0: none).
 FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double phi = 0.6451) {
   FigureRun run = made_up_run("grains", grains, seed, cycles, [=](int n, Measures& m) {
-    m.phi = phi;
-    m.interior_grains = static_cast<std::size_t>(grains);
-    m.largest_crystallite = onset > 0 && n >= onset ? 16 : 0;  // critical at A = 0.0833
+    m.numbers["phi"] = phi;
+    m.numbers["interior_grains"] = grains;
+    m.numbers["largest_crystallite"] = onset > 0 && n >= onset ? 16 : 0;  // critical at A = 0.0833
   });
   run.parameters["grains"] = grains;
   return run;
@@ -177,7 +177,7 @@ TEST(NucleationRate, IsEventsOverGrainCycles) {
 
 TEST(NucleationRate, LeavesOutRunsThatBeginWithACriticalCrystallite) {
   std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
-  for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.largest_crystallite = 16;
+  for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.numbers["largest_crystallite"] = 16;
   EXPECT_TRUE(nucleation_rates(pointers(runs), Region::interior).empty());
 }
 
@@ -220,7 +220,7 @@ TEST(SizeExponent, IsRecoveredFromSimulatedRuns) {
         }
         runs.push_back(waiting(grains, seed, onset, 60));
         for (CheckpointMeasures& c : runs.back().checkpoints) {
-          c.measures.phi = phi(static_cast<int>(c.cycle));
+          c.measures.numbers["phi"] = phi(static_cast<int>(c.cycle));
         }
       }
     }
@@ -295,7 +295,8 @@ TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
   runs[0] = waiting(1000, 1, 0, 30);
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "none in the small ones";
   for (FigureRun& run : runs) {  // sizes are those of N, whatever number of grains is interior
-    for (CheckpointMeasures& c : run.checkpoints) c.measures.interior_grains += 5 * run.seed;
+    for (CheckpointMeasures& c : run.checkpoints)
+      c.measures.numbers["interior_grains"] += 5 * static_cast<double>(run.seed);
   }
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior));
 }
@@ -315,10 +316,11 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
   EXPECT_NEAR(result.verdicts[0].margin, 1.0 / 6, 1e-12) << "all grains are interior ones here";
   EXPECT_TRUE(find_figure("nucleation")->make(std::span(runs.data(), 1)).verdicts.empty());
-  const auto set_interior_of_small = [&](std::size_t interior) {
+  const auto set_interior_of_small = [&](double interior) {
     for (FigureRun& run : runs) {
       if (number_of(run, "grains") > 1000) continue;
-      for (CheckpointMeasures& c : run.checkpoints) c.measures.interior_grains = interior;
+      for (CheckpointMeasures& c : run.checkpoints)
+        c.measures.numbers["interior_grains"] = interior;
     }
   };
   set_interior_of_small(2000);

@@ -16,17 +16,16 @@ namespace {
 /// 2 to 2000 grains.
 FigureRun logistic(double onset, int cycles = 100) {
   return made_up_run("fluid", "still", 1, cycles, [onset](int n, Measures& m) {
-    m.phi = 0.63 + 0.0005 * n;
-    const double rise = 1 / (1 + std::exp(-(m.phi - onset) / 0.002));
-    m.largest_crystallite =
-        static_cast<std::size_t>(std::lround(2 * std::exp(std::log(1000.0) * rise)));
+    m.numbers["phi"] = 0.63 + 0.0005 * n;
+    const double rise = 1 / (1 + std::exp(-(m.numbers["phi"] - onset) / 0.002));
+    m.numbers["largest_crystallite"] = std::round(2 * std::exp(std::log(1000.0) * rise));
   });
 }
 
 TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
   FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
-    m.phi = 0.64 + 0.001 * n;
-    m.largest_crystallite = 4 * static_cast<std::size_t>(n);
+    m.numbers["phi"] = 0.64 + 0.001 * n;
+    m.numbers["largest_crystallite"] = 4 * n;
   });
   run.parameters["amplitude_rad"] = 0.05;  // critical: 10 grains
   const RunOnset found = onset_by_size(run);
@@ -36,10 +35,10 @@ TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
 }
 
 TEST(OnsetBySize, IsTheFirstPassage) {
-  const std::vector<std::size_t> sizes = {2, 16, 3, 40};
+  const std::vector<double> sizes = {2, 16, 3, 40};
   const FigureRun run = made_up_run("fluid", "still", 1, 3, [&](int n, Measures& m) {
-    m.phi = 0.64 + 0.001 * n;
-    m.largest_crystallite = sizes[static_cast<std::size_t>(n)];
+    m.numbers["phi"] = 0.64 + 0.001 * n;
+    m.numbers["largest_crystallite"] = sizes[static_cast<std::size_t>(n)];
   });
   EXPECT_DOUBLE_EQ(onset_by_size(run).phi, 0.641);
 }

@@ -27,6 +27,8 @@ using Rulings = std::vector<Ruling>;
 constexpr Ruling agrees = Ruling::agrees;
 constexpr Ruling differs = Ruling::differs;
 constexpr Ruling undecided = Ruling::undecided;
+constexpr Ruling supported = Ruling::supported;
+constexpr Ruling refuted = Ruling::refuted;
 
 TEST(Verdict, IsDecidedByIntervalAndMargin) {
   EXPECT_EQ(ruling(-2, 1.9), agrees);
@@ -35,11 +37,11 @@ TEST(Verdict, IsDecidedByIntervalAndMargin) {
   EXPECT_EQ(ruling(2.1, 5), differs);
   EXPECT_EQ(ruling(-5, -2.1), differs);
   EXPECT_EQ(ruling(-5, 5), undecided) << "too wide";
-  EXPECT_EQ(ruling(2.1, 5, Claimed::above), agrees);
-  EXPECT_EQ(ruling(-5, 1.9, Claimed::above), differs);
+  EXPECT_EQ(ruling(2.1, 5, Claimed::above), supported);
+  EXPECT_EQ(ruling(-5, 1.9, Claimed::above), refuted);
   EXPECT_EQ(ruling(1, 3, Claimed::above), undecided);
-  EXPECT_EQ(ruling(-5, 1.9, Claimed::below), agrees);
-  EXPECT_EQ(ruling(2.1, 5, Claimed::below), differs);
+  EXPECT_EQ(ruling(-5, 1.9, Claimed::below), supported);
+  EXPECT_EQ(ruling(2.1, 5, Claimed::below), refuted);
   EXPECT_EQ(decide({"c", 2}, "q", std::nullopt, 0, "").ruling, undecided);
 }
 
@@ -63,14 +65,28 @@ TEST(Verdict, NeedsMoreRunsIfOneSideOfTheIntervalIsLong) {
   EXPECT_EQ(decide({"c", 2}, "q", skewed, 40, "").runs_needed, 41U);
 }
 
-TEST(Verdict, OverallIsTheWorst) {
+TEST(Verdict, HeadlineCountsTheRulings) {
   const Verdict good = decide({"c", 2}, "q", between(0, 1), 6, "");
   const Verdict bad = decide({"c", 2}, "q", between(3, 4), 6, "");
   const Verdict unknown = decide({"c", 2}, "q", std::nullopt, 0, "");
-  EXPECT_FALSE(overall({}).has_value());
-  EXPECT_EQ(overall(std::vector{good, good}), agrees);
-  EXPECT_EQ(overall(std::vector{good, unknown}), undecided);
-  EXPECT_EQ(overall(std::vector{unknown, bad, good}), differs);
+  const Verdict false_direction = decide({"c", 2, Claimed::above}, "q", between(0, 1), 6, "");
+  const auto headline = [](const std::vector<Verdict>& verdicts) {
+    return headline_of(rulings_of(verdicts));
+  };
+  EXPECT_EQ(headline({}), "");
+  EXPECT_EQ(headline({good, good}), "2 agrees");
+  EXPECT_EQ(headline({unknown, good}), "1 agrees, 1 undecided");
+  EXPECT_EQ(headline({unknown, bad, false_direction, good}),
+            "1 agrees, 1 differs, 1 refuted, 1 undecided");
+}
+
+TEST(Verdict, WhatEnteredIsOneTable) {
+  Verdict first = decide({"a, b", 2}, "q", between(0, 1), 6, "");
+  first.entered = {{"group", "value"}, {{"x", 1.5}, {"y", TableValue()}}};
+  Verdict second = decide({"c", 2}, "q", between(0, 1), 6, "");
+  second.entered = {{"group", "size", "grew"}, {{"z", std::int64_t{3}, std::int64_t{4}}}};
+  EXPECT_EQ(to_csv(entered_table(std::vector{first, second})),
+            "claim,group,value,size,grew\n\"a, b\",x,1.5,,\n\"a, b\",y,,,\nc,z,,3,4\n");
 }
 
 TEST(Verdict, JsonHasSixDigitsAndNull) {
@@ -79,10 +95,11 @@ TEST(Verdict, JsonHasSixDigitsAndNull) {
   half.value = 1.0 / 3;
   half.interval.high = infinite;
   half.spread = infinite;
-  EXPECT_EQ(to_json(std::vector{decide({"c", 0.5}, "q", half, 5, "n")}).dump(),
-            R"({"claims":[{"claim":"c","estimate":0.333333,"interval":[-1.0,null],"level":0.9,)"
-            R"("margin":0.5,"note":"n","quantity":"q","runs":5,"runs_needed":null,)"
-            R"("verdict":"undecided"}],"verdict":"undecided"})");
+  EXPECT_EQ(
+      to_json(std::vector{decide({"c", 0.5}, "q", half, 5, "n")}).dump(),
+      R"({"claims":[{"claim":"c","counted":"runs","estimate":0.333333,"interval":[-1.0,null],)"
+      R"("level":0.9,"margin":0.5,"note":"n","quantity":"q","runs":5,"runs_needed":null,)"
+      R"("verdict":"undecided"}],"verdict":"1 undecided"})");
   const auto none = to_json(std::vector{decide({"c", 2}, "q", std::nullopt, 0, "")});
   EXPECT_TRUE(none["claims"][0]["estimate"].is_null() && none["claims"][0]["interval"].is_null());
   EXPECT_TRUE(to_json(std::span<const Verdict>())["verdict"].is_null());
@@ -98,12 +115,13 @@ double noise(std::uint64_t seed, int n) {
 FigureRun crystallizing(const std::string& key, const nlohmann::json& value, std::uint64_t seed,
                         double speed, double excess) {
   return made_up_run(key, value, seed, 110, [=](int n, Measures& m) {
-    m.phi = 0.6301 + speed * n + 0.0005 * noise(seed, n);
-    const double rise = std::max(0.0, m.phi - 0.646) * 900;
-    m.crystalline_percent = rise * (1 + 0.1 * noise(seed + 100, 0)) + (rise > 0 ? excess : 0);
-    m.largest_crystallite = static_cast<std::size_t>(std::max(0.0, m.phi - 0.64) * 3000);
-    m.mean_overlap = 0.0027;
-    m.contacts_per_grain = 6 * (1 + excess / 100);
+    m.numbers["phi"] = 0.6301 + speed * n + 0.0005 * noise(seed, n);
+    const double rise = std::max(0.0, m.numbers["phi"] - 0.646) * 900;
+    m.numbers["crystalline_percent"] =
+        rise * (1 + 0.1 * noise(seed + 100, 0)) + (rise > 0 ? excess : 0);
+    m.numbers["largest_crystallite"] = std::floor(std::max(0.0, m.numbers["phi"] - 0.64) * 3000);
+    m.numbers["mean_overlap_d"] = 0.0027;
+    m.numbers["contacts_per_grain"] = 6 * (1 + excess / 100);
   });
 }
 
@@ -156,7 +174,7 @@ TEST(FigureS3, EachTimeStepAgainstThatOfTheMainText) {
   const auto against = [](int steps, double excess) {
     return rulings("S3", two_groups("steps_per_cycle", 45600, steps, 6, 0.0005, excess));
   };
-  EXPECT_EQ(against(76923, 0), (Rulings{agrees, agrees, agrees, differs}))
+  EXPECT_EQ(against(76923, 0), (Rulings{agrees, agrees, agrees, refuted}))
       << "the overlap is not below 1e-3";
   const auto larger = [&](double excess) {
     const Rulings all = against(20000, excess);
@@ -167,12 +185,13 @@ TEST(FigureS3, EachTimeStepAgainstThatOfTheMainText) {
 }
 
 TEST(FigureB5, PausesCompactFaster) {
-  for (const auto& [speed, ruling] : {std::pair{0.0006, agrees}, std::pair{0.0005, differs}}) {
+  for (const auto& [speed, ruling] : {std::pair{0.0006, supported}, std::pair{0.0005, refuted}}) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);
     for (FigureRun& run : runs) {
       run.seed %= 20;
       run.parent = std::to_string(run.seed);
-      for (CheckpointMeasures& c : run.checkpoints) c.measures.phi_at_rest = c.measures.phi;
+      for (CheckpointMeasures& c : run.checkpoints)
+        c.measures.numbers["phi_at_rest"] = c.measures.numbers["phi"];
       run.parameters["protocol"] = run.swept["protocol"];
     }
     EXPECT_EQ(rulings("B5", runs), (Rulings{ruling, agrees}));
@@ -182,10 +201,10 @@ TEST(FigureB5, PausesCompactFaster) {
 /// A run whose largest crystallite has the critical size at `onset`, and 20 % at cycle `fifth`.
 FigureRun between_walls(const char* walls, std::uint64_t seed, double onset, int fifth, int last) {
   return made_up_run("walls", walls, seed, last, [=](int n, Measures& m) {
-    m.phi = onset - 0.0095 + 0.001 * n;
-    m.largest_crystallite = n < 10 ? 15 : 17;
-    m.crystalline_percent = 20.0 * n / fifth;
-    m.interior_grains = 3395 + seed;
+    m.numbers["phi"] = onset - 0.0095 + 0.001 * n;
+    m.numbers["largest_crystallite"] = n < 10 ? 15 : 17;
+    m.numbers["crystalline_percent"] = 20.0 * n / fifth;
+    m.numbers["interior_grains"] = 3395 + static_cast<double>(seed);
   });
 }
 
@@ -199,12 +218,12 @@ std::vector<FigureRun> walls(int smooth, int rough, int last, double onset = 0.6
 }
 
 TEST(FigureWalls, RoughOnesDelayCrystallization) {
-  EXPECT_EQ(rulings("walls", walls(8, 60, 80)), (Rulings{agrees, agrees, agrees}));
-  EXPECT_EQ(rulings("walls", walls(8, 60, 40)), (Rulings{agrees, agrees, agrees})) << "censored";
-  EXPECT_EQ(rulings("walls", walls(40, 50, 80)), (Rulings{differs, agrees, agrees}));
+  EXPECT_EQ(rulings("walls", walls(8, 60, 80)), (Rulings{supported, agrees, agrees}));
+  EXPECT_EQ(rulings("walls", walls(8, 60, 40)), (Rulings{supported, agrees, agrees})) << "censored";
+  EXPECT_EQ(rulings("walls", walls(40, 50, 80)), (Rulings{refuted, agrees, agrees}));
   EXPECT_EQ(rulings("walls", walls(40, 60, 18)), (Rulings{undecided, agrees, agrees}))
       << "all end before 20 %, smooth ones too";
-  EXPECT_EQ(rulings("walls", walls(8, 60, 80, 0.651)), (Rulings{agrees, differs, agrees}));
+  EXPECT_EQ(rulings("walls", walls(8, 60, 80, 0.651)), (Rulings{supported, differs, agrees}));
 }
 
 TEST(FigureChoices, FindsAChoiceThatMatters) {
@@ -264,7 +283,7 @@ TEST(FigureTable1, OnlySweptParametersMayDiffer) {
 TEST(FigureTable1, AStiffeningVariesTheSpringsAndHasNoTimeStep) {
   FigureRun run = of_table_1("spring_constant", "protocol", "stiffen");
   for (const char* key : {"period_s", "steps_per_cycle"}) run.parameters.erase(key);
-  run.checkpoints.back().stiffness_N_per_m = 65400;
+  run.checkpoints.back().measures.numbers["raised_stiffness_N_per_m"] = 65400;
   expect_rows(std::vector{run},
               {",stiffness_N_per_m,654,654,65400,1,varied\n", ",steps_per_cycle,45600,,,0,none\n",
                ",mass_kg,2e-05,2e-05,2e-05,1,equal\n"});
@@ -278,13 +297,14 @@ std::vector<FigureRun> stiffened(std::size_t systems, double fall, double drift)
   std::vector<FigureRun> runs;
   for (std::size_t seed = 1; seed <= systems; ++seed) {
     FigureRun run = made_up_run("protocol", "stiffen", seed, 9, [=](int n, Measures& m) {
-      m.phi = n == 0 ? 0.6 : 0.635 + drift * (n - 1) / 8;
-      m.phi_uncorrected = 0.655 - fall * (n - 1) / 8;
-      m.mean_overlap = 0.002 * std::pow(10, -0.25 * (n - 1));
+      m.numbers["phi"] = n == 0 ? 0.6 : 0.635 + drift * (n - 1) / 8;
+      m.numbers["phi_uncorrected"] = 0.655 - fall * (n - 1) / 8;
+      m.numbers["mean_overlap_d"] = 0.002 * std::pow(10, -0.25 * (n - 1));
     });
     run.parameters["stiffness_N_per_m"] = 654.0;
     for (CheckpointMeasures& c : run.checkpoints) {
-      c.stiffness_N_per_m = 654 * std::pow(10, 0.25 * std::max(0.0, c.cycle - 1));
+      c.measures.numbers["raised_stiffness_N_per_m"] =
+          654 * std::pow(10, 0.25 * std::max(0.0, c.cycle - 1));
     }
     runs.push_back(run);
   }
@@ -310,12 +330,12 @@ TEST(FigureS1, ClaimsAreAboutTheHundredfoldAlone) {
   for (FigureRun& run : runs) {
     CheckpointMeasures harder = run.checkpoints.back();
     harder.cycle += 1;
-    harder.stiffness_N_per_m *= 10;
-    harder.measures.phi = harder.measures.phi_uncorrected = 0.5;
+    harder.measures.numbers["raised_stiffness_N_per_m"] *= 10;
+    harder.measures.numbers["phi"] = harder.measures.numbers["phi_uncorrected"] = 0.5;
     run.checkpoints.push_back(harder);
   }
   EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, agrees})) << "harder ones do not enter";
-  for (FigureRun& run : runs) run.checkpoints[9].measures.phi = std::nan("");
+  for (FigureRun& run : runs) run.checkpoints[9].measures.numbers["phi"] = std::nan("");
   EXPECT_EQ(rulings("S1", runs), (Rulings{agrees, undecided})) << "no interior grains";
   for (FigureRun& run : runs)
     run.checkpoints.erase(run.checkpoints.begin(), run.checkpoints.begin() + 2);
@@ -336,12 +356,12 @@ TEST(FigureS1, LoadsAreNotPooled) {
 /// ln(largest) steps at `onset` in phi.
 FigureRun nucleating(double amplitude, double gravity, std::uint64_t seed, double onset) {
   FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 110, [=](int n, Measures& m) {
-    m.phi = 0.63 + 0.0004 * n;
-    m.crystalline_percent = std::max(0.0, m.phi - 0.646) * 900;
+    m.numbers["phi"] = 0.63 + 0.0004 * n;
+    m.numbers["crystalline_percent"] = std::max(0.0, m.numbers["phi"] - 0.646) * 900;
     const double at = onset + 0.0004 * noise(seed, 0);
-    m.largest_crystallite =
-        static_cast<std::size_t>(std::lround(1 + 200 / (1 + std::exp(-(m.phi - at) / 0.0006))));
-    m.interior_grains = 8100;
+    m.numbers["largest_crystallite"] =
+        std::round(1 + 200 / (1 + std::exp(-(m.numbers["phi"] - at) / 0.0006)));
+    m.numbers["interior_grains"] = 8100;
   });
   run.parameters["gravity_m_per_s2"] = gravity;
   run.parameters["grains"] = 11400;

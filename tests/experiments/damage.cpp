@@ -4,7 +4,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/objects.hpp"
@@ -88,6 +88,13 @@ Damage at(const std::string& name, const std::function<void(const fs::path&)>& c
 
 std::function<void(const fs::path&)> written(const std::string& bytes) {
   return [=](const fs::path& file) { write_bytes(file, bytes); };
+}
+
+Damage unmeasured(const Damage& damage) {
+  return [=](const fs::path& store) {
+    damage(store);
+    fs::remove(store / DerivedCache::kFile);
+  };
 }
 
 void removed(const fs::path& path) {

@@ -33,6 +33,9 @@ Damage states(const std::function<void(Checkpoint&)>& change);
 /// Changes every kept measure of this name and updates its digest.
 Damage measures(const std::string& name, const std::function<void(nlohmann::json&)>& change);
 
+/// The damage, and no kept measures, so that figures read the files.
+Damage unmeasured(const Damage& damage);
+
 /// Changes a file or folder of the store.
 Damage at(const std::string& name, const std::function<void(const std::filesystem::path&)>& change);
 

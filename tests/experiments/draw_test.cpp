@@ -12,7 +12,6 @@
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/lineage.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "protocols/rest.hpp"
@@ -230,22 +229,24 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
     if (run.kind == "prepare") continue;
     const std::vector<CheckpointRecord> records = store_.checkpoints(run.id);
     const auto at_rest = [&](std::size_t workers) {
-      const std::vector<std::string> names = {"scalars", "at_rest"};
+      const std::vector<std::string> names = {"scalars", "rest"};
       std::vector<double> phi;
-      for (const auto& one : measures_of(store_, records, names, {workers, false, {}}).measures) {
-        phi.push_back(one.value().phi_at_rest);
+      const MeasureOptions how{.workers = workers};
+      for (const Measures& one : measure_checkpoints(store_, records, names, how).measures) {
+        phi.push_back(one.number("phi_at_rest"));
       }
       return phi;
     };
     const std::vector<double> phi = at_rest(2);
     ASSERT_EQ(phi.size(), 3U);
-    EXPECT_TRUE(std::isnan(phi[0])) << "the packings of cycle 0 are the same";
-    Checkpoint checkpoint = store_.load_checkpoint(records[2]);
-    const double recorded = analyse(checkpoint).measures.phi;
-    checkpoint.state = rested(checkpoint.cell, shear_scene(read_stage(run.resolved).parameters),
-                              checkpoint.state, 0.1);
-    EXPECT_EQ(phi[2], analyse(checkpoint).measures.phi);
-    EXPECT_NE(phi[2], recorded);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Checkpoint checkpoint = store_.load_checkpoint(records[k]);
+      const double recorded = analyse(checkpoint).measures.phi;
+      checkpoint.state = rested(checkpoint.cell, shear_scene(read_stage(run.resolved).parameters),
+                                checkpoint.state, 0.1);
+      EXPECT_EQ(phi[k], analyse(checkpoint).measures.phi);
+      EXPECT_NE(phi[k], recorded);
+    }
     EXPECT_EQ(at_rest(1)[2], phi[2]) << "as kept";
   }
 }
@@ -283,7 +284,9 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   const auto files = contents("figures");
   const auto verdict = nlohmann::json::parse(files.at("S2.verdict.json"));
   EXPECT_EQ(verdict.at("figure"), "S2");
-  EXPECT_EQ(verdict.at("verdict"), "undecided");
+  EXPECT_EQ(verdict.at("verdict"), "3 undecided");
+  EXPECT_TRUE(
+      files.at("S2.verdict.csv").starts_with("claim,group,seed,packing,value,missing,cycle\n"));
   EXPECT_EQ(verdict.at("runs"), (nlohmann::json{{"fluid=still", 1}, {"fluid=cell", 1}}));
   EXPECT_EQ(verdict.at("claims").size(), 3U);
   const auto lineage = nlohmann::json::parse(files.at("S2.lineage.json"));

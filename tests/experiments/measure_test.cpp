@@ -25,14 +25,14 @@ class Measure : public DrawingTest {
  protected:
   void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
 
-  FigureSummary make(const std::string& name, bool fresh = false) {
-    FigureOptions options;
-    options.fresh = fresh;
-    return draw(name, kS2, options);
-  }
+  FigureSummary make(const std::string& name) { return draw(name, kS2, {}); }
   std::string csv(const std::string& name) const {
     const std::filesystem::path folder = folder_.path() / name / "tiny/base";
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
+  }
+  /// Of `verify --measures` with every checkpoint.
+  std::vector<Finding> findings() const {
+    return check_measures(store_, store_.folder(), 1000, 1).findings;
   }
   std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }
   void sql(const std::string& statement) const {
@@ -41,7 +41,7 @@ class Measure : public DrawingTest {
   /// Keeps another phi of a checkpoint, under a right digest.
   void keep_phi(const CheckpointRecord& record, double phi) const {
     DerivedCache kept(store_.folder());
-    const DerivedKey key{record.sha256, derived_measure("scalars").key(), analysis_version};
+    const DerivedKey key{record.sha256, provider("scalars").key(), analysis_version};
     nlohmann::json scalars = decode_result(kept.get(std::span(&key, 1)).front().value());
     scalars["phi"] = phi;
     const DerivedObject object{key, encode_result(scalars)};
@@ -61,10 +61,7 @@ TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytes) {
   EXPECT_EQ(make("second").measured, 0U);
   std::filesystem::remove(cache());
   EXPECT_EQ(make("third").measured, 6U);
-  const FigureSummary fresh = make("fourth", true);
-  EXPECT_EQ(fresh.measured, 6U);
-  EXPECT_TRUE(fresh.changed.empty());
-  for (const char* other : {"second", "third", "fourth"}) EXPECT_EQ(csv(other), csv("first"));
+  for (const char* other : {"second", "third"}) EXPECT_EQ(csv(other), csv("first"));
   EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
 }
 
@@ -207,24 +204,26 @@ TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
 }
 
 // As when the analysis was changed and its version was not.
-TEST_F(Measure, FreshNamesCachedValuesThatDiffer) {
+TEST_F(Measure, VerifyNamesCachedValuesThatDiffer) {
   make("first");
+  EXPECT_TRUE(findings().empty());
   const CheckpointRecord victim = records().at(2);
   keep_phi(victim, 0.5);
   make("wrong");
   EXPECT_NE(csv("wrong"), csv("first"));
-  EXPECT_EQ(make("fresh", true).changed, std::vector{victim.sha256});
-  EXPECT_EQ(csv("fresh"), csv("first"));
-  EXPECT_EQ(make("after").measured, 0U);
-  EXPECT_EQ(csv("after"), csv("first"));
+  const std::vector<Finding> found = findings();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(has(found[0].problem, victim.sha256.substr(0, 12))) << found[0].problem;
+  std::filesystem::remove(cache());
+  EXPECT_EQ(make("again").measured, 6U);
+  EXPECT_EQ(csv("again"), csv("first"));
 }
 
 // Only who computes hashes can do this; it must neither crash nor give a wrong number.
 TEST_F(Measure, WrongContentUnderARightHashIsRejected) {
   make("first");
   DerivedCache kept(store_.folder());
-  DerivedObject object{{records().at(0).sha256, derived_measure("scalars").key(), analysis_version},
-                       {}};
+  DerivedObject object{{records().at(0).sha256, provider("scalars").key(), analysis_version}, {}};
   object.content = {std::byte{0xff}, std::byte{0}};
   kept.put(std::span(&object, 1));
   EXPECT_EQ(make("second").measured, 1U);
@@ -232,58 +231,59 @@ TEST_F(Measure, WrongContentUnderARightHashIsRejected) {
   object.content = encode_result(nlohmann::json{{"phi", "dense"}});
   kept.put(std::span(&object, 1));
   EXPECT_THROW(make("third"), AnalysisError);
-  EXPECT_EQ(make("fourth", true).changed.size(), 1U);
+  EXPECT_EQ(findings().size(), 1U);
+  std::filesystem::remove(cache());
+  make("fourth");
   EXPECT_EQ(csv("fourth"), csv("first"));
 }
 
-TEST_F(Measure, ResultsHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
+TEST_F(Measure, MeasuresHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   std::vector<CheckpointRecord> all = records();
   all.push_back(all.front());  // a run that two experiments share
-  const std::vector<DerivedMeasure> two = {
-      derived_measure("scalars"),
-      {"grains", nlohmann::json::object(),
-       [](const MeasureInput& input) { return nlohmann::json(input.analysis.grains.phi_local); },
-       nullptr}};
-  const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {1, true, {}});
-  const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {4, true, {}});
-  const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {2, false, {}});
-  ASSERT_EQ(one.results.size(), all.size());
+  const std::vector<std::string> two = {"scalars", "pair_correlation"};
+  const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {.workers = 1});
+  std::filesystem::remove(cache());
+  const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {.workers = 4});
+  const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {.workers = 2});
+  ASSERT_EQ(one.measures.size(), all.size());
   EXPECT_EQ(one.measured, all.size() - 1);
+  EXPECT_EQ(many.measured, all.size() - 1);
   EXPECT_EQ(kept.measured, 0U);
   EXPECT_EQ(kept.cached, all.size() - 1);
-  EXPECT_EQ(one.results, many.results);
-  EXPECT_EQ(one.results, kept.results);
-  EXPECT_EQ(one.results.front(), one.results.back());
-  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-    const Analysis analysis = analyse(store_.load_checkpoint(all[i]));
-    EXPECT_EQ(one.results[i].at(0).at("phi"), analysis.measures.phi);
-    EXPECT_EQ(one.results[i].at(1).get<std::vector<double>>(), analysis.grains.phi_local);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Measures& found = one.measures[i];
+    EXPECT_TRUE(one.lacking[i].empty());
+    EXPECT_EQ(found.number("phi"), analyse(store_.load_checkpoint(all[i])).measures.phi);
+    for (const MeasuredCheckpoints* other : {&many, &kept}) {
+      const Measures& again = other->measures[i];
+      EXPECT_EQ(found.numbers, again.numbers);
+      EXPECT_EQ(found.curves.at("pair_correlation").x, again.curves.at("pair_correlation").x);
+    }
   }
 }
 
-TEST_F(Measure, AnotherKeptRestIsReplacedAndNamed) {
+TEST_F(Measure, AnotherKeptRestIsNamed) {
   compute(store_, tiny_manifest("", "sweep: {grid: {protocol: [continuous, paused]}}\n"));
-  FigureOptions fresh;
-  fresh.fresh = true;
-  const WantedFigure b5{*find_figure("B5"), "tiny"};
-  draw("first", b5);
+  draw("first", {*find_figure("B5"), "tiny"});
+  EXPECT_TRUE(findings().empty());
   DerivedKey key;
   key.version = analysis_version;
   {
     sqlite::Database database(cache(), Access::read);
-    sqlite::Statement kept(database,
-                           "SELECT checkpoint, measure FROM derived WHERE measure LIKE "
-                           "'scalars_at_rest%' ORDER BY checkpoint");
+    sqlite::Statement kept(
+        database,
+        "SELECT checkpoint, measure FROM derived WHERE measure LIKE 'rest %' ORDER BY checkpoint");
     ASSERT_TRUE(kept.step());
     kept.get(key.checkpoint, key.measure);
   }
   DerivedCache kept(store_.folder());
   nlohmann::json other = decode_result(kept.get(std::span(&key, 1)).front().value());
-  other["phi"] = other["phi"].get<double>() + 0.001;
+  other["phi_at_rest"] = other["phi_at_rest"].get<double>() + 0.001;
   const DerivedObject object{key, encode_result(other)};
   kept.put(std::span(&object, 1));
-  EXPECT_EQ(draw("second", b5, fresh).changed, std::vector<std::string>{key.checkpoint});
-  EXPECT_TRUE(draw("third", b5, fresh).changed.empty());
+  const std::vector<Finding> found = findings();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(has(found[0].problem, "phi_at_rest")) << found[0].problem;
 }
 
 // What was measured before is all that is left of it.

@@ -46,7 +46,7 @@ TEST_F(OwnFigures, ShowEveryVariantOfARun) {
   }
   draw("own", "some");
   const auto verdict = nlohmann::json::parse(contents("own").at("some.verdict.json"));
-  EXPECT_EQ(verdict.at("verdict"), "agrees");
+  EXPECT_EQ(verdict.at("verdict"), "1 agrees");
   EXPECT_EQ(verdict.at("runs").size(), 2U) << "the variants that it compares";
   const std::string refusal = message_of<UsageError>([&] { draw("own", "none"); });
   EXPECT_TRUE(has(refusal, "are the same runs, so their difference is exactly zero")) << refusal;
@@ -78,7 +78,7 @@ TEST_F(OwnFigures, AClaimOnRunsThatAreNotComputedIsUndecided) {
   declared(store_, text, {.cycles = 1});
   draw("own", "same");
   const auto verdict = nlohmann::json::parse(contents("own").at("same.verdict.json"));
-  EXPECT_EQ(verdict.at("verdict"), "undecided");
+  EXPECT_EQ(verdict.at("verdict"), "1 undecided");
   EXPECT_EQ(verdict.at("claims").at(0).at("note"),
             "no run with fluid=still has a checkpoint of cycle 1");
 }

@@ -16,12 +16,17 @@ namespace {
 using PackingOf2000 = StoreTest;
 
 // The walls bear the weight and nothing else, and the moving wall its load.
-void expect_balance(Measures measures) {
+void expect_balance(const Analysis& analysis) {
   const Parameters p;
-  measures.units =
-      mechanical_units(p.stiffness_N_per_m, p.mass_kg, p.diameter_m, p.gravity_m_per_s2);
-  const auto in_si = [&](const char* name) { return find_measure(name)->of(measures); };
-  const double weight = static_cast<double>(measures.grains) * p.mass_kg * p.gravity_m_per_s2;
+  const RunFacts run{.parameters = {{"stiffness_N_per_m", p.stiffness_N_per_m},
+                                    {"mass_kg", p.mass_kg},
+                                    {"diameter_m", p.diameter_m},
+                                    {"gravity_m_per_s2", p.gravity_m_per_s2}}};
+  const nlohmann::json measured =
+      provider("mechanics").compute({.analysis = &analysis, .run = &run});
+  const auto in_si = [&](const char* name) { return measured.at(name).get<double>(); };
+  const double weight =
+      static_cast<double>(analysis.measures.grains) * p.mass_kg * p.gravity_m_per_s2;
   const double x = in_si("force_bottom_x_N") + in_si("force_top_x_N") + in_si("force_left_x_N") +
                    in_si("force_right_x_N");
   const double y = in_si("force_bottom_y_N") + in_si("force_top_y_N") + in_si("force_left_y_N") +
@@ -31,7 +36,7 @@ void expect_balance(Measures measures) {
   EXPECT_NEAR(y, -weight, 0.01 * weight);
   EXPECT_NEAR(x, 0, 0.01 * weight);
   Geometry shape;
-  shape.grains = measures.grains;
+  shape.grains = analysis.measures.grains;
   const double width = cell_width(shape) * p.diameter_m;
   const double load = p.pressure_Pa * width * width + weight;
   EXPECT_NEAR(-in_si("force_bottom_y_N"), load, 0.01 * load);
@@ -47,7 +52,8 @@ TEST_F(PackingOf2000, SettlesAndCompactsAsExpected) {
   ASSERT_EQ(result.completed, 2U);
   const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
   const CheckpointRecord settled = store_.checkpoints(packing.id).back();
-  const Measures at_rest = analyse(store_.load_checkpoint(settled)).measures;
+  const Analysis packed = analyse(store_.load_checkpoint(settled));
+  const PackingMeasures& at_rest = packed.measures;
   const double imbalance = settled.observables.at("wall_force_imbalance");
   std::printf(
       "settled in %.2f s: wall imbalance %.3g, phi %.4f (phi_u %.4f), N_inves %zu, "
@@ -61,14 +67,14 @@ TEST_F(PackingOf2000, SettlesAndCompactsAsExpected) {
   EXPECT_LT(at_rest.contacts_per_grain, 6.6);
   EXPECT_GT(at_rest.mean_overlap, 1.5e-3);
   EXPECT_LT(at_rest.mean_overlap, 4.5e-3);
-  expect_balance(at_rest);
+  expect_balance(packed);
 
   const RunRecord run = sheared(store_);
   const auto checkpoints = store_.checkpoints(run.id);
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles
   for (const CheckpointRecord& record : checkpoints) {
-    const Measures measures = analyse(store_.load_checkpoint(record)).measures;
+    const PackingMeasures measures = analyse(store_.load_checkpoint(record)).measures;
     std::printf("cycle %2g: phi %.4f, crystalline %.2f %%\n", record.cycle, measures.phi,
                 measures.crystalline_percent);
     if (record.cycle > 7) late += measures.phi / 3;
@@ -90,7 +96,7 @@ TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
             2U);
   const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
   const Analysis found = analyse(store_.load_checkpoint(store_.checkpoints(packing.id).back()));
-  const Mechanics& m = *found.measures.mechanics;
+  const Mechanics& m = *found.mechanics;
   const Parameters table_1;
   const double unit = table_1.stiffness_N_per_m / table_1.diameter_m;  // k/d [Pa]
   double volume = 0;

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/figures/more_measures.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -198,7 +197,8 @@ TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
   std::string phases;
   for (int k = 1; k < parts; ++k) phases += fmt::format("{}{}", k > 1 ? ", " : "", k / 16.0);
   compute(store_, manifest("checkpoints: {every_cycles: 2, phases: [" + phases + "]}\n"));
-  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {2, false, {}}, true);
+  const std::vector<std::string> ledger = {"ledger"};
+  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {.workers = 2}, ledger);
   const auto value = [&](std::size_t row, std::string_view name) {
     const auto at = std::ranges::find(table.columns, name, &TableColumn::name);
     const nlohmann::json& cell =
@@ -237,8 +237,8 @@ TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
 
   // As kept, and as a plot or a claim has it.
   const std::vector<std::string> names = {"scalars", "ledger"};
-  const MeasuredPackings found = measures_of(store_, records, names, {1, false, {}});
-  EXPECT_EQ(found.measures.back().value().numbers.at("work_of_walls_per_cycle_J"), work);
+  const MeasuredCheckpoints found = measure_checkpoints(store_, records, names, {});
+  EXPECT_EQ(found.measures.back().numbers.at("work_of_walls_per_cycle_J"), work);
 }
 
 }  // namespace

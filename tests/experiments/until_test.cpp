@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/audit.hpp"
@@ -33,7 +33,7 @@ std::vector<SeenCheckpoint> measured(std::initializer_list<double> percentages) 
   for (const double percent : percentages) {
     SeenCheckpoint& next = list.emplace_back();
     next.record.cycle = 2 * static_cast<double>(list.size() - 1);
-    next.measures.emplace().crystalline_percent = percent;
+    next.measures.emplace().numbers["crystalline_percent"] = percent;
   }
   return list;
 }
@@ -160,9 +160,8 @@ TEST_F(UntilTest, EndsTheRunWithItsReasonAndKeepsTheMeasures) {
   DerivedCache cache(store_.folder());
   for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
     const bool before = record.cycle < static_cast<double>(end_);
-    for (const DerivedMeasure* measure :
-         {&derived_measure("scalars"), &derived_measure("crystallites")}) {
-      const DerivedKey key{record.sha256, measure->key(), analysis_version};
+    for (const char* name : {"scalars", "crystallites"}) {
+      const DerivedKey key{record.sha256, provider(name).key(), analysis_version};
       EXPECT_EQ(cache.get(std::span(&key, 1)).front().has_value(), before) << record.cycle;
     }
   }

@@ -99,7 +99,6 @@ nlohmann::json truth(const Checkpoint& c) {
   const double d = c.units.diameter_m;
   const WallPose pose = wall_pose(c.cell, c.theta, c.state.wall_height);
   Analysis measured = analyse(c);
-  measured.measures.units = mechanical_units(654.0, 2e-5, 3e-3, 9.81);
   const Eigen::Index grains = c.state.position.cols();
   const auto walls = static_cast<Eigen::Index>(c.cell.wall_grains.size());
   Eigen::Matrix3Xd position(3, grains + walls), velocity(3, grains + walls);
@@ -129,10 +128,13 @@ nlohmann::json truth(const Checkpoint& c) {
   for (double& of_grain : pressure) of_grain *= 654.0 / 3e-3;
   for (auto* numbers : {&phi_local, &q6, &overlap, &pressure}) numbers->resize(type.size(), 0.0);
   for (auto* numbers : {&structure, &crystallite}) numbers->resize(type.size(), -1);
-  nlohmann::json scalars = {{"cell_height_d", 11.5}};
-  for (const ScalarMeasure& scalar : all_scalar_measures()) {
-    scalars[scalar.name] = scalar.of(measured.measures);
+  Measures numbers_of_all;
+  const RunFacts run{.parameters = about().run.resolved.at("parameters")};
+  for (const char* name : {"scalars", "mechanics", "lattices", "core"}) {
+    provider(name).read(provider(name).compute({&measured, &c, {}, nullptr, &run}), numbers_of_all);
   }
+  nlohmann::json scalars = numbers_of_all.numbers;
+  scalars["cell_height_d"] = 11.5;
   // Of a few grains in the middle, which touch no wall.
   std::vector<std::uint8_t> inner(measured.grains.interior.size(), 0);
   std::vector<int> inner_id;

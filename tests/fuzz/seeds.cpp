@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "analysis/crystal.hpp"
-#include "analysis/derived_measures.hpp"
+#include "analysis/measures.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "provenance/events.hpp"
 #include "provenance/sha256.hpp"
@@ -185,7 +185,7 @@ std::vector<std::string> measure_seeds() {
   const CrystalliteMap map{{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
   Analysis analysis;
   return {as_string(encode_result(to_json(map))),
-          as_string(encode_result(derived_measure("scalars").from({analysis})))};
+          as_string(encode_result(provider("scalars").compute({&analysis})))};
 }
 
 }  // namespace shearcell::fuzz

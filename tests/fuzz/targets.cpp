@@ -6,7 +6,6 @@
 #include <set>
 
 #include "analysis/crystal.hpp"
-#include "analysis/derived_measures.hpp"
 #include "analysis/error.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/measures.hpp"
@@ -151,7 +150,7 @@ void take_measures(Input input) {
     const nlohmann::json result = decode_result(std::as_bytes(input));
     attempt<AnalysisError>([&] {
       Measures measures;
-      derived_measure("scalars").read(result, measures);
+      provider("scalars").read(result, measures);
     });
     attempt<AnalysisError>([&] {
       FigureRun run;

@@ -303,7 +303,7 @@ const checks = {
     await changes("colour by q6", () => choose("colour", "q6"));
     await box.screenshot({path: join(shots, "packing-q6.png")});
     await changes("colour by phi_local", () => choose("colour", "phi"));
-    for (const field of ["lattice", "pressure", "contacts", "displacement", "overlap"]) {
+    for (const field of ["lattice", "grain_pressure_Pa", "contacts", "displacement_d", "overlap"]) {
       await changes(`colour by ${field}`, () => choose("colour", field));
     }
     await changes("colour by class", () => choose("colour", "class"));

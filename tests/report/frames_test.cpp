@@ -50,9 +50,11 @@ GrainMeasures measures_of_each() {
 
 // A quantity, one on a logarithmic scale with unknown values, and a class.
 std::vector<GrainField> fields_of_each() {
-  std::vector<GrainField> fields = {{"pressure", "kPa", 0, 3, false, {}, {}},
-                                    {"d2min", "d2", 1e-6, 1, true, {}, {}},
-                                    {"lattice", "", 0, 0, false, {"none", "FCC", "HCP"}, {}}};
+  const auto field = [](const char* name, double low, double high) {
+    return GrainField{find_measure(name, MeasureKind::grains), low, high};
+  };
+  std::vector<GrainField> fields = {field("grain_pressure_Pa", 0, 3), field("d2min_d2", 1e-6, 1),
+                                    field("lattice", 0, 0)};
   for (int i = 0; i < kFrameGrains; ++i) {
     fields[0].value.push_back(4.0 * i / kFrameGrains - 0.5);  // below and above the range too
     fields[1].value.push_back(i % 7 == 0 ? std::nan("") : std::pow(10, -6.0 * i / kFrameGrains));

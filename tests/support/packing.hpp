@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/measures.hpp"
+#include "analysis/analyse.hpp"
 #include "core/diagnostics.hpp"
 #include "experiments/bench/packing.hpp"
 #include "protocols/settle.hpp"
@@ -50,7 +50,7 @@ inline Packing settled_packing(const Parameters& parameters, std::uint64_t seed)
   return packing;
 }
 
-struct PackingNumbers : Measures {
+struct PackingNumbers : PackingMeasures {
   double imbalance = 0;  ///< |load - contact force| / (P A_w) of the moving wall
   double height = 0;     ///< of the cell [d]
 };

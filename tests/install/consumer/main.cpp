@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A program that uses the installed libraries: settles a small packing, shears it for a twentieth
 // of a cycle, and measures it.
-#include <analysis/measures.hpp>
+#include <analysis/analyse.hpp>
 #include <cstdio>
 #include <experiments/manifest/conversion.hpp>
 #include <protocols/settle.hpp>
@@ -15,7 +15,7 @@ int main() {
   const State packing = pressed(cell, loose, settle_scene(parameters));
   const WallPose pose = wall_pose(cell, 0, packing.wall_height);
   Eigen::Matrix3Xd grains = packing.position;
-  const Measures measures = analyse(cell, pose, grains).measures;
+  const PackingMeasures measures = analyse(cell, pose, grains).measures;
   std::printf("%zu grains, %.2f contacts per grain\n", measures.grains,
               measures.contacts_per_grain);
   return measures.grains == 300 && measures.contacts_per_grain > 4 ? 0 : 1;

@@ -14,11 +14,7 @@ const viridisStops =
   [0x440154, 0x46327e, 0x365c8d, 0x277f8e, 0x1fa187, 0x4ac16d, 0xa0da39, 0xfde725].map(rgb);
 const unknown = 255;
 
-const labels = {
-  phi: [...italic("ϕ"), ...sub("local")], q6: [...italic("q"), ...sub("6")], pressure: plain("pressure"),
-  contacts: plain("contacts"), overlap: plain("largest overlap"), displacement: plain("displacement in a cycle"),
-  d2min: [...italic("D"), ...sub("min"), ...plain("², a cycle")]
-};
+const labels = {phi: [...italic("ϕ"), ...sub("local")], q6: [...italic("q"), ...sub("6")]};
 
 // Lengths in grain diameters d. `position` has x, y, z of the grains and then of the wall grains.
 export function decodeFrame(frame, grains, wallGrains) {
@@ -68,20 +64,20 @@ export function viridis(fraction) {
 // `entries`, or a `bar` with {label, low, high}.
 export function lookOf(grains, mode) {
   if (mode === "crystallite") return ofCrystallites(grains.crystallite);
-  if (mode === "phi") return ofQuantity(mode, (i) => (grains.phi[i] - 0.55) / 0.19, "0.55", "0.74");
-  if (mode === "q6") return ofQuantity(mode, (i) => (grains.q6[i] - 0.2) / 0.4, "0.2", "0.6");
+  if (mode === "phi") return ofQuantity(labels.phi, (i) => (grains.phi[i] - 0.55) / 0.19, "0.55", "0.74");
+  if (mode === "q6") return ofQuantity(labels.q6, (i) => (grains.q6[i] - 0.2) / 0.4, "0.2", "0.6");
   const field = grains.fields[mode];
   if (!field) return ofClasses(grains.structure, structureNames);
   if (field.classes) return ofClasses(field.bytes, field.classes);
   const end = (value) => `${Number(value.toPrecision(3))}`;
   const share = (i) => field.bytes[i] === unknown ? null : field.bytes[i] / 254;
-  const look = ofQuantity(mode, share, end(field.low), `${end(field.high)} ${field.unit}`.trim());
+  const look = ofQuantity(plain(field.label), share, end(field.low), `${end(field.high)} ${field.unit}`.trim());
   if (field.bytes.some((byte) => byte !== unknown)) return look;
   return {paint: look.paint, entries: [{colour: classColours[0], text: "no checkpoint a cycle before"}]};
 }
 
-const ofQuantity = (key, share, low, high) => ({
-  paint: (i) => share(i) === null ? classColours[0] : viridis(share(i)), bar: {label: labels[key], low, high}
+const ofQuantity = (label, share, low, high) => ({
+  paint: (i) => share(i) === null ? classColours[0] : viridis(share(i)), bar: {label, low, high}
 });
 
 function ofCrystallites(crystallite) {

@@ -165,6 +165,10 @@ export class Viewer {
     }
     this.part("run").parentElement.hidden = count > 1;
     addOptions(this.part("run"), packings, ({experiment}) => experiment, ({label}) => label);
+    // Every packing of a page has the same fields.
+    for (const {key, label} of packings[0].frames[0].fields) {
+      this.part("colour").append(new Option(label, key));
+    }
     const on = (name, event, action) => this.part(name).addEventListener(event, action);
     on("run", "change", () => this.showRuns([packings[Number(this.part("run").value)]]));
     on("cycle", "input", () => this.showFrame(Number(this.part("cycle").value)));

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/analyse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "analysis/error.hpp"
+#include "analysis/measures.hpp"
+#include "analysis/packing_fraction.hpp"
+#include "analysis/voronoi.hpp"
+
+namespace shearcell {
+namespace {
+
+void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
+  GrainMeasures& grains = analysis.grains;
+  grains.crystallites =
+      crystallites(diagram, crystalline_interior(grains), connecting_face * mean_surface(grains));
+  const auto percent = [&](auto... wanted) {
+    return percent_of_interior(
+        grains, [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
+  };
+  PackingMeasures& all = analysis.measures;
+  all.fcc_percent = percent(Structure::fcc);
+  all.hcp_percent = percent(Structure::hcp);
+  all.crystalline_percent = percent(Structure::fcc, Structure::hcp);
+  all.crystallites = grains.crystallites.size.size();
+  all.largest_crystallite = static_cast<std::size_t>(grains.crystallites.largest);
+}
+
+}  // namespace
+
+Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+  // In a shallower cell a grain would overlap its own image.
+  if (!(cell.depth >= 1)) {
+    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 1 d is the least");
+  }
+  Analysis analysis;
+  PackingMeasures& all = analysis.measures;
+  GrainMeasures& grains = analysis.grains;
+
+  VoronoiDiagram diagram = voronoi(cell, pose, positions);
+  grains.q6 = bond_order_q6(diagram);
+  grains.cell_volume = std::move(diagram.volume);
+  grains.cell_surface = std::move(diagram.surface);
+  Overlaps contact = overlaps(cell, pose, positions);
+  grains.largest_overlap = std::move(contact.largest);
+  grains.contacts = std::move(contact.contacts);
+  grains.interior = interior_grains(cell, pose, positions);
+
+  all.grains = grains.q6.size();
+  all.interior_grains = static_cast<std::size_t>(
+      std::count(grains.interior.begin(), grains.interior.end(), std::uint8_t{1}));
+  const PackingFractions fractions =
+      packing_fractions(grains.largest_overlap, grains.cell_volume, grains.interior);
+  all.phi = fractions.phi;
+  all.phi_uncorrected = fractions.phi_uncorrected;
+  all.mean_overlap = contact.mean;
+  const auto contacts =
+      std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
+  all.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(all.grains);
+
+  for (std::size_t i = 0; i < all.grains; ++i) {
+    grains.phi_local.push_back(
+        local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]));
+    grains.structure.push_back(structure(grains.phi_local[i], grains.q6[i]));
+  }
+  find_crystallites(diagram, analysis);
+  analysis.crystallites = crystallite_map(grains.crystallites, cell, pose, positions);
+  return analysis;
+}
+
+Analysis analyse(const Checkpoint& checkpoint) {
+  Analysis analysis = analyse(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  GrainMeasures& grains = analysis.grains;
+  PackingMechanics found = mechanics(checkpoint, grains.cell_volume, grains.interior);
+  analysis.mechanics = found.packing;
+  grains.pressure = std::move(found.grain_pressure);
+  return analysis;
+}
+
+std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains) {
+  std::vector<std::uint8_t> crystalline(grains.interior);
+  for (std::size_t i = 0; i < crystalline.size(); ++i) {
+    if (grains.structure[i] == Structure::disordered) crystalline[i] = 0;
+  }
+  return crystalline;
+}
+
+double mean_surface(const GrainMeasures& grains) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0) continue;
+    sum += grains.cell_surface[i];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+Provider packing_provider() {
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const PackingMeasures& m = input.analysis->measures;
+    return {{"grains", m.grains},  // N is a parameter of the run, so it is not a measure
+            {"interior_grains", m.interior_grains},
+            {"phi", m.phi},
+            {"phi_uncorrected", m.phi_uncorrected},
+            {"crystalline_percent", m.crystalline_percent},
+            {"fcc_percent", m.fcc_percent},
+            {"hcp_percent", m.hcp_percent},
+            {"mean_overlap_d", m.mean_overlap},
+            {"contacts_per_grain", m.contacts_per_grain},
+            {"crystallites", m.crystallites},
+            {"largest_crystallite", m.largest_crystallite}};
+  };
+  using enum MeasureKind;
+  return {.name = "scalars",
+          .parameters = crystal_criteria(),
+          .measures = {{"interior_grains", "1",
+                        "N_inves, grains at least 1.5 d from the wall surfaces", count},
+                       {"phi", "1", "volume fraction of interior grains (Eq. S4)"},
+                       {"phi_uncorrected", "1",
+                        "phi_u, the same without a correction for overlaps (Eq. S2)"},
+                       {"crystalline_percent", "%", "crystalline grains among interior grains"},
+                       {"fcc_percent", "%", "FCC grains among interior grains"},
+                       {"hcp_percent", "%", "HCP grains among interior grains"},
+                       {"mean_overlap_d", "d", "mean overlap of touching grains (Eq. S3)"},
+                       {"contacts_per_grain", "1",
+                        "contacts with grains and wall grains, mean over all grains"},
+                       {"crystallites", "1", "number of crystallites of interior grains", count},
+                       {"largest_crystallite", "1", "grains in the largest crystallite", count}},
+          .compute = compute,
+          .read_more = [](const nlohmann::json&, Measures& measures) {
+            const double phi = measures.number("phi");
+            if (phi < 0 || phi > 1) throw AnalysisError("a cached phi is not in 0 to 1");
+          }};
+}
+
+Provider crystallite_provider() {
+  return {
+      .name = "crystallites",
+      .parameters = crystal_criteria(),
+      .compute = [](const MeasureInput& input) { return to_json(input.analysis->crystallites); },
+      .read_more =
+          [](const nlohmann::json& result, Measures& measures) {
+            measures.crystallite_map = read_crystallite_map(result);
+          }};
+}
+
+Provider grain_provider() {
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const GrainMeasures& grains = input.analysis->grains;
+    std::vector<double> pressure = grains.pressure;
+    for (double& one : pressure) one *= mechanical_units(input).stress_Pa;
+    std::vector<std::int32_t> crystallite = grains.crystallites.label;
+    for (std::int32_t& label : crystallite) ++label;
+    return {{"phi_local", grains.phi_local},     {"q6", grains.q6},
+            {"overlap", grains.largest_overlap}, {"grain_pressure_Pa", pressure},
+            {"contacts", grains.contacts},       {"structure", grains.structure},
+            {"crystallite", crystallite}};
+  };
+  const auto of_grains = [](const char* name, const char* unit, const char* meaning,
+                            const char* words, GrainScale scale) {
+    return Measure{.name = name,
+                   .unit = unit,
+                   .meaning = meaning,
+                   .kind = MeasureKind::grains,
+                   .scale = std::move(scale),
+                   .words = words};
+  };
+  return {.name = "grains",
+          .parameters = crystal_criteria(),
+          .measures = {of_grains("phi_local", "1", "volume fraction of its cell", "phi_local",
+                                 {.low = 0.55, .high = 0.74}),
+                       of_grains("q6", "1", "bond order (Eq. S1)", "q6", {.low = 0.2, .high = 0.6}),
+                       of_grains("overlap", "d", "largest overlap", "largest overlap",
+                                 {.low = 0, .high = 0.02}),
+                       of_grains("grain_pressure_Pa", "Pa", "of its contacts over its cell",
+                                 "pressure", {.low = 0, .high = 3, .parameter = "pressure_Pa"}),
+                       of_grains("contacts", "1", "contacts with grains and wall grains",
+                                 "contacts", {.low = 0, .high = 12, .whole = true}),
+                       of_grains("structure", "1", "0 disordered, 1 FCC, 2 HCP", "structure",
+                                 {.classes = {"disordered", "FCC", "HCP"},
+                                  .whole = true,
+                                  .of_wall_grains = -1}),
+                       of_grains("crystallite", "1", "0 none; 1, 2, ... by their lowest grain id",
+                                 "crystallites", {.whole = true, .of_wall_grains = -1})},
+          .compute = compute};
+}
+
+}  // namespace shearcell

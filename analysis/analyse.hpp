@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The analysis of one packing: its Voronoi cells, overlaps, crystallites and stress are computed
+// once, and most measures follow from them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "analysis/crystal.hpp"
+#include "analysis/mechanics.hpp"
+#include "provenance/checkpoint.hpp"
+
+namespace shearcell {
+
+/// Of one packing. Means over no grain at all are not a number.
+struct PackingMeasures {
+  std::size_t grains = 0;               ///< N
+  std::size_t interior_grains = 0;      ///< N_inves, at least 1.5 d from the wall surfaces
+  double phi = 0;                       ///< Eq. S4 over interior grains
+  double phi_uncorrected = 0;           ///< phi_u, Eq. S2 over interior grains
+  double crystalline_percent = 0;       ///< of interior grains [%]
+  double fcc_percent = 0;               ///< of interior grains [%]
+  double hcp_percent = 0;               ///< of interior grains [%]
+  double mean_overlap = 0;              ///< Eq. S3 over all pairs of grains [d]
+  double contacts_per_grain = 0;        ///< with grains and wall grains, over all grains
+  std::size_t crystallites = 0;         ///< of interior grains
+  std::size_t largest_crystallite = 0;  ///< grains in it
+};
+
+/// One entry per grain, by grain id.
+struct GrainMeasures {
+  std::vector<double> cell_volume;      ///< [d^3]
+  std::vector<double> cell_surface;     ///< [d^2]
+  std::vector<double> largest_overlap;  ///< delta_max,i [d]
+  std::vector<std::int32_t> contacts;   ///< with grains and wall grains
+  std::vector<double> phi_local;
+  std::vector<double> q6;
+  std::vector<double> pressure;        ///< [k/d]; of a checkpoint
+  std::vector<Structure> structure;    ///< of every grain, near the walls too
+  std::vector<std::uint8_t> interior;  ///< 1 or 0
+  Crystallites crystallites;           ///< of crystalline interior grains
+};
+
+struct Analysis {
+  PackingMeasures measures;
+  std::optional<Mechanics> mechanics;  ///< of a checkpoint
+  GrainMeasures grains;
+  CrystalliteMap crystallites;  ///< where they are
+};
+
+/// Measures of a packing and of each of its grains; mechanics of a checkpoint only. Throws
+/// AnalysisError as voronoi() does, and for a cell less than 1 d deep, which no engine takes.
+Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
+Analysis analyse(const Checkpoint& checkpoint);
+
+/// Share of the interior grains for which `holds` [%]; not a number without any.
+template <class Predicate>
+double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
+  double count = 0, found = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    if (grains.interior[i] == 0) continue;
+    ++count;
+    found += holds(i) ? 1 : 0;
+  }
+  return 100 * found / count;
+}
+
+/// 1 for crystalline interior grains, else 0.
+std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
+
+/// Of the cells of interior grains [d^2]; 0 without any.
+double mean_surface(const GrainMeasures& grains);
+
+}  // namespace shearcell

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures that need the run of a checkpoint: its drive, what the engine recorded, and simulations
+// that begin at the checkpoint.
+#include <cmath>
+#include <numbers>
+
+#include "analysis/error.hpp"
+#include "analysis/measures.hpp"
+#include "core/drive.hpp"
+#include "core/trigonometry.hpp"
+#include "core/watchdog.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+constexpr double rest_s = 0.1;
+/// Steps between samples of an energy ledger: a period of the fastest vibration at Table I's time
+/// step.
+constexpr std::uint64_t ledger_stride = 8;
+
+json drive_of(const MeasureInput& input) {
+  if (!input.run->drive) return json::object();
+  const auto [theta, rate] = tilt(*input.run->drive, input.record->step);
+  const SineCosine sc = sine_cosine(theta);
+  const double omega = 2 * std::numbers::pi / input.run->number("period_s");
+  // Adding 0 turns -0 into 0.
+  return {{"shear_strain", sc.sine / sc.cosine + 0.0},
+          {"shear_rate_per_s", omega * rate / (sc.cosine * sc.cosine) + 0.0}};
+}
+
+/// The cycle is simulated again from the checkpoint one cycle earlier.
+json ledger_of(const MeasureInput& input) try {
+  if (!input.run->drive || input.record->step % cycle_steps(*input.run->drive) != 0) {
+    return json::object();
+  }
+  const Checkpoint* begin = input.earlier(1);
+  if (begin == nullptr) return json::object();
+  const CycleEnergies sum = input.run->next_cycle(*begin, ledger_stride);
+  const double unit_J = mechanical_units(input).kinetic_J;
+  return {{"work_of_walls_per_cycle_J", sum.work_of_walls * unit_J},
+          {"dissipation_per_cycle_J", sum.dissipation * unit_J},
+          {"energy_stored_per_cycle_J", sum.stored * unit_J}};
+} catch (const NumericalFailure&) {
+  return json::object();
+}
+
+json rest_of(const MeasureInput& input) try {
+  if (!input.run->rest) return json::object();
+  Checkpoint rested = *input.checkpoint;
+  rested.state = input.run->rest(rested, rest_s);
+  return {{"phi_at_rest", analyse(rested).measures.phi}};
+} catch (const NumericalFailure&) {
+  return json::object();
+} catch (const AnalysisError&) {  // grains left the cell
+  return json::object();
+}
+
+json record_of(const MeasureInput& input) {
+  json found = {{"time_s", input.record->time_s}};
+  for (const auto& [name, value] : input.record->observables) {
+    found[name == "stiffness_N_per_m" ? "raised_stiffness_N_per_m" : name] = value;
+  }
+  return found;
+}
+
+}  // namespace
+
+Provider drive_provider() {
+  return {
+      .name = "drive",
+      .measures = {{"shear_strain", "1", "tan(theta), theta the tilt of the side walls"},
+                   {"shear_rate_per_s", "1/s",
+                    "rate of change of shear_strain; after a pause, of the shear that follows"}},
+      .compute = drive_of,
+      .from = ComputedFrom::record};
+}
+
+// The balance is that of protocols/ledger.hpp. It takes three to four times as long as the cycle.
+Provider ledger_provider() {
+  using enum MeasureKind;
+  return {.name = "ledger",
+          .parameters = {{"stride", ledger_stride}},
+          .measures =
+              {{"work_of_walls_per_cycle_J", "J",
+                "work of the tilting walls on all grains in the cycle that ends here", number, 1},
+               {"dissipation_per_cycle_J", "J",
+                "energy that all grains and the moving wall lost by drag in that cycle", number, 1},
+               {"energy_stored_per_cycle_J", "J",
+                "change of all elastic, kinetic and gravitational energy and of the load's in that "
+                "cycle",
+                number, 1}},
+          .compute = ledger_of,
+          .earlier = {1},
+          .from = ComputedFrom::simulation,
+          .cost = "3 to 4 times as long as the cycle"};
+}
+
+// Compares protocols whose checkpoints are recorded at different rates of shear
+// (protocols/rest.hpp).
+Provider rest_provider() {
+  return {.name = "rest",
+          .parameters = {{"rest_s", rest_s}},
+          .measures = {{"phi_at_rest", "1",
+                        "volume fraction of interior grains (Eq. S4) after 0.1 s between walls "
+                        "that are held in place"}},
+          .compute = rest_of,
+          .from = ComputedFrom::simulation,
+          .cost = "a twentieth of a cycle"};
+}
+
+Provider record_provider() {
+  return {.name = "record",
+          .measures = {{"time_s", "s", "simulated time since the stage began"},
+                       {"cell_height_d", "d", "distance of the bottom and top wall"},
+                       {"largest_overlap_d", "d",
+                        "largest overlap of two grains, or of a grain and a wall grain"},
+                       {"kinetic_energy_per_grain_m_d2_per_s2", "m d^2/s^2",
+                        "mean kinetic energy; m is the mass of a grain"},
+                       {"wall_force_imbalance", "1",
+                        "load less contact force on the moving wall, over P A_w"},
+                       {"raised_stiffness_N_per_m", "N/m", "spring constant of a stiffening"},
+                       {"force_residual_P_d2", "P d^2",
+                        "largest net force on a grain of a stiffening over P d^2"}},
+          .compute = record_of,
+          .from = ComputedFrom::record};
+}
+
+}  // namespace shearcell
