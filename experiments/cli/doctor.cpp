@@ -15,9 +15,9 @@
 #include "core/machine.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
 

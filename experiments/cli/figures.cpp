@@ -23,6 +23,10 @@ struct FigureArguments {
   FigureOptions how;
 };
 
+std::string path_of(const FigureSummary& result) {
+  return result.experiment.empty() ? result.name : result.experiment + "/" + result.name;
+}
+
 void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
   for (const std::string& note : result.notes) {
     if (told.insert(note).second) print_stderr("{}\n", note);
@@ -33,13 +37,11 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   std::erase_if(problems.pruned, is_told);
   print_problems(problems, "left out", context);
   if (!result.empty.empty()) {
-    print_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
-                 result.experiment, result.experiment.empty() ? "" : "/", result.name,
+    print_stderr("warning: figure {}: its runs have no values to draw in {}\n", path_of(result),
                  fmt::join(result.empty, ", "));
   }
   for (const std::string& why : result.undrawn) {
-    print_stderr("no plot: {}{}{}: {}\n", result.experiment, result.experiment.empty() ? "" : "/",
-                 result.name, why);
+    print_stderr("no plot: {}: {}\n", path_of(result), why);
   }
 }
 
@@ -74,10 +76,9 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (!result.undrawn.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
-  print_text("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
-             result.experiment.empty() ? "" : "/", result.name, scale_name(result.scale),
-             counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
-             result.measured);
+  print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path_of(result),
+             scale_name(result.scale), counted(result.runs, "run"),
+             counted(result.checkpoints, "checkpoint"), result.measured);
   for (const auto& file : result.files) print_text("  {}\n", file.string());
   print_verdicts(result);
 }

@@ -15,7 +15,6 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/words.hpp"
@@ -49,12 +48,6 @@ std::vector<std::string> shared_with(const Line& line) {
   return others;
 }
 
-// "also in twin".
-std::string remark(const Line& line) {
-  const std::vector<std::string> others = shared_with(line);
-  return others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "));
-}
-
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = line.run->parameters;
@@ -76,18 +69,13 @@ void print_numerics(const std::vector<Line>& lines) {
   for (const Line& line : lines) {
     const Parameters& p = line.run->parameters;
     const std::string& kind = line.stage.kind;
-    Row row = {kind,
-               kind == name_of(Stage::prepare) ? "" : line.run->name,
-               kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : "",
-               "",
-               "",
-               "",
-               fmt::format("{:.2g}", expected_overlap(p))};
-    if (const auto step = time_step_of(line)) {
-      row[3] = fmt::format("{:.4g}", step->seconds);
-      row[4] = fmt::format("{:.3f}", step->over_contact_time);
-      row[5] = fmt::format("{:.3f}", step->over_stability_limit);
-    }
+    Row row = {kind, kind == name_of(Stage::prepare) ? "" : line.run->name,
+               kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : ""};
+    const auto step = time_step_of(line);
+    row.push_back(step ? fmt::format("{:.4g}", step->seconds) : "");
+    row.push_back(step ? fmt::format("{:.3f}", step->over_contact_time) : "");
+    row.push_back(step ? fmt::format("{:.3f}", step->over_stability_limit) : "");
+    row.push_back(fmt::format("{:.2g}", expected_overlap(p)));
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
@@ -189,42 +177,32 @@ nlohmann::json experiment_facts(const Plan& plan) {
   return {{"experiment", plan.experiment}, {"scale", plan.scale}, {"runs", plan.runs.size()}};
 }
 
-nlohmann::json facts(const Line& line) {
-  return {{"id", line.stage.id},
-          {"experiment", line.run->experiment},
-          {"parent", line.stage.parent},
-          {"stage", line.stage.kind},
-          {"variant", line.run->variant},
-          {"parameters", effective_parameters(line.stage.resolved)},
-          {"seed", line.run->seed},
-          {"N", line.run->parameters.grains},
-          {"cycles", static_cast<std::uint64_t>(cycles_of(line))},
-          {"state", state_of(line)},
-          {"shared_with", shared_with(line)},
-          {"time_step", facts(time_step_of(line))},
-          {"expected_overlap_d", expected_overlap(line.run->parameters)},
-          {"particle_steps_left", line.look.particle_steps},
-          {"checkpoints_left", line.look.checkpoints},
-          {"bytes_left", line.look.bytes},
-          {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
-}
-
-void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
-  Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
-  if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
-  print_table(header, lines, [&](const Line& line) {
-    const bool prepare = line.stage.kind == name_of(Stage::prepare);
-    Row row = {line.stage.id.substr(0, 8),
-               line.stage.kind,
-               prepare ? "" : line.run->name,
-               std::to_string(line.run->seed),
-               std::to_string(line.run->parameters.grains),
-               prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles_of(line)),
-               state_of(line),
-               remark(line)};
-    if (of_several_experiments) row.insert(row.begin() + 2, line.run->experiment);
-    return row;
-  });
+Facts facts(const Line& line, bool of_several_experiments) {
+  const PlannedRun& run = *line.run;
+  const bool prepare = line.stage.kind == name_of(Stage::prepare);
+  const double cycles = cycles_of(line);
+  const std::vector<std::string> others = shared_with(line);
+  Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
+               {"stage", line.stage.kind, "stage"},
+               {"experiment", run.experiment},
+               {"variant", run.variant, "variant", prepare ? "" : run.name},
+               {"seed", run.seed, "seed"},
+               {"N", run.parameters.grains, "N"},
+               {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
+                prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
+               {"state", state_of(line), "state"},
+               {"shared_with", others, "",
+                others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "))},
+               {"parent", line.stage.parent},
+               {"parameters", effective_parameters(line.stage.resolved)},
+               {"time_step", facts(time_step_of(line))},
+               {"expected_overlap_d", expected_overlap(run.parameters)},
+               {"particle_steps_left", line.look.particle_steps},
+               {"checkpoints_left", line.look.checkpoints},
+               {"bytes_left", line.look.bytes},
+               {"memory_bytes", run_bytes(geometry(run.parameters))}};
+  if (of_several_experiments) all[2].heading = "experiment";
+  return all;
 }
 
 void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
@@ -256,6 +234,8 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
         "`run` also continues {} to the number of cycles that an earlier command asked for",
         counted(longer, "run")));
   }
+  const std::vector<Facts> stages =
+      rows_of(lines, [&](const Line& line) { return facts(line, manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
                        {"scale", expanded.scale},
@@ -263,7 +243,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
                        {"notes", notes},
                        {"warnings", context.warnings},
                        {"runs", expanded.runs.size()},
-                       {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
+                       {"stages", to_json(stages)},
                        {"particle_steps_left", left.work.particle_steps},
                        {"particle_steps_left_with_until", with_until},
                        {"bytes_left", left.bytes},
@@ -274,7 +254,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   }
   fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
-  print_stages(lines, manifests.size() > 1);
+  print_table(stages);
   print_numerics(lines);
   if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {
     fmt::print("\nleft: nothing\n");

@@ -36,9 +36,8 @@ void report(ReportCommand& command, Context& context) {
   options.workers = usable_cores();
   options.measured = terminal_counter("measuring checkpoint");
   options.encoded = terminal_counter("reading checkpoint");
-  const ReportData made = collect_report(store, options);
-  const std::string html = report_page(made);
-  write_output(command.out, html);
+  const Report made = make_report(store, options);
+  write_output(command.out, made.html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
   if (!made.undrawn.empty()) fail(context, kOtherError);
   for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
@@ -49,26 +48,25 @@ void report(ReportCommand& command, Context& context) {
         "Figures are drawings and there are no packings: this program was built without "
         "Node.\n");
   }
-  const std::size_t packings = made.packings.runs.size();
   if (context.json) {
     return print_json({{"file", command.out},
-                       {"bytes", html.size()},
+                       {"bytes", made.html.size()},
                        {"interactive", made.interactive},
-                       {"experiments", made.experiments.size()},
-                       {"figures", made.figures.size()},
-                       {"stages", made.runs.size()},
-                       {"packings", packings},
-                       {"checkpoints", made.packings.frames},
+                       {"experiments", made.experiments},
+                       {"figures", made.figures},
+                       {"stages", made.stages},
+                       {"packings", made.packings},
+                       {"checkpoints", made.checkpoints},
                        {"damage", made.damage},
                        {"undrawn", made.undrawn},
                        {"notes", made.notes}});
   }
-  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),
-             counted(made.experiments.size(), "experiment"), counted(made.figures.size(), "figure"),
-             counted(made.runs.size(), "stage"));
+  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),
+             counted(made.experiments, "experiment"), counted(made.figures, "figure"),
+             counted(made.stages, "stage"));
   if (made.interactive) {
-    fmt::print(", {} of {} in 3D", counted(made.packings.frames, "checkpoint"),
-               counted(packings, "run"));
+    fmt::print(", {} of {} in 3D", counted(made.checkpoints, "checkpoint"),
+               counted(made.packings, "run"));
   }
   fmt::print("\n");
 }

@@ -59,8 +59,7 @@ std::size_t workers(const RunOptions& options) {
 
 CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options) {
   if (!options.task) catch_stop_signals();
-  Progress progress(jobs.size(), options.quiet);
-  return run_campaign(store, jobs, workers(options), progress, options.parallel);
+  return run_campaign(store, jobs, workers(options), options.parallel, options.quiet);
 }
 
 void run(const RunOptions& options, Context& context) {

@@ -14,7 +14,6 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/manifest/parameters.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/io/clock.hpp"

@@ -12,7 +12,6 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"

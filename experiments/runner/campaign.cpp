@@ -20,8 +20,10 @@
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -37,13 +39,113 @@ constexpr std::chrono::milliseconds kCheckInterval{500};
 // A run that was lost so often while no other program holds it cannot be computed.
 constexpr int kMostLosses = 20;
 
+// --- Progress on standard error ---
+
+std::string describe(const StageStatus& status) {
+  const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
+  const std::string where =
+      status.target_cycles > 0
+          ? fmt::format("cycle {:.2f} of {:g}", status.cycle, status.target_cycles)
+          : fmt::format("step {}", status.step);
+  const std::string left =
+      status.seconds_left >= 0 ? format_duration(status.seconds_left) + " left" : "";
+  return fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate, left);
+}
+
+/// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
+/// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
+class Progress {
+ public:
+  Progress(std::size_t stages, bool quiet)
+      : stages_(stages), quiet_(quiet), terminal_(moves_cursor(stderr)) {}
+  ~Progress() { erase(); }
+
+  void begin(const StageJob& job) {
+    const std::lock_guard lock(mutex_);
+    running_[job.id] = {job.name, "starting", {}};
+    if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
+  }
+
+  void update(const StageJob& job, const StageStatus& status) {
+    const std::lock_guard lock(mutex_);
+    Shown& shown = running_[job.id];
+    shown.text = describe(status);
+    if (quiet_) return;
+    if (terminal_) return draw();
+    if (shown.said.seconds() < 10) return;
+    shown.said.restart();
+    print_stderr("{}: {}\n", shown.name, shown.text);
+  }
+
+  /// `done` counts it among the stages that are done.
+  void end(const StageJob& job, const std::string& how, bool done) {
+    const std::lock_guard lock(mutex_);
+    running_.erase(job.id);
+    if (done) ++done_;
+    if (quiet_) return;
+    erase();
+    print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
+    if (terminal_) draw();
+  }
+
+  /// Counts a stage that was done before among those that are done.
+  void count() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+  }
+
+  /// This program no longer computes the stage.
+  void drop(const StageJob& job) {
+    const std::lock_guard lock(mutex_);
+    running_.erase(job.id);
+    erase();
+  }
+
+  /// A permanent line; a `minor` one only if progress is shown.
+  void say(const std::string& line, bool minor = false) {
+    const std::lock_guard lock(mutex_);
+    if (minor && quiet_) return;
+    erase();
+    print_stderr("{}\n", line);
+  }
+
+ private:
+  struct Shown {
+    std::string name, text;
+    Stopwatch said;
+  };
+
+  void erase() {
+    for (; drawn_ > 0; --drawn_) write_stderr("\x1b[1A\x1b[2K");
+  }
+
+  void draw() {
+    erase();
+    // A longer line would wrap, and drawing over it would leave its beginning behind.
+    const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
+    std::multimap<std::string, std::string> lines;
+    for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
+    for (const auto& [name, text] : lines) {
+      print_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
+      ++drawn_;
+    }
+  }
+
+  std::mutex mutex_;
+  std::size_t stages_, done_ = 0;
+  bool quiet_, terminal_;
+  std::size_t drawn_ = 0;                 ///< lines on the screen that the next drawing replaces
+  std::map<std::string, Shown> running_;  ///< by id
+};
+
+// --- Scheduling ---
+
 class Campaign {
  public:
-  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress,
-           const Parallel& parallel)
+  Campaign(Store& store, const std::vector<StageJob>& jobs, const Parallel& parallel, bool quiet)
       : store_(store),
         jobs_(jobs),
-        progress_(progress),
+        progress_(jobs.size(), quiet),
         parallel_(parallel),
         states_(jobs.size()) {}
 
@@ -152,10 +254,11 @@ class Campaign {
     }
     if (holders.empty()) return;  // it has just ended
     shown_held_ = held;
-    progress_.note(
+    progress_.say(
         fmt::format("waiting for {} that another program computes ({}); a stage is free when its "
                     "holder has ended or been silent for {} s",
-                    counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000));
+                    counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
+        true);
   }
 
   JobState run_job(std::size_t j, bool was_held) {
@@ -179,7 +282,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
     }
-    progress_.drop(job.id);
+    progress_.drop(job);
     return JobState::ended;
   }
 
@@ -211,25 +314,26 @@ class Campaign {
       note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
-    progress_.begin(job.id, job.name);
+    progress_.begin(job);
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
       case StageOutcome::completed:
-        finish(job, &CampaignResult::completed, done_text(job), true);
+      case StageOutcome::already: {
+        const bool now = outcome == StageOutcome::completed;
+        finish(job, now ? &CampaignResult::completed : &CampaignResult::already, done_text(job),
+               true);
         return JobState::done;
-      case StageOutcome::already:
-        finish(job, &CampaignResult::already, done_text(job), true);
-        return JobState::done;
+      }
       case StageOutcome::interrupted:
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
       case StageOutcome::failed:
         note(job, &CampaignResult::failed, store_.run(job.id).error);
-        progress_.end(job.id, job.name, "FAILED", false);
+        progress_.end(job, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
       case StageOutcome::lost:
-        progress_.drop(job.id);
+        progress_.drop(job);
         if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be started; `shearcell verify` may show why");
@@ -246,7 +350,7 @@ class Campaign {
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
-    options.report = [&](const StageStatus& status) { progress_.update(job.id, status); };
+    options.report = [&](const StageStatus& status) { progress_.update(job, status); };
     return options;
   }
 
@@ -261,7 +365,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       ++(result_.*count);
     }
-    progress_.end(job.id, job.name, how, done);
+    progress_.end(job, how, done);
   }
 
   void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
@@ -275,7 +379,7 @@ class Campaign {
 
   Store& store_;
   const std::vector<StageJob>& jobs_;
-  Progress& progress_;
+  Progress progress_;
   Parallel parallel_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
@@ -368,8 +472,8 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress, const Parallel& parallel) {
-  return Campaign(store, jobs, progress, parallel).run(workers);
+                            const Parallel& parallel, bool quiet) {
+  return Campaign(store, jobs, parallel, quiet).run(workers);
 }
 
 }  // namespace shearcell

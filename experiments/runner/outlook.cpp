@@ -15,7 +15,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
-#include "experiments/runner/cost.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
@@ -36,16 +35,30 @@ std::optional<Until> until_of(const Membership& ask) try {
   throw StoreDamaged(fmt::format("a record of experiment {}: {}", ask.experiment, problem.what()));
 }
 
+/// Outlook::ended, as a completion recorded it.
+struct EarlyEnd {
+  Until until;
+  double reached = 0;  ///< the cycle at which `until` was reached
+};
+
+/// Nothing for another end, or where this program cannot read it.
+std::optional<EarlyEnd> early_end(const json& ended) {
+  const json measure = member_of(ended, "measure"), cycle = member_of(ended, "reached_at_cycle");
+  if (member_of(ended, "by") != "until" || !measure.is_string() || !cycle.is_number()) return {};
+  try {
+    const json until = {{measure.get<std::string>(), member_of(ended, "value")},
+                        {"extra_cycles", member_of(ended, "extra_cycles")}};
+    return EarlyEnd{until_from_json(until), cycle.get<double>()};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 /// The cycle at which the stage reached this `until`, as a completion recorded it.
 std::optional<double> recorded_reach(const RunRecord& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
-    const json cycle = member_of(ended, "reached_at_cycle");
-    if (member_of(ended, "measure") == name_of(until.measure) &&
-        member_of(ended, "value") == until.value &&
-        member_of(ended, "extra_cycles") == until.extra_cycles && cycle.is_number() &&
-        std::fmod(cycle.get<double>(), every) == 0) {
-      return cycle.get<double>();
-    }
+    const auto end = early_end(ended);
+    if (end && end->until == until && std::fmod(end->reached, every) == 0) return end->reached;
   }
   return std::nullopt;
 }
@@ -284,31 +297,16 @@ void measure_from(const Store& store, const CheckpointRecord& first,
   if (!chosen.front()->measures) refuse_unread(first);
 }
 
-/// Whether it is Outlook::ended.
-bool is_early_end(const json& ended) {
-  return member_of(ended, "by") == "until" && member_of(ended, "measure").is_string() &&
-         member_of(ended, "value").is_number() &&
-         member_of(ended, "extra_cycles").is_number_unsigned() &&
-         member_of(ended, "reached_at_cycle").is_number();
-}
-
-/// Whether the recorded end is by this `until` of an ask.
-bool ended_by(const json& ended, const json& until) {
-  const auto measure = ended.at("measure").get<std::string>();
-  return member_of(until, measure.c_str()) == ended.at("value") &&
-         member_of(until, "extra_cycles") == ended.at("extra_cycles");
-}
-
 /// The most cycles [at most those that the stage has] for which an experiment without this `until`
 /// asked when the stage ended; 0 without any.
-double longest_length(const RunRecord& stage, const json& ended) {
+double longest_length(const RunRecord& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
   double longest = 0;
   for (const Membership& ask : stage.memberships) {  // in the order of declaration
     if (left-- == 0) break;
     const auto cycles = static_cast<double>(ask.target_cycles);
-    if (cycles <= stage.cycle && !ended_by(ended, ask.until)) longest = std::max(longest, cycles);
+    if (cycles <= stage.cycle && ask.until != until) longest = std::max(longest, cycles);
   }
   return longest;
 }
@@ -401,17 +399,14 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecor
 }
 
 json end_of(const RunRecord& stage) {
-  if (stage.state != RunState::completed || stage.ends.empty() ||
-      stage.cycle >= static_cast<double>(stage.target_cycles)) {
-    return json();
-  }
+  const bool before_last = stage.cycle < static_cast<double>(stage.target_cycles);
+  if (stage.state != RunState::completed || stage.ends.empty() || !before_last) return json();
   json ended = stage.ends.back();
-  if (!is_early_end(ended)) return json();
-  const double reached =
-      ended["reached_at_cycle"].get<double>() + ended["extra_cycles"].get<double>();
-  if (const double asked = longest_length(stage, ended); asked > reached) {
-    ended["cycles_asked"] = asked;
-  }
+  const auto end = early_end(ended);
+  if (!end) return json();
+  const double reached = end->reached + static_cast<double>(end->until.extra_cycles);
+  const double asked = longest_length(stage, ended, to_json(end->until));
+  if (asked > reached) ended["cycles_asked"] = asked;
   return ended;
 }
 
@@ -432,12 +427,107 @@ std::optional<double> expected_end(std::span<const RunRecord> stages, const json
   double sum = 0, count = 0;
   for (const RunRecord& stage : stages) {
     const json ended = end_of(stage);
-    if (ended.is_null() || ended.contains("cycles_asked") || !ended_by(ended, until)) continue;
+    const auto end = early_end(ended);
+    if (!end || ended.contains("cycles_asked") || to_json(end->until) != until) continue;
     sum += stage.cycle;
     ++count;
   }
   if (count == 0) return std::nullopt;
   return sum / count;
+}
+
+// --- What it costs ---
+
+namespace {
+
+// Particle-steps/s assumed until the store has measured them: rough cells on one core of an EPYC
+// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process (SCALING.md).
+struct MeasuredRate {
+  double grains, rate;
+};
+constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
+constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
+
+// A power law in N between two measured sizes, constant beyond the outermost ones.
+double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
+  if (grains <= rates.front().grains) return rates.front().rate;
+  for (std::size_t i = 1; i < rates.size(); ++i) {
+    const MeasuredRate &a = rates[i - 1], &b = rates[i];
+    if (grains > b.grains) continue;
+    const double part = std::log(grains / a.grains) / std::log(b.grains / a.grains);
+    return a.rate * std::pow(b.rate / a.rate, part);
+  }
+  return rates.back().rate;
+}
+
+// Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
+constexpr double kBytesPerGrain = 121;
+constexpr double kBytesPerWallGrain = 98;
+constexpr double kBytesPerFile = 18e3;
+
+}  // namespace
+
+double run_bytes(const Geometry& shape) {
+  return kRunBytesPerGrain * (static_cast<double>(shape.grains) + wall_grain_count(shape));
+}
+
+double checkpoint_bytes(const Geometry& shape) {
+  return kBytesPerFile + kBytesPerGrain * static_cast<double>(shape.grains) +
+         kBytesPerWallGrain * wall_grain_count(shape);
+}
+
+double settling_time_s(const Parameters& p) {
+  const double height = p.height_over_width * cell_width(geometry(p));
+  const double time = 0.6 + 0.00175 * height * height;
+  return std::min(std::max(time, damping_time_s(p)), p.settle_time_limit_s);
+}
+
+double minimization_evaluations(double grains) {
+  return 18e3 * std::pow(grains / 2000, 0.7);
+}
+
+Rates::Rates(const std::vector<RunRecord>& runs) {
+  for (const RunRecord& run : runs) {
+    Sum& sum = sums_[engine_of(run.resolved)];
+    sum.steps += run.particle_steps;
+    sum.seconds += run.wall_seconds;
+  }
+}
+
+Rate Rates::of(const RunRecord& stage) const {
+  const EngineKind engine = engine_of(stage.resolved);
+  const auto grains = static_cast<double>(stage.grains);
+  const auto sum = sums_.find(engine);
+  if (sum != sums_.end() && sum->second.seconds >= 1) {
+    return {sum->second.steps / sum->second.seconds, true};
+  }
+  if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
+  return {assumed_rate(kOurRates, grains), false};
+}
+
+void Work::add(const RunRecord& stage, double steps_left, const Rates& rates) {
+  const Rate rate = rates.of(stage);
+  const double own_seconds = steps_left / rate.particle_steps_per_second;
+  ++stages;
+  particle_steps += steps_left;
+  core_seconds += own_seconds;
+  measured = measured && rate.measured;
+  longest_seconds = std::max(longest_seconds, chain[stage.id] = chain[stage.parent] + own_seconds);
+}
+
+double Work::seconds(std::size_t at_a_time) const {
+  return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
+}
+
+std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs) {
+  std::set<std::string> failed, waiting;
+  for (const RunRecord& run : runs) {
+    if (run.state == RunState::failed) failed.insert(run.id);
+  }
+  for (const RunRecord& run : runs) {
+    if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
+  }
+  return waiting;
 }
 
 }  // namespace shearcell

@@ -17,7 +17,6 @@
 #include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "experiments/cluster/submission.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/files.hpp"

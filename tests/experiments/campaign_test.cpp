@@ -142,8 +142,7 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].id, wanted.parent);
   EXPECT_EQ(jobs[1].id, wanted.id);
-  Progress progress(jobs.size(), true);
-  EXPECT_EQ(run_campaign(store_, jobs, 1, progress).completed, 2U);
+  EXPECT_EQ(run_campaign(store_, jobs, 1, {}, true).completed, 2U);
   EXPECT_EQ(store_.run(wanted.id).state, RunState::completed);
   EXPECT_EQ(store_.run(all[1].id).state, RunState::declared);
 

@@ -9,7 +9,6 @@
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"

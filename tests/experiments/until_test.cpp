@@ -7,7 +7,6 @@
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
