@@ -60,13 +60,14 @@ void add_json_option(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print JSON for programs");
 }
 
-void add_common_options(CLI::App& command, Context& context) {
+void add_common_options(CLI::App& command, Context& context, const std::string& footer) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->default_str(
           Context{}.store)  // not the variable's, so that the manual is the same everywhere
       ->check(unnamed)
       ->type_name("DIR");
   add_json_option(command, context);
+  command.footer(footer);
 }
 
 namespace {

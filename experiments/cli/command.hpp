@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "experiments/figures/select_runs.hpp"
@@ -66,8 +68,18 @@ std::string unnamed(const std::string& path);
 /// --json.
 void add_json_option(CLI::App& command, Context& context);
 
-/// --store DIR and --json.
-void add_common_options(CLI::App& command, Context& context);
+/// Adds a subcommand that calls run(options, context). Its options live as long as the parser.
+template <class Options>
+auto add_command(CLI::App& app, Context& context, const char* name, const char* about,
+                 void (*run)(Options&, Context&)) {
+  const auto options = std::make_shared<std::remove_const_t<Options>>();
+  CLI::App* command = app.add_subcommand(name, about);
+  command->callback([options, run, &context] { run(*options, context); });
+  return std::pair(command, options.get());
+}
+
+/// --store DIR and --json, and the text below all options.
+void add_common_options(CLI::App& command, Context& context, const std::string& footer);
 
 /// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
@@ -137,26 +149,14 @@ nlohmann::json json_list(const auto& items, const auto& facts) {
   return list;
 }
 
-using Row = std::vector<std::string>;
-
-/// Prints rows under a header, each column as wide as its longest cell; numbers are right-aligned.
-/// On a terminal, long words are cut with ~ at the end so that the table fits, and states have
-/// colours.
-void print_table(const Row& header, const std::vector<Row>& rows);
-
-/// The same with row(item) for each item.
-void print_table(const Row& header, const auto& items, const auto& row) {
-  std::vector<Row> rows;
-  for (const auto& item : items) rows.push_back(row(item));
-  print_table(header, rows);
-}
-
 /// One value of a result: a key of its JSON and, with a heading, a cell of its table or a line.
 struct Fact {
   std::string key;  ///< "" for text alone
   nlohmann::json value;
   std::optional<std::string> heading = {};  ///< of the column or line; none for JSON alone
   std::optional<std::string> text = {};     ///< in the table or line; none: the value itself
+
+  bool operator==(const Fact&) const = default;
 };
 using Facts = std::vector<Fact>;  ///< of one row, or of one thing
 
@@ -164,7 +164,9 @@ using Facts = std::vector<Fact>;  ///< of one row, or of one thing
 nlohmann::json to_json(const Facts& facts);
 nlohmann::json to_json(const std::vector<Facts>& rows);
 
-/// Prints a row for each; all have the same headings.
+/// Prints rows under their headings, which all of them have; each column as wide as its longest
+/// cell, numbers right-aligned. On a terminal, long words are cut with ~ at the end so that the
+/// table fits, and states have colours.
 void print_table(const std::vector<Facts>& rows);
 
 /// Prints "HEADING  text" for each fact that has a heading. Further lines of the text stand below

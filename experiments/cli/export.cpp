@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <memory>
 #include <ranges>
 #include <sstream>
 #include <stdexcept>
@@ -326,8 +325,8 @@ void export_runs(const ExportOptions& options, Context& context) {
 }  // namespace
 
 void add_export(CLI::App& app, Context& context) {
-  auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write runs in the formats of other programs");
+  const auto [command, options] = add_command(
+      app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
       "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
   add_selection_options(*command, options->selection);
@@ -354,10 +353,10 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       formats +
-      R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
+          R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
 each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
 lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
 wall grains and the tilted cell. Writes a single RUN to PATH; several runs, or those that options
@@ -368,7 +367,6 @@ Examples:
   shearcell export 3f9a --to vtk --out frames
   shearcell export --experiment drag --variant fluid=cell --to extxyz --out packings
   shearcell export 3f9a --to ro-crate --out crate)");
-  command->callback([options, &context] { export_runs(*options, context); });
 }
 
 }  // namespace shearcell::cli

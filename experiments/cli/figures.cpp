@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
 #include <set>
 
 #include "analysis/error.hpp"
@@ -137,10 +136,10 @@ std::string list_of_figures() {
 }  // namespace
 
 void add_figures(CLI::App& app, Context& context) {
-  auto options = std::make_shared<FigureArguments>();
+  const auto [command, options] =
+      add_command(app, context, "figures", "Draw figures from stored checkpoints", figures);
   FigureOptions& how = options->how;
   how.folder = "shearcell-figures";
-  CLI::App* command = app.add_subcommand("figures", "Draw figures from stored checkpoints");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
@@ -154,12 +153,12 @@ void add_figures(CLI::App& app, Context& context) {
       "Scale of the runs (default: for each experiment, that of its run added last)");
   command
       ->add_option_function<std::string>(
-          "--width", [options](const std::string& width) { options->how.wide = width == "double"; },
+          "--width", [&how](const std::string& width) { how.wide = width == "double"; },
           "Width of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
 manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
 NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
@@ -170,9 +169,8 @@ in the store's derived.sqlite. If you delete that file, they are measured again,
 pruned checkpoints (see `regenerate`).
 Figures and the keys that they compare (some have a curve for each value of other keys too):
 )" + list_of_figures() +
-      "Examples:\n  shearcell figures S2 --out figures\n"
-      "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
-  command->callback([options, &context] { figures(*options, context); });
+          "Examples:\n  shearcell figures S2 --out figures\n"
+          "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
 }
 
 }  // namespace shearcell::cli

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -105,13 +104,13 @@ void merge(const std::vector<std::string>& sources, Context& context) {
 }  // namespace
 
 void add_merge(CLI::App& app, Context& context) {
-  auto sources = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("merge", "Merge other stores into this one");
+  const auto [command, sources] =
+      add_command(app, context, "merge", "Merge other stores into this one", merge);
   command->add_option("source", *sources, "Folders of the stores to merge")
       ->required()
       ->type_name("STORE");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Checks the chain of each source and every file to copy before anything changes. Refuses two
 stores that record different states of one run at one step. The sources stay unchanged, and
 merging twice changes nothing. If the stores have different versions of a manifest, figures show
@@ -120,7 +119,6 @@ manifest that states the runs of both: it computes nothing new. Cached measures 
 recomputed ones are right.
 Examples:
   shearcell merge task-1 task-2 --store all)");
-  command->callback([sources, &context] { merge(*sources, context); });
 }
 
 }  // namespace shearcell::cli

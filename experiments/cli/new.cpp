@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <memory>
 #include <sstream>
 #include <system_error>
 
@@ -109,7 +108,8 @@ void write_new(const std::filesystem::path& file, const std::string& text) try {
   throw UsageError(file.string() + ": the file exists already. Choose another name, or remove it.");
 }
 
-void make(std::filesystem::path file) {
+void make(const std::string& name, Context&) {
+  std::filesystem::path file = name;
   const bool whole = file.extension() == ".yaml" || file.extension() == ".yml";
   const std::string experiment = (whole ? file.stem() : file.filename()).string();
   if (!whole) file += ".yaml";
@@ -128,9 +128,8 @@ void make(std::filesystem::path file) {
 
 }  // namespace
 
-void add_new(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("new", "Write a commented manifest");
-  auto name = std::make_shared<std::string>();
+void add_new(CLI::App& app, Context& context) {
+  const auto [command, name] = add_command(app, context, "new", "Write a commented manifest", make);
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
       R"(Writes every parameter with its meaning and default, a sweep of `fluid`, and three scales.
@@ -138,7 +137,6 @@ Refuses to overwrite a file.
 Examples:
   shearcell new softer
   shearcell new studies/softer.yaml)");
-  command->callback([name] { make(*name); });
 }
 
 }  // namespace shearcell::cli

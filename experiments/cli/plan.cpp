@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -65,23 +64,23 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 
 // Time steps and overlap of every kind of stage, each once.
 void print_numerics(const std::vector<Line>& lines) {
-  std::vector<Row> rows;
+  std::vector<Facts> rows;
   for (const Line& line : lines) {
     const Parameters& p = line.run->parameters;
     const std::string& kind = line.stage.kind;
-    Row row = {kind, kind == name_of(Stage::prepare) ? "" : line.run->name,
-               kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : ""};
     const auto step = time_step_of(line);
-    row.push_back(step ? fmt::format("{:.4g}", step->seconds) : "");
-    row.push_back(step ? fmt::format("{:.3f}", step->over_contact_time) : "");
-    row.push_back(step ? fmt::format("{:.3f}", step->over_stability_limit) : "");
-    row.push_back(fmt::format("{:.2g}", expected_overlap(p)));
+    Facts row = {
+        {"", kind, "stage"},
+        {"", kind == name_of(Stage::prepare) ? "" : line.run->name, "variant"},
+        {"", kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : "", "steps/cycle"},
+        {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
+        {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
+        {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
+        {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // mean, as expected
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
-  // The mean overlap that is to be expected.
-  print_table(
-      {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
+  print_table(rows);
 }
 
 // What our own simulation has and LAMMPS lacks or has only approximately.
@@ -205,9 +204,13 @@ Facts facts(const Line& line, bool of_several_experiments) {
   return all;
 }
 
-void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
-          Context& context) {
-  const std::vector<Plan> plans = load_manifests(manifests, options, context).plans;
+struct PlanOptions {
+  std::vector<std::string> manifests;
+  ExpandOptions expand;
+};
+
+void plan(const PlanOptions& options, Context& context) {
+  const std::vector<Plan> plans = load_manifests(options.manifests, options.expand, context).plans;
   const Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->runs() : std::vector<RunRecord>{};
@@ -235,7 +238,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
         counted(longer, "run")));
   }
   const std::vector<Facts> stages =
-      rows_of(lines, [&](const Line& line) { return facts(line, manifests.size() > 1); });
+      rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
                        {"scale", expanded.scale},
@@ -274,20 +277,17 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  auto manifests = std::make_shared<std::vector<std::string>>();
-  auto options = std::make_shared<ExpandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "plan", "Show the runs of manifests, what is done, and the cost of the rest");
-  command->add_option("manifest", *manifests, "YAML manifests")->required();
-  add_expand_options(*command, *options);
-  add_engine_option(*command, *options);
-  add_common_options(*command, context);
-  command->footer(
-      "Runs that several of the manifests share are counted once.\n"
-      "Examples:\n"
-      "  shearcell plan experiments/drag.yaml --scale paper\n"
-      "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
-  command->callback([manifests, options, &context] { plan(*manifests, *options, context); });
+  const auto [command, options] =
+      add_command(app, context, "plan",
+                  "Show the runs of manifests, what is done, and the cost of the rest", plan);
+  command->add_option("manifest", options->manifests, "YAML manifests")->required();
+  add_expand_options(*command, options->expand);
+  add_engine_option(*command, options->expand);
+  add_common_options(*command, context,
+                     "Runs that several of the manifests share are counted once.\n"
+                     "Examples:\n"
+                     "  shearcell plan experiments/drag.yaml --scale paper\n"
+                     "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
 }
 
 }  // namespace shearcell::cli

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -72,22 +71,21 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 }
 
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
-  std::map<std::string, std::vector<CheckpointRecord>> by_run;
-  for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
-  print_table({"run", "experiment", "state", "to free", "of", "bytes"}, by_run,
-              [&](const auto& freed) -> Row {
-                const auto& [id, of_run] = freed;
-                const RunRecord run = store.run(id);
-                // All experiments that have the run: they lose its files too.
-                std::set<std::string> experiments;
-                for (const Membership& m : run.memberships) experiments.insert(m.experiment);
-                return {id.substr(0, 8),
-                        fmt::format("{}", fmt::join(experiments, ", ")),
-                        std::string(name_of(run.state)),
-                        std::to_string(of_run.size()),
-                        std::to_string(store.checkpoints(id).size()),
-                        format_bytes(bytes_of(of_run))};
-              });
+  std::map<std::string, std::vector<CheckpointRecord>> freed_by_run;
+  for (const CheckpointRecord& record : records) freed_by_run[record.run].push_back(record);
+  print_table(rows_of(freed_by_run, [&](const auto& freed) -> Facts {
+    const auto& [id, of_run] = freed;
+    const RunRecord run = store.run(id);
+    // All experiments that have the run: they lose its files too.
+    std::set<std::string> experiments;
+    for (const Membership& m : run.memberships) experiments.insert(m.experiment);
+    return {{"", id.substr(0, 8), "run"},
+            {"", fmt::format("{}", fmt::join(experiments, ", ")), "experiment"},
+            {"", name_of(run.state), "state"},
+            {"", of_run.size(), "to free"},
+            {"", store.checkpoints(id).size(), "of"},
+            {"", format_bytes(bytes_of(of_run)), "bytes"}};
+  }));
 }
 
 bool agreed() {
@@ -259,17 +257,17 @@ void regenerate(const RegenerateOptions& options, Context& context) {
 }  // namespace
 
 void add_prune(CLI::App& app, Context& context) {
-  auto options = std::make_shared<PruneOptions>();
-  CLI::App* command = app.add_subcommand(
-      "prune", "Delete checkpoint files that can be recomputed; records and measures stay");
+  const auto [command, options] = add_command(
+      app, context, "prune",
+      "Delete checkpoint files that can be recomputed; records and measures stay", prune);
   command->add_option("run", options->choice.runs,
                       "Only these runs: ids, or unique beginnings of them");
   add_selection_options(*command, options->selection, true);
   add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
              1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
 deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those that
 other stages started from, or those of LAMMPS.
@@ -282,27 +280,25 @@ Examples:
   shearcell prune --keep-every 10
   shearcell prune --experiment drag --scale smoke --keep-every 10
   shearcell prune --state failed --yes)");
-  command->callback([options, &context] { prune(*options, context); });
 }
 
 void add_regenerate(CLI::App& app, Context& context) {
-  auto options = std::make_shared<RegenerateOptions>();
-  CLI::App* command =
-      app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
+  const auto [command, options] =
+      add_command(app, context, "regenerate",
+                  "Recompute the files of pruned or damaged checkpoints", regenerate);
   command->add_option("checkpoint", options->checkpoints,
                       "SHA-256 of checkpoints, or beginnings of them");
   add_selection_options(*command, options->selection, true);
   command->add_flag("--all", options->all, "All checkpoints of the store without an intact file");
   add_threads_option(*command, options->threads, "Threads, for large cells");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
 hash, writes nothing, records ReplayDiverged and ends with code 4.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk
   shearcell regenerate --all)");
-  command->callback([options, &context] { regenerate(*options, context); });
 }
 
 }  // namespace shearcell::cli

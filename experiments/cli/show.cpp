@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -237,6 +236,8 @@ std::string moment(const std::string& utc) {
 
 // Numbers builds and hosts, so that the lines of attempts stay short.
 class Makers {
+  using Lines = std::vector<std::string>;
+
  public:
   /// "build 1, host 1".
   std::string number(const nlohmann::json& host) {
@@ -258,13 +259,13 @@ class Makers {
   }
 
  private:
-  static std::size_t number(std::vector<Row>& known, const Row& lines) {
+  static std::size_t number(std::vector<Lines>& known, const Lines& lines) {
     const auto found = std::ranges::find(known, lines);
     const auto place = static_cast<std::size_t>(found - known.begin());
     if (found == known.end()) known.push_back(lines);
     return place + 1;
   }
-  std::vector<Row> builds_, hosts_;  // lines to print
+  std::vector<Lines> builds_, hosts_;  // lines to print
 };
 
 void print_manifests(const FigureLineage& lineage) {
@@ -439,7 +440,13 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-void show(const std::string& name, bool list, Context& context) {
+struct ShowOptions {
+  std::string name;
+  bool list = false;  ///< every checkpoint behind a figure
+};
+
+void show(const ShowOptions& options, Context& context) {
+  const auto& [name, list] = options;
   const Store store(context.store, Access::read);
   if (const auto figure = find_record(store, name))
     return show_figure(store, *figure, list, context);
@@ -465,17 +472,15 @@ void show(const std::string& name, bool list, Context& context) {
 }  // namespace
 
 void add_show(CLI::App& app, Context& context) {
-  auto name = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("show", "Show one run, checkpoint, figure or figure's file");
+  const auto [command, options] =
+      add_command(app, context, "show", "Show one run, checkpoint, figure or figure's file", show);
   command
-      ->add_option("name", *name,
+      ->add_option("name", options->name,
                    "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
       ->required();
-  auto list = std::make_shared<bool>(false);
-  command->add_flag("--checkpoints", *list, "List every checkpoint behind a figure");
-  add_common_options(*command, context);
-  command->footer(
+  command->add_flag("--checkpoints", options->list, "List every checkpoint behind a figure");
+  add_common_options(
+      *command, context,
       R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and
 cycles, and checks that the log has the states of which it was made; exit code 4 if not.
 For a file (CSV, SVG or lineage): checks that it is what the store recorded and that every
@@ -487,7 +492,6 @@ Examples:
   shearcell show 3f9a
   shearcell show drag/smoke/S2
   shearcell show figures/drag/smoke/S2a.csv)");
-  command->callback([name, list, &context] { show(*name, *list, context); });
 }
 
 }  // namespace shearcell::cli

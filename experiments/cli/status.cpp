@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -232,7 +231,9 @@ void print(const View& view) {
   }
 }
 
-void print_facts(const View& view) {
+void status(const RunSelection& selection, Context& context) {
+  const View view(selection, context);
+  if (!context.json) return print(view);
   const std::string& problem = view.queue.problem;
   print_json({{"runs", json_list(view.runs,
                                  [&](const PlacedRun& run) {
@@ -253,11 +254,12 @@ void print_facts(const View& view) {
 }  // namespace
 
 void add_status(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("status", "List the runs of the store");
-  add_common_options(*command, context);
-  auto selection = std::make_shared<RunSelection>(RunSelection{.packings = true});
+  const auto [command, selection] =
+      add_command(app, context, "status", "List the runs of the store", status);
+  selection->packings = true;
   add_selection_options(*command, *selection, true);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(M/s is million particle-steps per second over all recorded work. A run that is `running` but
 that no program holds was killed; `resume` continues it. Runs on a cluster show their place in its
 queue and the progress of their tasks. The time left is estimated from the speed so far.
@@ -266,10 +268,6 @@ Examples:
   watch -n 10 shearcell status
   shearcell status --json
   shearcell status --experiment drag --state failed)");
-  command->callback([selection, &context] {
-    const View view(*selection, context);
-    context.json ? print_facts(view) : print(view);
-  });
 }
 
 }  // namespace shearcell::cli
