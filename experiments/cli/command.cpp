@@ -149,10 +149,10 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
   add_seed_option(command, selection.seeds);
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
-      ->check(one_of<RunState>());
+      ->check(one_of<StageState>());
 }
 
-std::vector<PlacedRun> by_run(const std::vector<SelectedRun>& selected) {
+std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   std::vector<PlacedRun> runs;
   std::map<std::string, std::size_t> known;  // index in `runs`, by id
   for (const auto& [run, place] : selected) {
@@ -183,9 +183,9 @@ void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& contex
 }
 
 // Of the store, for warnings.
-std::vector<RunRecord> known_runs(const Context& context) {
+std::vector<Stage> known_runs(const Context& context) {
   try {
-    if (const auto store = open_if_there(context.store)) return store->runs();
+    if (const auto store = open_if_there(context.store)) return store->stages();
   } catch (const std::exception&) {
     // The command opens the store next, or creates it, and reports what is wrong.
   }
@@ -194,13 +194,13 @@ std::vector<RunRecord> known_runs(const Context& context) {
 
 // Figures show the newest version of those that have runs at the scale.
 void warn_of_other_version(const Manifest& manifest, const Plan& plan,
-                           const std::vector<RunRecord>& known, Context& context) {
+                           const std::vector<Stage>& known, Context& context) {
   std::set<std::string> planned;
   for (const PlannedRun& run : plan.runs) planned.insert(run.last.id);
   const std::string own = sha256_hex(manifest.text);
-  const auto left_out = std::ranges::count_if(known, [&](const RunRecord& run) {
-    if (run.kind == name_of(Stage::prepare) || planned.contains(run.id)) return false;
-    return std::ranges::any_of(run.memberships, [&](const Membership& m) {
+  const auto left_out = std::ranges::count_if(known, [&](const Stage& run) {
+    if (run.kind == name_of(StageKind::prepare) || planned.contains(run.id)) return false;
+    return std::ranges::any_of(run.asks, [&](const Ask& m) {
       return m.newest && m.manifest != own && m.experiment == plan.experiment &&
              m.scale == plan.scale;
     });
@@ -224,7 +224,7 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
     if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
   }
   warn_of_equal_names(loaded.manifests, context);
-  const std::vector<RunRecord> known = known_runs(context);
+  const std::vector<Stage> known = known_runs(context);
   ExpandOptions with_known = options;
   with_known.known = known;
   for (const Manifest& manifest : loaded.manifests) {

@@ -99,12 +99,12 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 
 /// A run with those of its places that are selected.
 struct PlacedRun {
-  RunRecord run;
-  std::vector<Membership> places;
+  Stage run;
+  std::vector<Ask> places;
 };
 
 /// Each run once, in the order of its first place.
-std::vector<PlacedRun> by_run(const std::vector<SelectedRun>& selected);
+std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// An error message if the text is not a decimal number from `low` to `high`; else "". A double may
 /// have a fraction and an exponent; a std::uint64_t must not have leading zeros.

@@ -95,10 +95,10 @@ CycleRange parse_cycles(const std::string& text) {
 // The checkpoints that the selected experiments ask for; of a run without places, which was named
 // by its id, those that any experiment asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
-  const RunRecord& run = wanted.run;
-  if (wanted.places.empty()) return checkpoints_for(store, run, run.memberships);
+  const Stage& run = wanted.run;
+  if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
   std::map<std::uint64_t, CheckpointRecord> all;  // by step
-  for (const Membership& place : wanted.places) {
+  for (const Ask& place : wanted.places) {
     for (CheckpointRecord& record : checkpoints_for(store, run, place, {})) {
       all.try_emplace(record.step, std::move(record));
     }
@@ -109,7 +109,7 @@ std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& want
 
 std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
                                      const ExportOptions& options) {
-  const RunRecord& run = wanted.run;
+  const Stage& run = wanted.run;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
@@ -171,8 +171,8 @@ std::vector<std::string> constants_of_records() {
 }
 
 /// The place that names the run.
-Membership shown_place(const PlacedRun& run) {
-  return run.places.empty() ? first_membership(run.run) : run.places.front();
+Ask shown_place(const PlacedRun& run) {
+  return run.places.empty() ? first_ask(run.run) : run.places.front();
 }
 
 /// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
@@ -189,8 +189,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const Lengths lengths = options.metres ? Lengths::metres : Lengths::diameters;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), lengths)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every =
-      checkpoint_cadence(run.places.empty() ? run.run.memberships : run.places);
+  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.run.asks : run.places);
   MeasureSources sources(store, {{run.run.id, every}});
   sources.read_run(run.run.id);
   for (const CheckpointRecord& record : records) {
@@ -226,7 +225,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
-    RunRecord run = store.find_run(prefix);
+    Stage run = store.find_stage(prefix);
     const auto is_it = [&](const PlacedRun& other) { return other.run.id == run.id; };
     if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(run), {}});
   }
@@ -240,7 +239,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
-  const Membership m = shown_place(run);
+  const Ask m = shown_place(run);
   std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
                                  m.variant.substr(0, 100), m.seed, run.run.id, format.ending);
   std::ranges::replace_if(

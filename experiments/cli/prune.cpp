@@ -51,7 +51,7 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
                                "choose what to delete: --keep-every K, --experiment E, --state "
                                "STATE, or runs; see prune --help");
   }
-  for (std::string& run : choice.runs) run = store.find_run(run).id;
+  for (std::string& run : choice.runs) run = store.find_stage(run).id;
   if (filtered) {
     std::vector<std::string> ids = selected_ids(store, options.selection);
     const bool named = !choice.runs.empty();
@@ -75,10 +75,10 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   for (const CheckpointRecord& record : records) freed_by_run[record.run].push_back(record);
   print_table(rows_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
-    const RunRecord run = store.run(id);
+    const Stage run = store.stage(id);
     // All experiments that have the run: they lose its files too.
     std::set<std::string> experiments;
-    for (const Membership& m : run.memberships) experiments.insert(m.experiment);
+    for (const Ask& m : run.asks) experiments.insert(m.experiment);
     return {{"", id.substr(0, 8), "run"},
             {"", fmt::format("{}", fmt::join(experiments, ", ")), "experiment"},
             {"", name_of(run.state), "state"},
@@ -99,7 +99,7 @@ void prune(const PruneOptions& options, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records = prunable(options, store);
   const std::size_t kept = std::erase_if(
-      records, [&](const CheckpointRecord& c) { return why_not_again(store.run(c.run)); });
+      records, [&](const CheckpointRecord& c) { return why_not_again(store.stage(c.run)); });
   if (!context.json && kept > 0) {
     fmt::print("{} checkpoints of LAMMPS are kept: they cannot be recomputed\n", kept);
   }
@@ -180,7 +180,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   if (record.state == CheckpointState::recorded && store.load_if_readable(record)) {
     return say("kept", "the file is intact");
   }
-  if (const auto why = why_not_again(store.run(record.run))) {
+  if (const auto why = why_not_again(store.stage(record.run))) {
     fail(context, kOtherError);
     facts["why"] = *why;
     return say("refused", *why + "; keep a copy of its file elsewhere");

@@ -43,11 +43,11 @@ Facts facts_of(const CheckpointRecord& c) {
 
 /// With the places of the memberships whose figures and tables have the checkpoint: none if only an
 /// interruption or another experiment's cadence left it.
-std::vector<Facts> facts_of_all(const Store& store, const RunRecord& run,
+std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
-  for (std::size_t k = 0; k < run.memberships.size(); ++k) {
-    for (const CheckpointRecord& c : checkpoints_for(store, run, run.memberships[k], {})) {
+  for (std::size_t k = 0; k < run.asks.size(); ++k) {
+    for (const CheckpointRecord& c : checkpoints_for(store, run, run.asks[k], {})) {
       asked_by[c.step].push_back(k);
     }
   }
@@ -110,11 +110,11 @@ std::vector<std::string> describe(const nlohmann::json& overrides) {
   return lines;
 }
 
-Facts facts_of(const Store& store, const RunRecord& run) {
+Facts facts_of(const Store& store, const Stage& run) {
   const nlohmann::json engine = engine_of_run(store, run.id), ended = end_of(run);
   nlohmann::json places = nlohmann::json::array();
   std::string places_text;
-  for (const Membership& m : run.memberships) {
+  for (const Ask& m : run.asks) {
     const nlohmann::json overrides = overrides_of(store, run, m);
     places.push_back({{"experiment", m.experiment},
                       {"scale", m.scale},
@@ -147,7 +147,7 @@ Facts facts_of(const Store& store, const RunRecord& run) {
 }
 
 /// What the run's id is the hash of, but with the parameters that affect the run.
-Facts facts_of_id(const RunRecord& run) {
+Facts facts_of_id(const Stage& run) {
   Facts facts;
   for (const auto& [key, value] : run.resolved.items()) {
     if (key != "parameters") facts.push_back({"", value, key, value.dump()});
@@ -159,7 +159,7 @@ Facts facts_of_id(const RunRecord& run) {
   return facts;
 }
 
-void show_run(const Store& store, const RunRecord& run, Context& context) {
+void show_run(const Store& store, const Stage& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
   const Facts facts = facts_of(store, run);
   if (context.json) {
@@ -456,7 +456,7 @@ void show(const ShowOptions& options, Context& context) {
     return show_published(store, name, list, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
-      for (const RunRecord& run : store.runs()) {
+      for (const Stage& run : store.stages()) {
         if (!run.id.starts_with(name)) continue;
         throw NotFound(
             fmt::format("a run and a checkpoint begin with '{}'; give more digits of one of\n"
@@ -466,7 +466,7 @@ void show(const ShowOptions& options, Context& context) {
       return show_checkpoint(store, *checkpoint, context);
     }
   }
-  show_run(store, store.find_run(name), context);
+  show_run(store, store.find_stage(name), context);
 }
 
 }  // namespace

@@ -33,13 +33,13 @@ struct View {
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read),
         runs(by_run(select_runs(store, selection))),
-        waiting(waiting_for_failed(store.runs())),
+        waiting(waiting_for_failed(store.stages())),
         queue(view_queue(store)),
         names(store) {
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
 
-  const QueuedRun* queued(const RunRecord& run) const {
+  const QueuedRun* queued(const Stage& run) const {
     const auto found = queue.runs.find(run.id);
     return found == queue.runs.end() ? nullptr : &found->second;
   }
@@ -69,54 +69,54 @@ std::string describe(const QueuedTask& task) {
 }
 
 /// State and cycle of the run: as its task reports them if that is ahead, else as the store has.
-std::pair<RunState, double> progress_of(const RunRecord& run, const QueuedRun* queued) {
-  const bool reported = queued != nullptr && queued->reported && run.state != RunState::completed;
+std::pair<StageState, double> progress_of(const Stage& run, const QueuedRun* queued) {
+  const bool reported = queued != nullptr && queued->reported && run.state != StageState::completed;
   if (!reported || queued->reported->cycle < run.cycle) return {run.state, run.cycle};
   return {queued->reported->state, queued->reported->cycle};
 }
 
 /// A run in one of its places. The table shows what its task reports, JSON what the store has.
-Facts facts(const PlacedRun& listed, const Membership& place, const View& view) {
-  const RunRecord& run = listed.run;
+Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
+  const Stage& run = listed.run;
   const auto held = view.holders.find(run.id);
   const bool is_held = held != view.holders.end();
   const QueuedRun* queued = view.queued(run);
-  const bool in_queue = queued != nullptr && run.state != RunState::completed;
+  const bool in_queue = queued != nullptr && run.state != StageState::completed;
   const auto [state, cycle] = progress_of(run, queued);
   const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
   const std::string name = view.names.of(run, place);
-  const auto place_facts = [&](const Membership& m) -> nlohmann::json {
+  const auto place_facts = [&](const Ask& m) -> nlohmann::json {
     return {{"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
             {"name", view.names.of(run, m)}, {"seed", m.seed},   {"newest", m.newest},
             {"manifest", m.manifest}};
   };
-  Facts all = {
-      {"id", run.id, "run", run.id.substr(0, 8)},
-      {"name", name, "variant", name + (place.newest ? "" : " (older version)")},
-      {"seed", place.seed, "seed"},
-      {"N", run.grains, "N"},
-      {"state", name_of(run.state), "state",
-       fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
-      {"cycle", run.cycle, "cycle",
-       run.kind == name_of(Stage::prepare) ? ""
-                                           : fmt::format("{:.4g}/{}", cycle, run.target_cycles)},
-      {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
-      {"wall_seconds", run.wall_seconds, "time", format_duration(run.wall_seconds)},
-      {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
-      {"experiment", place.experiment},
-      {"scale", place.scale},
-      {"variant", place.variant},
-      {"kind", run.kind},
-      {"parent", run.parent},
-      {"places", json_list(listed.places, place_facts)},
-      {"target_cycles", run.target_cycles},
-      {"step", run.step},
-      {"attempts", run.attempts},
-      {"state_hash", run.state_hash},
-      {"error", run.error},
-      {"updated_at", run.updated_at},
-      {"ended", end_of(run)},
-      {"holder", is_held ? facts(held->second) : nlohmann::json()}};
+  Facts all = {{"id", run.id, "run", run.id.substr(0, 8)},
+               {"name", name, "variant", name + (place.newest ? "" : " (older version)")},
+               {"seed", place.seed, "seed"},
+               {"N", run.grains, "N"},
+               {"state", name_of(run.state), "state",
+                fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
+               {"cycle", run.cycle, "cycle",
+                run.kind == name_of(StageKind::prepare)
+                    ? ""
+                    : fmt::format("{:.4g}/{}", cycle, run.target_cycles)},
+               {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
+               {"wall_seconds", run.wall_seconds, "time", format_duration(run.wall_seconds)},
+               {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
+               {"experiment", place.experiment},
+               {"scale", place.scale},
+               {"variant", place.variant},
+               {"kind", run.kind},
+               {"parent", run.parent},
+               {"places", json_list(listed.places, place_facts)},
+               {"target_cycles", run.target_cycles},
+               {"step", run.step},
+               {"attempts", run.attempts},
+               {"state_hash", run.state_hash},
+               {"error", run.error},
+               {"updated_at", run.updated_at},
+               {"ended", end_of(run)},
+               {"holder", is_held ? facts(held->second) : nlohmann::json()}};
   if (!view.queue.runs.empty()) {
     all.push_back({"", nullptr, "queue", in_queue ? describe(queued->task) : ""});
   }
@@ -136,18 +136,18 @@ struct Estimate {
 /// Nothing if nothing is left, or where this version cannot read a record (`verify` names it).
 /// Stages that failed or cannot start are left out.
 std::optional<Estimate> estimate(const View& view) {
-  const Rates rates(view.store.runs());
+  const Rates rates(view.store.stages());
   std::size_t running = 0;
   Estimate made;
   for (const auto& [stage, places] : view.runs) {
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
-    if (stage.state == RunState::failed || view.waiting.contains(stage.id)) continue;
+    if (stage.state == StageState::failed || view.waiting.contains(stage.id)) continue;
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
-    made.at_most = made.at_most || std::ranges::any_of(stage.memberships, has_until);
+    made.at_most = made.at_most || std::ranges::any_of(stage.asks, has_until);
     made.work.add(stage, look.particle_steps, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
@@ -184,10 +184,10 @@ void print(const Estimate& left) {
 void print_tables(const View& view) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Facts>> tables;
-  std::map<RunState, std::size_t> count;
+  std::map<StageState, std::size_t> count;
   for (const PlacedRun& listed : view.runs) {
     ++count[progress_of(listed.run, view.queued(listed.run)).first];
-    for (const Membership& place : listed.places) {
+    for (const Ask& place : listed.places) {
       const std::string name = place.experiment + " at scale " + scale_name(place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
       tables[name].push_back(facts(listed, place, view));

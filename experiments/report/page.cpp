@@ -56,7 +56,7 @@ struct Experiment {
   bool labelled = false;                 ///< the manifest names variants
   json figures = json::array();          ///< as figure_json() gives them
   std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
-  std::vector<RunRecord> runs = {};
+  std::vector<Stage> runs = {};
   std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
   RunTable table = {};               ///< a row for each run, without those that settle packings
   /// For the front end, in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi,
@@ -277,9 +277,9 @@ json figure_json(const WantedFigure& wanted, Content& content) {
 
 /// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
-  const RunRecord& run = stage.run;
+  const Stage& run = stage.run;
   json members = json::array(), attempts = json::array();
-  for (const Membership& member : run.memberships) {
+  for (const Ask& member : run.asks) {
     members.push_back(
         {{"manifest", brief(member.manifest)},
          {"text", fmt::format("{} at scale {}, {}, seed {}", member.experiment,
@@ -338,21 +338,21 @@ json step(const char* title, std::initializer_list<Count> counts) {
 }
 
 json stages_step(const char* title, const Experiment& experiment, bool prepare) {
-  std::map<RunState, std::size_t> in;
-  for (const RunRecord& run : experiment.runs) {
-    if ((run.kind == name_of(Stage::prepare)) == prepare) ++in[run.state];
+  std::map<StageState, std::size_t> in;
+  for (const Stage& run : experiment.runs) {
+    if ((run.kind == name_of(StageKind::prepare)) == prepare) ++in[run.state];
   }
-  return step(title, {{"done", "✓", "done", in[RunState::completed]},
-                      {"running", "▸", "running", in[RunState::running]},
-                      {"stopped", "‖", "interrupted", in[RunState::interrupted]},
-                      {"failed", "✗", "failed", in[RunState::failed]},
-                      {"waiting", "·", "waiting", in[RunState::declared]}});
+  return step(title, {{"done", "✓", "done", in[StageState::completed]},
+                      {"running", "▸", "running", in[StageState::running]},
+                      {"stopped", "‖", "interrupted", in[StageState::interrupted]},
+                      {"failed", "✗", "failed", in[StageState::failed]},
+                      {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
 /// The way from the manifest to the figures, with the states of each step.
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
-  for (const RunRecord& run : experiment.runs) {
+  for (const Stage& run : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(run.id).checkpoints) ++in[c.record.state];
   }
   json manifest = step("Manifest", {});
@@ -534,13 +534,13 @@ std::vector<Experiment> experiments_of(const Store& store, const std::vector<std
     experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();
   }
-  const std::vector<RunRecord> runs = store.runs();
+  const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {
-    const auto is_member = [&](const Membership& m) {
+    const auto is_member = [&](const Ask& m) {
       return m.experiment == experiment.manifest.experiment;
     };
-    for (const RunRecord& run : runs) {
-      if (std::ranges::any_of(run.memberships, is_member)) experiment.runs.push_back(run);
+    for (const Stage& run : runs) {
+      if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
     }
   }
   return found;
@@ -581,14 +581,13 @@ void add_runs(Content& content) {
       experiment.manifest_path = manifest->path;
       content.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
-    for (const RunRecord& run : experiment.runs) {
+    for (const Stage& run : experiment.runs) {
       add_run_lineage(store, run.id, content.runs);
       // How long a packing takes to settle is not known.
-      if (run.kind == name_of(Stage::prepare)) continue;
-      std::vector<Membership> asks = run.memberships;
-      std::erase_if(asks, [&](const Membership& ask) {
-        return ask.experiment != experiment.manifest.experiment;
-      });
+      if (run.kind == name_of(StageKind::prepare)) continue;
+      std::vector<Ask> asks = run.asks;
+      std::erase_if(
+          asks, [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
       const Outlook look = outlook(run, asks, seen_checkpoints(store, run.id));
       if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
     }

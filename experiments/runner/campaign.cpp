@@ -201,7 +201,7 @@ class Campaign {
   // end.
   bool was_done(const StageJob& job) const {
     try {
-      return store_.run(job.id).state == RunState::completed;
+      return store_.stage(job.id).state == StageState::completed;
     } catch (const std::exception&) {
       return false;  // the next attempt to compute it reports why
     }
@@ -298,7 +298,7 @@ class Campaign {
 
   JobState compute(std::size_t j, bool was_held) {
     const StageJob& job = jobs_[j];
-    const RunRecord run = store_.run(job.id);
+    const Stage run = store_.stage(job.id);
     if (is_done(store_, run)) {
       if (was_held) {
         finish(job, &CampaignResult::elsewhere, "done by another program", true);
@@ -310,7 +310,7 @@ class Campaign {
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(j);
-    if (was_held && run.state == RunState::failed) {
+    if (was_held && run.state == StageState::failed) {
       note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
@@ -328,7 +328,7 @@ class Campaign {
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
       case StageOutcome::failed:
-        note(job, &CampaignResult::failed, store_.run(job.id).error);
+        note(job, &CampaignResult::failed, store_.stage(job.id).error);
         progress_.end(job, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
@@ -355,7 +355,7 @@ class Campaign {
   }
 
   std::string done_text(const StageJob& job) const {
-    const std::string why = describe_end(end_of(store_.run(job.id)));
+    const std::string why = describe_end(end_of(store_.stage(job.id)));
     return why.empty() ? "done" : "done, " + why;
   }
 
@@ -392,13 +392,13 @@ class Campaign {
 
 /// A job for each stage, named by its first place, and by its id where names are equal, as those of
 /// several scales.
-std::vector<StageJob> jobs_of(const std::vector<RunRecord>& stages, const VariantNames& names) {
+std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
   std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
-  for (const RunRecord& stage : stages) {
+  for (const Stage& stage : stages) {
     std::string name = stage.kind;
-    if (!stage.memberships.empty()) {
-      const Membership& place = stage.memberships.front();
+    if (!stage.asks.empty()) {
+      const Ask& place = stage.asks.front();
       name = fmt::format("{} {} seed={}", place.experiment, names.of(stage, place), place.seed);
     }
     ++count[name];
@@ -430,24 +430,24 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
     info["max_overlap_diameters"] = std::move(limits);
   }
   store.register_manifest(manifest.text, manifest.file, info);
-  std::vector<RunRecord> stages;
+  std::vector<Stage> stages;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {
-    for (RunRecord stage : {run.prepare, run.last}) {
-      const bool prepare = stage.kind == name_of(Stage::prepare);
+    for (Stage stage : {run.prepare, run.last}) {
+      const bool prepare = stage.kind == name_of(StageKind::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      stage.memberships = {run};
+      stage.asks = {run};
       if (prepare) {
         // Variants that start from one packing share it, so its place says no variant.
-        stage.memberships = {{.experiment = run.experiment,
-                              .scale = run.scale,
-                              .variant = "packing",
-                              .seed = run.seed,
-                              .manifest = run.manifest,
-                              .checkpoint_every = run.checkpoint_every}};
+        stage.asks = {{.experiment = run.experiment,
+                       .scale = run.scale,
+                       .variant = "packing",
+                       .seed = run.seed,
+                       .manifest = run.manifest,
+                       .checkpoint_every = run.checkpoint_every}};
       }
-      store.declare_run(stage);
+      store.declare_stage(stage);
       if (first) stages.push_back(std::move(stage));
     }
   }
@@ -455,19 +455,19 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 }
 
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
-  std::vector<RunRecord> asked;
-  for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
+  std::vector<Stage> asked;
+  for (const std::string& prefix : prefixes) asked.push_back(store.find_stage(prefix));
   if (prefixes.empty()) {
-    asked = store.runs();
-    std::erase_if(asked, [&](const RunRecord& run) { return look_at(store, run).done; });
+    asked = store.stages();
+    std::erase_if(asked, [&](const Stage& run) { return look_at(store, run).done; });
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;
-  for (RunRecord run : asked) {
-    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
+  for (Stage run : asked) {
+    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.stage(run.parent);
   }
-  std::vector<RunRecord> stages = store.runs();
-  std::erase_if(stages, [&](const RunRecord& run) { return !wanted.contains(run.id); });
+  std::vector<Stage> stages = store.stages();
+  std::erase_if(stages, [&](const Stage& run) { return !wanted.contains(run.id); });
   return jobs_of(stages, VariantNames(store));
 }
 

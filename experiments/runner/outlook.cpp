@@ -28,7 +28,7 @@ using nlohmann::json;
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 constexpr double kMostCounted = 10'000;         // one by one; more are extrapolated
 
-std::optional<Until> until_of(const Membership& ask) try {
+std::optional<Until> until_of(const Ask& ask) try {
   if (!has_until(ask)) return std::nullopt;
   return until_from_json(ask.until);
 } catch (const std::runtime_error& problem) {
@@ -55,7 +55,7 @@ std::optional<EarlyEnd> early_end(const json& ended) {
 }
 
 /// The cycle at which the stage reached this `until`, as a completion recorded it.
-std::optional<double> recorded_reach(const RunRecord& stage, const Until& until, double every) {
+std::optional<double> recorded_reach(const Stage& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
     const auto end = early_end(ended);
     if (end && end->until == until && std::fmod(end->reached, every) == 0) return end->reached;
@@ -70,8 +70,7 @@ struct End {
   const CheckpointRecord* undecided = nullptr;  ///< the first that may have reached it
 };
 
-End end_for(const RunRecord& stage, const Membership& ask,
-            std::span<const SeenCheckpoint> checkpoints) {
+End end_for(const Stage& stage, const Ask& ask, std::span<const SeenCheckpoint> checkpoints) {
   End end{static_cast<double>(ask.target_cycles)};
   const std::optional<Until> until = until_of(ask);
   if (!until) return end;
@@ -100,20 +99,20 @@ End end_for(const RunRecord& stage, const Membership& ask,
 }
 
 /// Whether what the completed stage has recorded meets the ask.
-bool is_covered(const RunRecord& stage, const Membership& ask) {
-  return stage.state == RunState::completed && has_until(ask) &&
-         std::ranges::any_of(stage.memberships, [&](const Membership& recorded) {
+bool is_covered(const Stage& stage, const Ask& ask) {
+  return stage.state == StageState::completed && has_until(ask) &&
+         std::ranges::any_of(stage.asks, [&](const Ask& recorded) {
            return recorded.until == ask.until && recorded.target_cycles >= ask.target_cycles &&
                   recorded.checkpoint_every % ask.checkpoint_every == 0;
          });
 }
 
 /// Sets the end. Returns whether the stage is as long as every ask wants it.
-bool find_end(const RunRecord& stage, std::span<const Membership> asks,
+bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const SeenCheckpoint> checkpoints, Outlook& look) {
   bool long_enough = true, reached = true;
   double latest = -1;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     const End end = end_for(stage, ask, checkpoints);
     const bool earlier =
         end.undecided != nullptr && (!look.undecided || end.undecided->step < look.undecided->step);
@@ -150,8 +149,8 @@ std::vector<std::uint64_t> steps_between(std::span<const CheckpointCadence> cade
 }
 
 /// Of a shear, whose end is known.
-void find_left(const RunRecord& stage, const Drive& motion, EngineKind engine,
-               std::span<const Membership> asks, std::span<const SeenCheckpoint> checkpoints,
+void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
+               std::span<const Ask> asks, std::span<const SeenCheckpoint> checkpoints,
                Outlook& look) {
   const auto whole = static_cast<double>(cycle_steps(motion));
   const double length = look.end * whole, now = static_cast<double>(stage.step);
@@ -188,18 +187,18 @@ void find_left(const RunRecord& stage, const Drive& motion, EngineKind engine,
 
 }  // namespace
 
-Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
+Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const SeenCheckpoint> checkpoints) {
   Outlook look{.from = stage.cycle};
   const bool long_enough = find_end(stage, asks, checkpoints, look);
-  const bool completed = stage.state == RunState::completed;
+  const bool completed = stage.state == StageState::completed;
   try {
-    const StageRecord known = read_stage(stage.resolved);
+    const StageInputs known = read_stage(stage.resolved);
     const Parameters& p = known.parameters;
     const auto grains = static_cast<double>(stage.grains);
-    if (known.stage == Stage::shear) {
+    if (known.stage == StageKind::shear) {
       find_left(stage, drive(p), p.engine, asks, checkpoints, look);
-    } else if (known.stage == Stage::stiffen) {
+    } else if (known.stage == StageKind::stiffen) {
       const double left = std::max(0.0, look.end - stage.cycle);
       look.particle_steps = grains * minimization_evaluations(grains) * left;
       look.checkpoints = left + (checkpoints.empty() ? 1 : 0);
@@ -216,12 +215,12 @@ Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
   return look;
 }
 
-bool has_until(const Membership& ask) {
+bool has_until(const Ask& ask) {
   return !ask.until.is_null();
 }
 
-std::optional<Drive> shear_drive(const RunRecord& stage) {
-  if (stage.kind != name_of(Stage::shear)) return std::nullopt;
+std::optional<Drive> shear_drive(const Stage& stage) {
+  if (stage.kind != name_of(StageKind::shear)) return std::nullopt;
   try {
     return drive(read_stage(stage.resolved).parameters);
   } catch (const UnreadableRecord&) {
@@ -229,9 +228,9 @@ std::optional<Drive> shear_drive(const RunRecord& stage) {
   }
 }
 
-std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, const Drive& drive) {
+std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive) {
   std::vector<CheckpointCadence> cadences;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     if (ask.checkpoint_phases.size() > ManifestLimits::values_per_list) {
       throw StoreDamaged(fmt::format("a record of experiment {}: checkpoint_phases: there are {}",
                                      ask.experiment, ask.checkpoint_phases.size()));
@@ -243,7 +242,7 @@ std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, con
   return cadences;
 }
 
-std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership& ask, double first,
+std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
                                        double last) {
   const std::optional<Drive> motion = shear_drive(stage);
   if (!motion || !(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return {};
@@ -253,9 +252,9 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership&
                        kMostListed);
 }
 
-std::uint64_t checkpoint_cadence(std::span<const Membership> asks) {
+std::uint64_t checkpoint_cadence(std::span<const Ask> asks) {
   std::uint64_t cadence = 0;
-  for (const Membership& ask : asks) cadence = std::gcd(cadence, ask.checkpoint_every);
+  for (const Ask& ask : asks) cadence = std::gcd(cadence, ask.checkpoint_every);
   return std::max<std::uint64_t>(cadence, 1);
 }
 
@@ -299,11 +298,11 @@ void measure_from(const Store& store, const CheckpointRecord& first,
 
 /// The most cycles [at most those that the stage has] for which an experiment without this `until`
 /// asked when the stage ended; 0 without any.
-double longest_length(const RunRecord& stage, const json& ended, const json& until) {
+double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
   double longest = 0;
-  for (const Membership& ask : stage.memberships) {  // in the order of declaration
+  for (const Ask& ask : stage.asks) {  // in the order of declaration
     if (left-- == 0) break;
     const auto cycles = static_cast<double>(ask.target_cycles);
     if (cycles <= stage.cycle && ask.until != until) longest = std::max(longest, cycles);
@@ -313,33 +312,33 @@ double longest_length(const RunRecord& stage, const json& ended, const json& unt
 
 }  // namespace
 
-Outlook look_at(const Store& store, const RunRecord& stage) {
+Outlook look_at(const Store& store, const Stage& stage) {
   try {
-    return outlook(stage, stage.memberships, seen_checkpoints(store, stage.id));
+    return outlook(stage, stage.asks, seen_checkpoints(store, stage.id));
   } catch (const StoreDamaged& damage) {
-    const bool completed = stage.state == RunState::completed;
+    const bool completed = stage.state == StageState::completed;
     return {.done = completed, .from = stage.cycle, .unreadable = damage.what()};
   }
 }
 
 std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
-  std::map<std::string, RunRecord> known;
+  std::map<std::string, Stage> known;
   if (store != nullptr) {
-    for (RunRecord& stage : store->runs()) known.emplace(stage.id, std::move(stage));
+    for (Stage& stage : store->stages()) known.emplace(stage.id, std::move(stage));
   }
   std::vector<PlannedStage> stages;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
-    for (const RunRecord* planned : {&run.prepare, &run.last}) {
+    for (const Stage* planned : {&run.prepare, &run.last}) {
       if (!seen.insert(planned->id).second) continue;
       PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
       if (const auto found = known.find(planned->id); found != known.end()) {
         one.stage = std::move(found->second);
         one.stage.resolved = planned->resolved;  // that of the store may be damaged
-        one.asks = one.stage.memberships;
+        one.asks = one.stage.asks;
         one.checkpoints = seen_checkpoints(*store, one.stage.id);
       }
-      if (planned == &run.last) std::ranges::copy(run.memberships, std::back_inserter(one.asks));
+      if (planned == &run.last) std::ranges::copy(run.asks, std::back_inserter(one.asks));
       one.look = outlook(one.stage, one.asks, one.checkpoints);
     }
   }
@@ -354,7 +353,7 @@ std::vector<SeenCheckpoint> seen_checkpoints(const Store& store, const std::stri
   return seen;
 }
 
-Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membership> asks,
+Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
                std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options) {
   for (;;) {
     Outlook look = outlook(stage, asks, checkpoints);
@@ -363,24 +362,24 @@ Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membe
   }
 }
 
-double end_for(const Store& store, const RunRecord& stage, const Membership& ask,
+double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
   // With one ask no other experiment can have continued it.
-  if (stage.memberships.size() < 2 || !has_until(ask)) {
+  if (stage.asks.size() < 2 || !has_until(ask)) {
     return static_cast<double>(ask.target_cycles);
   }
   std::vector<SeenCheckpoint> checkpoints = seen_checkpoints(store, stage.id);
   return decide(store, stage, {&ask, 1}, checkpoints, options).end;
 }
 
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              std::span<const Membership> asks, double first,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              std::span<const Ask> asks, double first,
                                               double last) {
   std::vector<CheckpointRecord> found = store.checkpoints(stage.id, Listed::and_pruned);
   const double end = found.empty() ? 0 : std::min(last, found.back().cycle);
   const bool every = asks.empty() || !shear_drive(stage);
   std::set<std::uint64_t> steps;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     const auto asked = asked_steps(stage, ask, first, end);
     steps.insert(asked.begin(), asked.end());
   }
@@ -392,15 +391,14 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecor
   return found;
 }
 
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              const Membership& ask,
-                                              const MeasureOptions& options) {
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              const Ask& ask, const MeasureOptions& options) {
   return checkpoints_for(store, stage, {&ask, 1}, 0, end_for(store, stage, ask, options));
 }
 
-json end_of(const RunRecord& stage) {
+json end_of(const Stage& stage) {
   const bool before_last = stage.cycle < static_cast<double>(stage.target_cycles);
-  if (stage.state != RunState::completed || stage.ends.empty() || !before_last) return json();
+  if (stage.state != StageState::completed || stage.ends.empty() || !before_last) return json();
   json ended = stage.ends.back();
   const auto end = early_end(ended);
   if (!end) return json();
@@ -423,9 +421,9 @@ std::string describe_end(const json& ended) {
   return why;
 }
 
-std::optional<double> expected_end(std::span<const RunRecord> stages, const json& until) {
+std::optional<double> expected_end(std::span<const Stage> stages, const json& until) {
   double sum = 0, count = 0;
-  for (const RunRecord& stage : stages) {
+  for (const Stage& stage : stages) {
     const json ended = end_of(stage);
     const auto end = early_end(ended);
     if (!end || ended.contains("cycles_asked") || to_json(end->until) != until) continue;
@@ -486,15 +484,15 @@ double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-Rates::Rates(const std::vector<RunRecord>& runs) {
-  for (const RunRecord& run : runs) {
+Rates::Rates(const std::vector<Stage>& runs) {
+  for (const Stage& run : runs) {
     Sum& sum = sums_[engine_of(run.resolved)];
     sum.steps += run.particle_steps;
     sum.seconds += run.wall_seconds;
   }
 }
 
-Rate Rates::of(const RunRecord& stage) const {
+Rate Rates::of(const Stage& stage) const {
   const EngineKind engine = engine_of(stage.resolved);
   const auto grains = static_cast<double>(stage.grains);
   const auto sum = sums_.find(engine);
@@ -505,7 +503,7 @@ Rate Rates::of(const RunRecord& stage) const {
   return {assumed_rate(kOurRates, grains), false};
 }
 
-void Work::add(const RunRecord& stage, double steps_left, const Rates& rates) {
+void Work::add(const Stage& stage, double steps_left, const Rates& rates) {
   const Rate rate = rates.of(stage);
   const double own_seconds = steps_left / rate.particle_steps_per_second;
   ++stages;
@@ -519,12 +517,12 @@ double Work::seconds(std::size_t at_a_time) const {
   return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
 }
 
-std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs) {
+std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs) {
   std::set<std::string> failed, waiting;
-  for (const RunRecord& run : runs) {
-    if (run.state == RunState::failed) failed.insert(run.id);
+  for (const Stage& run : runs) {
+    if (run.state == StageState::failed) failed.insert(run.id);
   }
-  for (const RunRecord& run : runs) {
+  for (const Stage& run : runs) {
     if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
   }
   return waiting;

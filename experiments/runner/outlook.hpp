@@ -62,38 +62,38 @@ struct Outlook {
 /// without rejected ones. A completed stage also meets an ask with the `until` of a recorded one
 /// that asks for at least as many cycles. Throws StoreDamaged for an ask that no manifest can
 /// state.
-Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
+Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const SeenCheckpoint> checkpoints);
 
 /// Whether `until` may end the stage before the number of cycles that is asked for.
-bool has_until(const Membership& ask);
+bool has_until(const Ask& ask);
 
 /// The motion of the walls in a shear; nothing for another kind of stage, and for a record that
 /// this program cannot read (`verify` names it).
-std::optional<Drive> shear_drive(const RunRecord& stage);
+std::optional<Drive> shear_drive(const Stage& stage);
 
 /// When the asks want checkpoints of a shear. Throws as outlook().
-std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, const Drive& drive);
+std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive);
 
 /// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` wants a checkpoint;
 /// ascending, at most a million. Empty if there is no shear_drive().
-std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership& ask, double first,
+std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
                                        double last);
 
 /// The longest interval [cycles] that gives every ask its checkpoints at whole cycles.
-std::uint64_t checkpoint_cadence(std::span<const Membership> asks);
+std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
 // --- Of the stages of a store or a plan ---
 
 /// outlook() for all recorded asks. Nothing is measured: only recorded ends by `until` are known.
 /// If an ask cannot be read, Outlook::unreadable says why.
-Outlook look_at(const Store& store, const RunRecord& stage);
+Outlook look_at(const Store& store, const Stage& stage);
 
 /// A stage of a plan, with what the store has recorded of it.
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first that has it
-  RunRecord stage = {};
-  std::vector<Membership> asks = {};  ///< those of the store and of the plan
+  Stage stage = {};
+  std::vector<Ask> asks = {};  ///< those of the store and of the plan
   std::vector<SeenCheckpoint> checkpoints = {};
   Outlook look = {};
 };
@@ -106,7 +106,7 @@ std::vector<PlannedStage> look_at(const Plan& plan, const Store* store);
 /// read from the cache, or computed and cached, as long as there is an undecided checkpoint.
 /// `checkpoints` keeps them. Throws FilePruned or StoreDamaged, with the remedy, where a checkpoint
 /// cannot be read that may end the stage.
-Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membership> asks,
+Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
                std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options);
 
 /// All checkpoints of the stage but the rejected ones, without measures.
@@ -114,30 +114,30 @@ std::vector<SeenCheckpoint> seen_checkpoints(const Store& store, const std::stri
 
 /// The last cycle of the stage that counts for one of its asks, whatever other experiments asked
 /// for: Outlook::end. Throws as decide().
-double end_for(const Store& store, const RunRecord& stage, const Membership& ask,
+double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
 /// The checkpoints of cycles `first` to `last` that one of `asks` wants, including pruned ones: on
 /// its cadence, at its phases and at its last cycle. Of another kind of stage than a shear, and
 /// without asks, all at whole cycles. Checkpoints that interruptions and other experiments left are
 /// not included, so that figures and tables do not depend on them.
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              std::span<const Membership> asks, double first = 0,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              std::span<const Ask> asks, double first = 0,
                                               double last = StoreLimits::cycles);
 
 /// The checkpoints of one ask, up to end_for().
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              const Membership& ask, const MeasureOptions& options);
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              const Ask& ask, const MeasureOptions& options);
 
 /// Outlook::ended as recorded, of a stage that is completed before its last cycle; else null. With
 /// "cycles_asked" where the stage ended later, at the length that another experiment asked for.
-nlohmann::json end_of(const RunRecord& stage);
+nlohmann::json end_of(const Stage& stage);
 
 /// "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
 /// Mean cycle at which this `until` ended stages; nothing if it ended none.
-std::optional<double> expected_end(std::span<const RunRecord> stages, const nlohmann::json& until);
+std::optional<double> expected_end(std::span<const Stage> stages, const nlohmann::json& until);
 
 // --- What it costs: estimates of memory, files and time ---
 
@@ -168,11 +168,11 @@ struct Rate {
 /// Particle-steps/s of recorded runs.
 class Rates {
  public:
-  explicit Rates(const std::vector<RunRecord>& runs);
+  explicit Rates(const std::vector<Stage>& runs);
 
   /// Mean over the runs of the stage's engine. Without such runs, the rate that was measured on
   /// another machine for this number of grains.
-  Rate of(const RunRecord& stage) const;
+  Rate of(const Stage& stage) const;
 
  private:
   struct Sum {
@@ -191,12 +191,12 @@ struct Work {
   std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
 
   /// Adds a stage, after its parent.
-  void add(const RunRecord& stage, double steps_left, const Rates& rates);
+  void add(const Stage& stage, double steps_left, const Rates& rates);
   /// Wall time [s] with so many stages at a time.
   double seconds(std::size_t at_a_time) const;
 };
 
 /// Ids of unfinished runs that cannot start, because the packing that they start from failed.
-std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs);
+std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs);
 
 }  // namespace shearcell

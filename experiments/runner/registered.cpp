@@ -41,8 +41,8 @@ namespace {
 // In place of a manifest: packings of all versions are named together.
 const std::string kPackings = "packings";
 
-bool is_packing(const RunRecord& run) {
-  return run.kind == name_of(Stage::prepare);
+bool is_packing(const Stage& run) {
+  return run.kind == name_of(StageKind::prepare);
 }
 
 }  // namespace
@@ -53,8 +53,8 @@ VariantNames::VariantNames(const Store& store) {
     if (auto known = parsed(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
   std::map<Group, std::vector<nlohmann::json>> values;
-  for (const RunRecord& run : store.runs()) {
-    for (const Membership& m : run.memberships) {
+  for (const Stage& run : store.stages()) {
+    for (const Ask& m : run.asks) {
       if (is_packing(run)) {
         values[{m.experiment, kPackings, m.scale}].push_back(effective_parameters(run.resolved));
       } else {
@@ -73,19 +73,19 @@ VariantNames::VariantNames(const Store& store) {
 }
 
 std::string VariantNames::find(const Group& group, const nlohmann::json& values,
-                               const Membership& place) const {
+                               const Ask& place) const {
   const auto names = names_.find(group);
   if (names == names_.end()) return place.variant;
   const auto name = names->second.find(values);
   return name == names->second.end() ? place.variant : name->second;
 }
 
-std::string VariantNames::of(const RunRecord& run, const Membership& m) const {
+std::string VariantNames::of(const Stage& run, const Ask& m) const {
   if (!is_packing(run)) return of(m);
   return find({m.experiment, kPackings, m.scale}, effective_parameters(run.resolved), m);
 }
 
-std::string VariantNames::of(const Membership& m) const {
+std::string VariantNames::of(const Ask& m) const {
   return find({m.experiment, m.manifest, m.scale}, m.swept, m);
 }
 

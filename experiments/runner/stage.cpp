@@ -34,19 +34,19 @@ namespace {
 
 // --- A stage, made from its record and ready to be stepped ---
 
-Scene make_scene(const StageRecord& stage) {
+Scene make_scene(const StageInputs& stage) {
   switch (stage.stage) {
-    case Stage::shear:
+    case StageKind::shear:
       return shear_scene(stage.parameters);
-    case Stage::stiffen:
+    case StageKind::stiffen:
       return stiffen_scene(stage.parameters);
-    case Stage::prepare:
+    case StageKind::prepare:
       break;
   }
   return settle_scene(stage.parameters);
 }
 
-void require_memory(const StageRecord& stage) {
+void require_memory(const StageInputs& stage) {
   const double needed = run_bytes(geometry(stage.parameters));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
@@ -54,35 +54,34 @@ void require_memory(const StageRecord& stage) {
       stage.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, const RunRecord& run) {
+std::unique_ptr<Protocol> make_protocol(const StageInputs& stage, const Stage& run) {
   const Parameters& p = stage.parameters;
   const std::uint64_t cycles = run.target_cycles;
-  if (stage.stage == Stage::prepare) {
+  if (stage.stage == StageKind::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
                          p.settle_time_limit_s, p.max_overlap_diameters},
         settle_scene(p));
   }
-  if (stage.stage == Stage::stiffen) {
+  if (stage.stage == StageKind::stiffen) {
     StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, cycles,
-                                       cadences_of(run.memberships, drive(p)));
+  return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(run.asks, drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
 // manifest (campaign.cpp); for the other manifests it is `otherwise`.
-double overlap_limit(const Store& store, const RunRecord& run, double otherwise) {
-  double limit = run.memberships.empty() ? otherwise : 0;
-  for (const Membership& membership : run.memberships) {
+double overlap_limit(const Store& store, const Stage& run, double otherwise) {
+  double limit = run.asks.empty() ? otherwise : 0;
+  for (const Ask& ask : run.asks) {
     double stated = otherwise;
-    for (const Event& event : store.events("manifest/" + membership.manifest)) {
+    for (const Event& event : store.events("manifest/" + ask.manifest)) {
       try {
         const nlohmann::json info = event.body().at("info");
-        stated = info.value("max_overlap_diameters", nlohmann::json::object())
-                     .value(membership.scale, stated);
+        stated =
+            info.value("max_overlap_diameters", nlohmann::json::object()).value(ask.scale, stated);
       } catch (const nlohmann::json::exception& problem) {
         throw damaged_payload(event, problem);
       }
@@ -93,20 +92,20 @@ double overlap_limit(const Store& store, const RunRecord& run, double otherwise)
 }
 
 /// The scene and the protocol of a stage.
-struct StagePlan {
-  RunRecord run;
-  StageRecord stage;
+struct ReadyStage {
+  Stage run;
+  StageInputs stage;
   Scene scene;
   std::unique_ptr<Protocol> protocol;
 };
 
 /// The watchdog's overlap limit is the largest that a manifest of the run states.
-StagePlan plan_stage(const Store& store, RunRecord run) {
+ReadyStage ready_stage(const Store& store, Stage run) {
   if (stage_key(run.resolved) != run.id) {
     throw StoreDamaged("run " + run.id.substr(0, 12) +
                        ": its recorded parameters are not those that it is named after");
   }
-  StageRecord stage = read_stage(run.resolved);
+  StageInputs stage = read_stage(run.resolved);
   double& limit = stage.parameters.max_overlap_diameters;
   limit = overlap_limit(store, run, limit);
   require_memory(stage);
@@ -126,9 +125,9 @@ struct Beginning {
 /// The newest valid checkpoint before a step. Without one, the beginning of the stage. Throws
 /// Interrupted when a stop is requested during the filling. `damage` as in
 /// Store::newest_valid_checkpoint.
-Beginning beginning_of(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
+Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
                        std::uint64_t before_step = UINT64_MAX) {
-  const RunRecord& run = plan.run;
+  const Stage& run = plan.run;
   if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record)};
@@ -141,9 +140,9 @@ Beginning beginning_of(Store& store, const StagePlan& plan, std::vector<std::str
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
-  const RunRecord ended = store.run(run.parent);
-  if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
-    const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();
+  const Stage ended = store.stage(run.parent);
+  if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
+    const bool recorded = ended.state == StageState::completed && !ended.state_hash.empty();
     throw StoreDamaged(fmt::format(
         "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
         run.parent, run.id,
@@ -157,7 +156,7 @@ Beginning beginning_of(Store& store, const StagePlan& plan, std::vector<std::str
 }
 
 /// Takes ownership of the beginning's cell and state.
-Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {
+Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
   SimulationSettings settings;
   settings.threads = threads;
   settings.limits.overlap = plan.stage.parameters.max_overlap_diameters;
@@ -165,7 +164,7 @@ Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::si
 }
 
 /// The checkpoint of a state on which `scene` acts now; it depends on the state alone.
-Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
+Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
   checkpoint.run = plan.run.id;
@@ -183,7 +182,7 @@ Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene&
                             {"contacts_per_grain", facts.contacts_per_grain},
                             {"wall_force_imbalance", facts.wall_imbalance},
                             {"cell_height_d", pose.top - pose.bottom}};
-  if (plan.stage.stage == Stage::stiffen) {
+  if (plan.stage.stage == StageKind::stiffen) {
     const Parameters& p = plan.stage.parameters;
     const double raised = scene.stiffness / plan.scene.stiffness;
     checkpoint.observables["stiffness_N_per_m"] = raised * p.stiffness_N_per_m;
@@ -220,7 +219,7 @@ class Engine {
 
 class OwnEngine final : public Engine {
  public:
-  OwnEngine(const StagePlan& plan, Beginning&& beginning, std::size_t threads)
+  OwnEngine(const ReadyStage& plan, Beginning&& beginning, std::size_t threads)
       : plan_(plan), simulation_(make_simulation(plan, std::move(beginning), threads)) {}
 
   StageProgress advance() override { return advance_by(UINT64_MAX); }
@@ -241,7 +240,7 @@ class OwnEngine final : public Engine {
   std::uint64_t evaluations() const override { return simulation_.evaluations(); }
 
  private:
-  const StagePlan& plan_;
+  const ReadyStage& plan_;
   Simulation simulation_;
   StageProgress progress_;
 };
@@ -263,10 +262,10 @@ constexpr std::chrono::seconds kPatience{10};
 
 class LammpsEngine final : public Engine {
  public:
-  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel,
+  LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(checkpoint_cadence(plan.run.memberships) * cycle_steps(plan.protocol->drive())),
+        stride_(checkpoint_cadence(plan.run.asks) * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),
@@ -325,7 +324,7 @@ class LammpsEngine final : public Engine {
     return progress;
   }
 
-  const StagePlan& plan_;
+  const ReadyStage& plan_;
   std::uint64_t stride_;
   Cell cell_;
   State state_;  ///< of the last frame
@@ -339,8 +338,8 @@ class LammpsEngine final : public Engine {
 // One attempt to compute a stage.
 class StageAttempt {
  public:
-  StageAttempt(Store& store, RunRecord run, const StageOptions& options)
-      : store_(store), options_(options), plan_(plan_stage(store, std::move(run))) {}
+  StageAttempt(Store& store, Stage run, const StageOptions& options)
+      : store_(store), options_(options), plan_(ready_stage(store, std::move(run))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;
@@ -371,7 +370,7 @@ class StageAttempt {
       }
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
-      if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
+      if (fresh && plan_.stage.stage != StageKind::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     });
@@ -384,7 +383,7 @@ class StageAttempt {
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
     // The stage is completed for all that were declared since.
-    if (ended.contains("memberships")) ended["memberships"] = plan_.run.memberships.size();
+    if (ended.contains("memberships")) ended["memberships"] = plan_.run.asks.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
       first_step_ = engine.step();
@@ -413,7 +412,7 @@ class StageAttempt {
     const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
     bool started = false;
     try {
-      store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
+      store_.start_stage(id(), facts, from, beginning.parent_checkpoint, filling);
       started = true;
       if (options_.begun) options_.begun();
       return compute();
@@ -423,15 +422,15 @@ class StageAttempt {
     } catch (const Interrupted&) {
       return interrupted();
     } catch (const ProgramError& error) {
-      store_.fail_run(id(), error.what(), nlohmann::json::object());
+      store_.fail_stage(id(), error.what(), nlohmann::json::object());
       return StageOutcome::failed;
     } catch (const NumericalFailure& failure) {
-      store_.fail_run(id(), failure.what(),
-                      {{"quantity", failure.quantity},
-                       {"value", failure.value},
-                       {"limit", failure.limit},
-                       {"grain", failure.grain},
-                       {"step", failure.step}});
+      store_.fail_stage(id(), failure.what(),
+                        {{"quantity", failure.quantity},
+                         {"value", failure.value},
+                         {"limit", failure.limit},
+                         {"grain", failure.grain},
+                         {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
       // The disk, the memory or the store. A failed sync may leave even the start recorded.
@@ -443,7 +442,7 @@ class StageAttempt {
   // Lets other programs continue the run.
   void release(const std::exception& failure) {
     try {
-      store_.interrupt_run(id(), failure.what());
+      store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
       // For the same reason; then the run's lease expires.
     }
@@ -456,7 +455,7 @@ class StageAttempt {
       if (stop && !progress.checkpoint_due) progress = engine.halt();
       if (progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
-        complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
+        complete({{"by", plan_.stage.stage == StageKind::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
       // `until` is checked at whole cycles only.
@@ -473,23 +472,23 @@ class StageAttempt {
   }
 
   StageOutcome interrupted() {
-    store_.interrupt_run(id(), "stopped by a signal");
+    store_.interrupt_stage(id(), "stopped by a signal");
     return StageOutcome::interrupted;
   }
 
   // Completes the stage when what is recorded is all that the experiments ask for, those included
   // that declared it meanwhile.
   bool ends_early() {
-    const RunRecord now = store_.run(id());
-    if (seen_.empty() || std::ranges::none_of(now.memberships, has_until)) return false;
-    const nlohmann::json ended = decide(store_, now, now.memberships, seen_, {}).ended;
+    const Stage now = store_.stage(id());
+    if (seen_.empty() || std::ranges::none_of(now.asks, has_until)) return false;
+    const nlohmann::json ended = decide(store_, now, now.asks, seen_, {}).ended;
     recorded_.restart();  // measuring is not computing
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }
 
   void complete(const nlohmann::json& ended) {
-    store_.complete_run(id(), {{"ended", ended}}, plan_.run.target_cycles);
+    store_.complete_stage(id(), {{"ended", ended}}, plan_.run.target_cycles);
   }
 
   const std::string& id() const { return plan_.run.id; }
@@ -511,7 +510,7 @@ class StageAttempt {
     StageStatus status;
     status.cycle = cycle;
     status.target_cycles =
-        plan_.stage.stage != Stage::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
+        plan_.stage.stage != StageKind::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
     status.steps_per_second =
         static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
     status.grains = plan_.run.grains;
@@ -527,7 +526,7 @@ class StageAttempt {
 
   Store& store_;
   const StageOptions& options_;
-  StagePlan plan_;
+  ReadyStage plan_;
   std::vector<SeenCheckpoint> seen_;
   bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
@@ -535,7 +534,7 @@ class StageAttempt {
 };
 
 // If it is not, run_stage reports what is wrong with it.
-bool newest_is_sound(const Store& store, const RunRecord& run) {
+bool newest_is_sound(const Store& store, const Stage& run) {
   const auto recorded = store.checkpoints(run.id);
   return !recorded.empty() && store.load_if_readable(recorded.back());
 }
@@ -573,7 +572,7 @@ void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3X
 class Replaying {
  public:
   Replaying(Store& store, const CheckpointRecord& record)
-      : store_(store), plan_(plan_stage(store, store.run(record.run))) {
+      : store_(store), plan_(ready_stage(store, store.stage(record.run))) {
     replay_.record = record;
   }
 
@@ -658,7 +657,7 @@ class Replaying {
 
  private:
   Store& store_;
-  StagePlan plan_;
+  ReadyStage plan_;
   Replay replay_;
   std::uint64_t first_ = 0;
 };
@@ -684,18 +683,18 @@ Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads,
 
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
   try {
-    RunRecord run = store.run(id);
+    Stage run = store.stage(id);
     bool computed = false;
-    if (run.state != RunState::completed || !newest_is_sound(store, run)) {
+    if (run.state != StageState::completed || !newest_is_sound(store, run)) {
       StageAttempt attempt(store, std::move(run), options);
       const StageOutcome outcome = attempt.run();
-      run = store.run(id);
-      if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
+      run = store.stage(id);
+      if (outcome != StageOutcome::completed || run.state != StageState::completed) return outcome;
       computed = attempt.computed();
     }
     // A denser cadence may have been asked for.
     const std::vector<std::uint64_t> missing =
-        outlook(run, run.memberships, seen_checkpoints(store, id)).missing;
+        outlook(run, run.asks, seen_checkpoints(store, id)).missing;
     if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
@@ -707,8 +706,8 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
   }
 }
 
-bool is_done(const Store& store, const RunRecord& stage) {
-  return outlook(stage, stage.memberships, seen_checkpoints(store, stage.id)).done &&
+bool is_done(const Store& store, const Stage& stage) {
+  return outlook(stage, stage.asks, seen_checkpoints(store, stage.id)).done &&
          newest_is_sound(store, stage);
 }
 
@@ -721,7 +720,7 @@ nlohmann::json to_json(const Divergence& divergence) {
           {"why", divergence.message}};
 }
 
-std::optional<std::string> why_not_again(const RunRecord& run) {
+std::optional<std::string> why_not_again(const Stage& run) {
   if (engine_of(run.resolved) == EngineKind::shearcell) return std::nullopt;
   return "LAMMPS made it, whose runs are not repeated bit for bit";
 }

@@ -53,7 +53,7 @@ struct StageOptions {
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is done and its last state can be read.
-bool is_done(const Store& store, const RunRecord& stage);
+bool is_done(const Store& store, const Stage& stage);
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
@@ -78,7 +78,7 @@ struct Replay {
 };
 
 /// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
-std::optional<std::string> why_not_again(const RunRecord& run);
+std::optional<std::string> why_not_again(const Stage& run);
 
 /// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
 /// the record's step, compares the state and all that is recorded with it (cycle, time, tilt,
