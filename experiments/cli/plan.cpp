@@ -153,26 +153,6 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   }
 }
 
-struct Left {
-  Work work;
-  double bytes = 0;
-  double rate = 0;  ///< mean particle-steps/s of one core
-};
-
-Left left_of(const std::vector<Line>& lines, const std::vector<Stage>& known) {
-  Left left;
-  const Rates rates(known);
-  for (const Line& line : lines) {
-    left.work.add(line.stage, line.look.particle_steps, rates);
-    left.bytes += line.look.bytes;
-    // Where nothing is left to do.
-    if (left.rate == 0) left.rate = rates.of(line.stage).particle_steps_per_second;
-  }
-  const Work& work = left.work;
-  if (work.core_seconds > 0) left.rate = work.particle_steps / work.core_seconds;
-  return left;
-}
-
 nlohmann::json experiment_facts(const Plan& plan) {
   return {{"experiment", plan.experiment}, {"scale", plan.scale}, {"runs", plan.runs.size()}};
 }
@@ -216,7 +196,9 @@ void plan(const PlanOptions& options, Context& context) {
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->stages() : std::vector<Stage>{};
   const std::vector<Line> lines = look_at(expanded, store ? &*store : nullptr);
-  const Left left = left_of(lines, runs);
+  const Rates rates(runs);
+  Work left;
+  for (const Line& line : lines) left.add(line.stage, line.look, rates);
   const nlohmann::json with_until = left_until(lines, runs);
   std::set<const PlannedRun*> left_runs;  // each is computed by one core
   std::size_t longer = 0;
@@ -225,7 +207,7 @@ void plan(const PlanOptions& options, Context& context) {
     longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
-  const double seconds = left.work.seconds(cores);
+  const double seconds = left.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
   const std::filesystem::path place = existing_folder(context.store);
   const auto free = static_cast<double>(std::filesystem::space(place).available);
@@ -248,13 +230,13 @@ void plan(const PlanOptions& options, Context& context) {
                        {"warnings", context.warnings},
                        {"runs", expanded.runs.size()},
                        {"stages", to_json(stages)},
-                       {"particle_steps_left", left.work.particle_steps},
+                       {"particle_steps_left", left.particle_steps},
                        {"particle_steps_left_with_until", with_until},
                        {"bytes_left", left.bytes},
                        {"seconds_left", seconds},
                        {"cores", cores},
                        {"particle_steps_per_second_and_core", left.rate},
-                       {"rate_measured", left.work.measured}});
+                       {"rate_measured", left.measured}});
   }
   fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
@@ -266,11 +248,10 @@ void plan(const PlanOptions& options, Context& context) {
     fmt::print(
         "\nleft: {:.3g} particle-steps, about {} on {} at {:.0f} M particle-steps/s each "
         "({}),\n      about {} on disk\n",
-        left.work.particle_steps, format_duration(seconds), counted(cores, "core"),
-        left.rate * 1e-6,
-        left.work.measured ? "measured in this store" : "assumed until a run has been measured",
+        left.particle_steps, format_duration(seconds), counted(cores, "core"), left.rate * 1e-6,
+        left.measured ? "measured in this store" : "assumed until a run has been measured",
         format_bytes(left.bytes));
-    print_until(lines, with_until, left.work.particle_steps);
+    print_until(lines, with_until, left.particle_steps);
   }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }

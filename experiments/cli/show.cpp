@@ -224,7 +224,7 @@ template <typename... Arguments>
 void say(std::string_view heading, fmt::format_string<Arguments...> format,
          Arguments&&... arguments) {
   const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
-  print_text("{}\n", without_controls(fmt::format("{:<12}{}", heading, text)));
+  print_text("{}\n", without_controls(fmt::format("{:<12} {}", heading, text)));
 }
 
 // "2026-11-20T21:40:51.123Z" as "2026-11-20 21:40:51".

@@ -148,7 +148,7 @@ std::optional<Estimate> estimate(const View& view) {
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
     made.at_most = made.at_most || std::ranges::any_of(stage.asks, has_until);
-    made.work.add(stage, look.particle_steps, rates);
+    made.work.add(stage, look, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
   made.running = running > 0;

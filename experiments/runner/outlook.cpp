@@ -503,13 +503,19 @@ Rate Rates::of(const Stage& stage) const {
   return {assumed_rate(kOurRates, grains), false};
 }
 
-void Work::add(const Stage& stage, double steps_left, const Rates& rates) {
-  const Rate rate = rates.of(stage);
-  const double own_seconds = steps_left / rate.particle_steps_per_second;
+void Work::add(const Stage& stage, const Outlook& look, const Rates& rates) {
+  const Rate of_stage = rates.of(stage);
+  const double own_seconds = look.particle_steps / of_stage.particle_steps_per_second;
   ++stages;
-  particle_steps += steps_left;
+  particle_steps += look.particle_steps;
+  bytes += look.bytes;
   core_seconds += own_seconds;
-  measured = measured && rate.measured;
+  if (core_seconds > 0) {
+    rate = particle_steps / core_seconds;
+  } else if (rate == 0) {
+    rate = of_stage.particle_steps_per_second;
+  }
+  measured = measured && of_stage.measured;
   longest_seconds = std::max(longest_seconds, chain[stage.id] = chain[stage.parent] + own_seconds);
 }
 

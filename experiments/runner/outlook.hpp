@@ -185,13 +185,15 @@ class Rates {
 struct Work {
   std::size_t stages = 0;
   double particle_steps = 0;
+  double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
   double longest_seconds = 0;                ///< of the longest run, its packing included
+  double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< all rates were measured
   std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
 
   /// Adds a stage, after its parent.
-  void add(const Stage& stage, double steps_left, const Rates& rates);
+  void add(const Stage& stage, const Outlook& look, const Rates& rates);
   /// Wall time [s] with so many stages at a time.
   double seconds(std::size_t at_a_time) const;
 };

@@ -59,7 +59,7 @@ nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
 
 /// As a store would name it.
 Run about() {
-  Run run;
+  shearcell::Run run;
   run.run.id = std::string(64, 'a');
   run.run.resolved = {{"parameters",
                        {{"stiffness_N_per_m", 654.0},
@@ -275,7 +275,7 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 
 TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
   const Parameters parameters;
-  Run run = about();
+  shearcell::Run run = about();
   run.run.kind = name_of(StageKind::shear);
   run.run.resolved = last_stage(parameters, 1, prepare_stage(parameters, 1)).resolved;
   const Checkpoint checkpoint = checkpoints().front();  // upright, at the largest shear rate
@@ -329,7 +329,7 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
 
 TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   const TemporaryFolder folder;
-  Run run = about();
+  shearcell::Run run = about();
   run.ask.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
@@ -339,7 +339,7 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
 }
 
 TEST(Export, HasOnlyKeysOfAManifest) {
-  Run run = about();
+  shearcell::Run run = about();
   run.run.resolved["parameters"]["forged=1\n99\n"] = 1;
   for (const auto& [key, value] : frame_of(checkpoints().back(), {}, run).parameters) {
     EXPECT_FALSE(has(key, "forged"));
