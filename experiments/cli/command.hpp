@@ -99,7 +99,7 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 
 /// A run with those of its places that are selected.
 struct PlacedRun {
-  Stage run;
+  Stage stage;
   std::vector<Ask> places;
 };
 

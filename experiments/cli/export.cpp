@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <ranges>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -95,7 +94,7 @@ CycleRange parse_cycles(const std::string& text) {
 // The checkpoints that the selected experiments ask for; of a run without places, which was named
 // by its id, those that any experiment asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
-  const Stage& run = wanted.run;
+  const Stage& run = wanted.stage;
   if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
   std::map<std::uint64_t, CheckpointRecord> all;  // by step
   for (const Ask& place : wanted.places) {
@@ -103,13 +102,14 @@ std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& want
       all.try_emplace(record.step, std::move(record));
     }
   }
-  const auto records = std::views::values(all);
-  return {records.begin(), records.end()};
+  std::vector<CheckpointRecord> records;
+  for (auto& [step, record] : all) records.push_back(std::move(record));
+  return records;
 }
 
 std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
                                      const ExportOptions& options) {
-  const Stage& run = wanted.run;
+  const Stage& run = wanted.stage;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
@@ -172,7 +172,7 @@ std::vector<std::string> constants_of_records() {
 
 /// The place that names the run.
 Ask shown_place(const PlacedRun& run) {
-  return run.places.empty() ? first_ask(run.run) : run.places.front();
+  return run.places.empty() ? first_ask(run.stage) : run.places.front();
 }
 
 /// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
@@ -181,7 +181,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) {
-    return write_ro_crate(store, run.run.id, out, options.licence, constants_of_records());
+    return write_ro_crate(store, run.stage.id, out, options.licence, constants_of_records());
   }
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';
@@ -189,12 +189,12 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const Lengths lengths = options.metres ? Lengths::metres : Lengths::diameters;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), lengths)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.run.asks : run.places);
-  MeasureSources sources(store, {{run.run.id, every}});
-  sources.read_run(run.run.id);
+  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
+  MeasureSources sources(store, {{run.stage.id, every}});
+  sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame =
-        frame_of(store.load_checkpoint(record), record, {run.run, shown_place(run)}, &sources);
+        frame_of(store.load_checkpoint(record), record, {run.stage, shown_place(run)}, &sources);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files
@@ -226,7 +226,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
     Stage run = store.find_stage(prefix);
-    const auto is_it = [&](const PlacedRun& other) { return other.run.id == run.id; };
+    const auto is_it = [&](const PlacedRun& other) { return other.stage.id == run.id; };
     if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(run), {}});
   }
   if (!runs.empty()) return runs;
@@ -241,7 +241,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   const Ask m = shown_place(run);
   std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
-                                 m.variant.substr(0, 100), m.seed, run.run.id, format.ending);
+                                 m.variant.substr(0, 100), m.seed, run.stage.id, format.ending);
   std::ranges::replace_if(
       name,
       [](unsigned char c) {
@@ -269,7 +269,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
   const fs::path out = given.has_filename() ? given : given.parent_path();
   if (single && format.writer == nullptr) {  // a crate may replace an earlier one of the run
     return {
-        {runs.front().run.id, options.out, write_run(store, runs.front(), format, options, out)}};
+        {runs.front().stage.id, options.out, write_run(store, runs.front(), format, options, out)}};
   }
   const bool folder = !single || *format.ending == '\0';
   require_new(out, folder);
@@ -282,7 +282,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
     const std::string name = single ? "" : entry_name(run, format);
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
-      done.push_back({run.run.id, single ? fs::path(options.out) : out / name, std::move(files)});
+      done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());

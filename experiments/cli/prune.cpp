@@ -39,7 +39,7 @@ bool selects(const RunSelection& s) {
 std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
   std::vector<std::string> ids;
-  for (const PlacedRun& one : by_run(select_runs(store, selection))) ids.push_back(one.run.id);
+  for (const PlacedRun& one : by_run(select_runs(store, selection))) ids.push_back(one.stage.id);
   return ids;
 }
 

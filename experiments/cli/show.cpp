@@ -310,7 +310,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   print_text("\n");
   say("run", "{}", input.run);
   say("  of", "{} {}, seed {}, {} grains; manifest {:.8}, lines {}", input.experiment,
-      input.variant, input.seed, run.run.grains, input.manifest, lines);
+      input.variant, input.seed, run.stage.grains, input.manifest, lines);
   for (const std::string& given : describe(input.overrides)) say("", "{}", given);
   say("  cycles", "{}: {}, {}", to_text(input.states.cycles),
       counted(input.checkpoints.size(), "checkpoint"),
@@ -336,8 +336,8 @@ void print(const FigureLineage& lineage, bool list) {
     if (std::ranges::count(lineage.inputs, id, &FigureInput::run) > 0) continue;
     print_text("\n");
     say("before", "{}", id);
-    say("  of", "{}, seed {}, {} grains", stage.run.kind, text_at(stage.run.resolved, "seed"),
-        stage.run.grains);
+    say("  of", "{}, seed {}, {} grains", stage.stage.kind, text_at(stage.stage.resolved, "seed"),
+        stage.stage.grains);
     std::vector<std::string> checkpoints;
     for (const CheckpointHistory& c : stage.checkpoints) {
       if (c.record.state != CheckpointState::rejected) checkpoints.push_back(c.record.sha256);

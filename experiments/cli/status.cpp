@@ -77,7 +77,7 @@ std::pair<StageState, double> progress_of(const Stage& run, const QueuedRun* que
 
 /// A run in one of its places. The table shows what its task reports, JSON what the store has.
 Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
-  const Stage& run = listed.run;
+  const Stage& run = listed.stage;
   const auto held = view.holders.find(run.id);
   const bool is_held = held != view.holders.end();
   const QueuedRun* queued = view.queued(run);
@@ -186,7 +186,7 @@ void print_tables(const View& view) {
   std::map<std::string, std::vector<Facts>> tables;
   std::map<StageState, std::size_t> count;
   for (const PlacedRun& listed : view.runs) {
-    ++count[progress_of(listed.run, view.queued(listed.run)).first];
+    ++count[progress_of(listed.stage, view.queued(listed.stage)).first];
     for (const Ask& place : listed.places) {
       const std::string name = place.experiment + " at scale " + scale_name(place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
@@ -210,7 +210,7 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   const auto waiting = std::ranges::count_if(
-      view.runs, [&](const PlacedRun& one) { return view.waiting.contains(one.run.id); });
+      view.runs, [&](const PlacedRun& one) { return view.waiting.contains(one.stage.id); });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));

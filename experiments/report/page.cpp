@@ -277,7 +277,7 @@ json figure_json(const WantedFigure& wanted, Content& content) {
 
 /// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
-  const Stage& run = stage.run;
+  const Stage& run = stage.stage;
   json members = json::array(), attempts = json::array();
   for (const Ask& member : run.asks) {
     members.push_back(
@@ -610,7 +610,7 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
     const std::vector<json>& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
     run["id"] = row[runs.place("run")];
-    run["kind"] = lineages.at(run["id"].get<std::string>()).run.kind;
+    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
   }
   return all;
 }

@@ -26,8 +26,8 @@ std::vector<FigureRun> runs_of_sweep() {
     for (const double period : {0.5, 2.0}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 3, [&](int n, Measures& m) {
-          m.phi = amplitude + period / 1000 + 1e-6 * static_cast<double>(seed);
-          m.mean_overlap = n;
+          m.numbers["phi"] = amplitude + period / 1000 + 1e-6 * static_cast<double>(seed);
+          m.numbers["mean_overlap_d"] = n;
         });
         run.swept["period_s"] = period;
         run.variant = fmt::format("amplitude_rad={},period_s={}", amplitude, period);

@@ -25,7 +25,7 @@ class Measure : public DrawingTest {
  protected:
   void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
 
-  FigureSummary make(const std::string& name) { return draw(name); }
+  FigureSummary make(const std::string& name) { return draw(name, kS2); }
   std::string csv(const std::string& name) const {
     const std::filesystem::path folder = folder_.path() / name / "tiny/base";
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
