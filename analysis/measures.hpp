@@ -118,8 +118,8 @@ enum class ComputedFrom { record, checkpoint, simulation, history };
 struct Provider {
   std::string name;
   nlohmann::json parameters =
-      nlohmann::json::object();  ///< on which results depend besides the checkpoint
-  std::vector<Measure> measures = {};
+      nlohmann::json::object();        ///< on which results depend besides the checkpoint
+  std::vector<Measure> measures = {};  ///< all of each grain, or none
   /// An object: a value for each measure, by name. A curve is {"x", "y"}; a measure of each grain
   /// is an array. Measures that need a checkpoint or a shear that the run lacks are left out.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;

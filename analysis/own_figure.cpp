@@ -25,6 +25,9 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   std::string name(measure);
   std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
   if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
+  if (const auto slash = unit.find('/'); slash != std::string::npos) {
+    unit.replace(slash, 1, "_per_");  // "m/s"
+  }
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   return {std::move(name), std::move(unit), std::string(measure)};
 }

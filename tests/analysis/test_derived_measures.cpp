@@ -155,6 +155,8 @@ TEST(DerivedMeasures, AProviderComputesTheMeasuresThatItLists) {
               one.measures.size())
         << one.name;
     for (const auto& [name, values] : found.of_grains) EXPECT_EQ(values.size(), 300U) << name;
+    EXPECT_TRUE(found.of_grains.empty() || found.of_grains.size() == one.measures.size())
+        << one.name << ": results with values of each grain are not kept";
     ++providers;
   }
   EXPECT_GT(providers, 10U);
