@@ -22,7 +22,8 @@ struct TableOptions {
 
 void table(const TableOptions& options, Context& context) {
   const Store store(context.store, Access::read);
-  if (!options.out.empty()) require_ours(options.out, is_table);
+  const bool to_stdout = options.out.empty() || options.out == "-" || options.out == "/dev/stdout";
+  if (!to_stdout) require_ours(options.out, is_table);
   const MeasureOptions how{.workers = usable_cores(),
                            .report = terminal_counter("measuring checkpoint")};
   const Measure* curve = find_measure(options.curve, MeasureKind::curve);
@@ -33,7 +34,7 @@ void table(const TableOptions& options, Context& context) {
   const std::string text = context.json               ? to_json_with_notes(made)
                            : options.format == "json" ? to_json(made)
                                                       : to_csv(made);
-  if (options.out.empty()) {
+  if (to_stdout) {
     // Only a terminal gets escaped text.
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
@@ -84,7 +85,7 @@ void add_table(CLI::App& app, Context& context) {
             fmt::format("Add {}, which is simulated: {}", fmt::join(added, ", "), one.cost))
         ->excludes(command->get_option("--curve"));
   }
-  command->add_option("--out", options->out, "File to write (default: standard output)")
+  command->add_option("--out", options->out, "File to write (default, and for -: standard output)")
       ->type_name("FILE");
   add_common_options(
       *command, context,

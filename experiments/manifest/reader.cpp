@@ -304,6 +304,27 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
+// Keys that people try for what the model does not have, with the nearest that it has.
+const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
+    {{"friction", "mu", "rolling_friction"},
+     "Grains are frictionless. `shearcell export --to lammps` writes a packing for LAMMPS, which "
+     "has "
+     "friction."},
+    {{"restitution", "damping", "viscosity"},
+     "Contacts do not dissipate; only the drag of the fluid does: drag_kg_per_s."},
+    {{"contact_law", "contact_model", "hertz", "youngs_modulus", "poisson_ratio"},
+     "Contacts are linear springs: stiffness_N_per_m. `shearcell export --to lammps` writes a "
+     "packing "
+     "for LAMMPS, which has other laws."},
+    {{"polydispersity", "size_ratio", "bidisperse", "radii", "diameters"},
+     "All grains are equal: diameter_m. `shearcell export --to lammps` writes a packing for "
+     "LAMMPS, "
+     "which has unequal grains."},
+    {{"radius"}, "State the diameter: diameter_m."},
+    {{"temperature", "thermostat"}, "Grains have no thermal motion; the walls move them."},
+    {{"initial", "start", "positions"},
+     "Each run settles its own packing from loose grains; `seeds` draw them."}};
+
 // Reads values into members of their types. Problems are reported, and reading continues.
 struct Reader {
   ProblemList& problems;
@@ -329,6 +350,18 @@ struct Reader {
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
     if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
+    if (!in.key.empty() &&
+        std::ranges::all_of(in.key, [](unsigned char c) { return std::isdigit(c) != 0; })) {
+      return reject_key(in, "is a number where a key belongs",
+                        "If it follows a comma: a number takes a decimal point, as in 0.05.");
+    }
+    for (const auto& [names, instead] : kNotModelled) {
+      for (const string_view name : names) {
+        if (in.key == name || in.key.starts_with(string(name) + "_")) {
+          return reject_key(in, "is not modelled", string(instead));
+        }
+      }
+    }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
     }

@@ -259,6 +259,11 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
   } else {
     const std::optional<double> real = parse_real(text);
     if (real && !field.range.contains(*real)) return ValueProblem{"is out of range", takes(field)};
+    if (!real && text.find_first_not_of("0123456789,") == text.npos) {
+      std::string point(text);
+      std::ranges::replace(point, ',', '.');
+      return ValueProblem{"is not a number", "A number takes a decimal point: " + point + "."};
+    }
     if (!real || (field.whole && *real != std::floor(*real))) {
       return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};
     }
