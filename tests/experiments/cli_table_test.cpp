@@ -194,9 +194,9 @@ TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
     EXPECT_EQ(read_bytes(path("runs.csv")), printed.out);
   }
   expect_refused({"table", "--out", "/"}, {"/: this is a folder, and the output is a file"});
-  const std::string printed = expect(0, {"table"}).out;
+  const std::string rows = expect(0, {"table"}).out;
   for (const char* name : {"-", "/dev/stdout"}) {
-    EXPECT_EQ(expect(0, {"table", "--out", name}).out, printed) << name;
+    EXPECT_EQ(expect(0, {"table", "--out", name}).out, rows) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(path("-")));
   for (int k = 0; k < 2; ++k) expect(0, {"table", "--json", "--out", "runs.json"});
