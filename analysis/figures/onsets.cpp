@@ -214,7 +214,8 @@ std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, Ru
                            "and without gravity",
                            amplitude),
                margin_percentage},
-              percentage_over_phi(), without, with)};
+              over_phi("percentage crystalline", "crystalline_percent", window_low, window_high),
+              without, with)};
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
@@ -460,7 +461,7 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
 
 bool has_values(const Variant& variant, const json& where) {
   return std::ranges::all_of(where.items(), [&](const auto& item) {
-    return find_field(item.key())->get(variant.parameters) == item.value();
+    return is_as_stated(find_field(item.key())->get(variant.parameters), item.value());
   });
 }
 
@@ -480,7 +481,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
 }
 
 std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
-                                std::span<const Variant> variants, std::size_t) {
+                                std::span<const Variant> variants) {
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
   keys.insert(keys.end(), {plot.by, plot.panel});
@@ -514,29 +515,74 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
   return found;
 }
 
-std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
-                                std::span<const Variant> variants, std::size_t seeds) {
+/// A scale, its variants and its number of seeds.
+struct Planned {
+  const Scale& scale;
+  std::span<const Variant> variants;
+  std::size_t seeds;
+};
+
+/// The variants that the claim compares.
+std::array<std::vector<const Variant*>, 2> sides_of(const ClaimSpec& claim,
+                                                    std::span<const Variant> variants) {
   std::array<std::vector<const Variant*>, 2> sides;
   for (const Variant& variant : variants) {
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
       if (has_values(variant, claim.between[k])) sides[k].push_back(&variant);
     }
   }
+  const bool lacks_one = sides[0].empty() || (sides[1].empty() && !claim.published);
+  return claim.optional && lacks_one ? decltype(sides)() : sides;
+}
+
+/// Why `figures` will refuse the claim.
+std::vector<string> refusals_of(const ClaimSpec& claim, std::span<const Variant> variants) {
+  const auto sides = sides_of(claim, variants);
+  if (claim.optional && sides[0].empty()) return {};
   const auto run_of = [](const Variant& variant) {
     return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).id;
   };
-  if (claim.published) sides[1].clear();
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
-  std::vector<string> found =
-      problems_of_sides(claim, {sides[0].size(), sides[1].size()},
-                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0]));
+  return problems_of_sides(claim, {sides[0].size(), sides[1].size()},
+                           one_each && run_of(*sides[0][0]) == run_of(*sides[1][0]));
+}
+
+/// Why the claim will be undecided.
+std::vector<string> lacks_of(const ClaimSpec& claim, const Planned& planned) {
+  std::vector<string> found;
+  auto sides = sides_of(claim, planned.variants);
+  if (claim.optional && sides[0].empty()) return found;
   sides[0].insert(sides[0].end(), sides[1].begin(), sides[1].end());
   for (const Variant* side : sides[0]) {
-    found.push_back(lack_of(claim, scale, *side));
-    if (!found.back().empty()) break;
+    string lack = lack_of(claim, planned.scale, *side);
+    if (lack.empty()) continue;
+    found.push_back(std::move(lack));
+    break;
   }
-  if (seeds < least_runs) {
-    found.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
+  if (planned.seeds < least_runs) {
+    found.push_back(
+        format("a verdict takes at least {} seeds, not {}.", least_runs, planned.seeds));
+  }
+  return found;
+}
+
+/// Whether another scale can decide the claim. Then nothing is said of a small one, which is for
+/// trying.
+bool is_decided_elsewhere(const ClaimSpec& claim, const Manifest& manifest, const Scale& scale) {
+  return std::ranges::any_of(whole_scales(manifest), [&](const Scale& other) {
+    if (other.name == scale.name) return false;
+    const std::vector<Variant> variants = variants_of(other);
+    return refusals_of(claim, variants).empty() &&
+           lacks_of(claim, {other, variants, other.seeds->values.size()}).empty();
+  });
+}
+
+std::vector<string> problems_of(const ClaimSpec& claim, const Manifest& manifest,
+                                const Planned& planned) {
+  std::vector<string> found = refusals_of(claim, planned.variants);
+  const std::vector<string> lacks = lacks_of(claim, planned);
+  if (!lacks.empty() && !is_decided_elsewhere(claim, manifest, planned.scale)) {
+    found.insert(found.end(), lacks.begin(), lacks.end());
   }
   return found;
 }
@@ -554,17 +600,17 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale,
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
-  const auto warn_of = [&](const char* kind, const auto& specs) {
-    for (const auto& own : specs) {
-      for (const string& problem : problems_of(own, scale, variants, seeds)) {
-        if (problem.empty()) continue;
-        warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
-                                  kind, own.name, problem));
-      }
+  const auto warn_of = [&](const char* kind, const auto& own, const std::vector<string>& problems) {
+    for (const string& problem : problems) {
+      if (problem.empty()) continue;
+      warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
+                                kind, own.name, problem));
     }
   };
-  warn_of("plot", manifest.plots);
-  warn_of("claim", manifest.claims);
+  for (const auto& plot : manifest.plots) warn_of("plot", plot, problems_of(plot, scale, variants));
+  for (const auto& claim : manifest.claims) {
+    warn_of("claim", claim, problems_of(claim, manifest, {scale, variants, seeds}));
+  }
 }
 
 }  // namespace

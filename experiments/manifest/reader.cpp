@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
@@ -33,7 +35,7 @@ using Names = std::vector<string_view>;
 
 constexpr std::size_t kLongestLabel = 120;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Range kCycles = {1, StoreLimits::cycles};
+constexpr Range kCycles = {0, StoreLimits::cycles};
 // A double holds it exactly, so readers in any language can.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
@@ -82,7 +84,7 @@ void fields(UntilKeys& until, const auto& visit) {
 }
 
 void fields(Checkpoints& checkpoints, const auto& visit) {
-  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = kCycles});
+  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = {1, StoreLimits::cycles}});
   visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
 }
 
@@ -132,7 +134,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names scalars = measure_names({MeasureKind::number});
   static const Names runs = measure_names({MeasureKind::run});
   static const Names can_be_by = parameters(), can_be_x = joined({"cycle"}, scalars, can_be_by);
-  static const Names can_be_y = 
+  static const Names can_be_y =
       measure_names({MeasureKind::number, MeasureKind::curve, MeasureKind::run});
   static const Names x_terms = joined({"cycle"}, scalars, numbers());
   static const Names y_terms = joined(x_terms, runs);
@@ -189,7 +191,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "y] or [x, y, error], each with its `source`",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
-                    .doc = "further measures in the CSV of a plot of means against the cycle",
+                    .doc = "further measures in the CSV of a plot of means against the cycle; as a "
+                           "map, with names for their columns: `{phi_u: phi_uncorrected}`",
                     .names = scalars,
                     .example = "[phi_uncorrected]"});
   visit(plot.cycle,
@@ -222,18 +225,20 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .doc = "swept values that single out a variant, for the first and for the second. The "
                 "difference is the first less the second",
          .example = "[{fluid: still}, {fluid: cell}]"});
-  visit(claim.published, {.name = "published",
-                          .doc = "instead of `between`: the mean over the runs less this number",
-                          .example = "{value: 0.646, error: 0.001, source: S C}"});
+  visit(claim.published,
+        {.name = "published",
+         .doc = "instead of `between`: the mean over the runs less this number; "
+                "with `is: lower` or `higher` and no margin, the number is a bound",
+         .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
                            .doc = "with `published`: swept values that single out the variant",
                            .example = "{fluid: still}"});
   visit(claim.margin,
         {.name = "margin",
          .range = {0, kInfinity, true},
-         .doc = "in the unit of the measure; of `onset_size_cycle`, of log2 of the ratio of both "
-                "waiting times (log-rank test, which counts runs without an onset): 1 is a factor "
-                "of 2"});
+         .doc = "in the unit of the measure; of `onset_size_cycle` and `reaches`, of log2 of the "
+                "ratio of both waiting times (log-rank test, which counts runs that end before): 1 "
+                "is a factor of 2"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: of the relative difference; 0.03 is 3 %"});
@@ -242,12 +247,22 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                        .range = kCycles,
                        .doc = "or first and last of the cycles whose mean is compared",
                        .example = "[1, 15]"});
+  visit(claim.phi, {.name = "phi",
+                    .range = {0, 1},
+                    .doc = "or a window of phi over which the mean is compared",
+                    .example = "[0.646, 0.67]"});
+  visit(claim.reaches, {.name = "reaches",
+                        .range = {-1e15, 1e15},
+                        .doc = "or the value whose first cycle is compared"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first is so by more than the margin"});
   visit(claim.statement, {.name = "statement",
                           .doc = "what the claim says, for people; default: from its keys",
                           .longest = 300});
+  visit(claim.optional, {.name = "optional",
+                         .doc = "`true`: no verdict where a scale lacks one of the variants",
+                         .example = "true"});
 }
 
 void fields(Manifest& manifest, const auto& visit) {
@@ -564,6 +579,10 @@ struct Reader {
       read->get_to(value);
     }
   }
+  static void read(const Entry& in, const Field&, bool& value) {
+    value = in.is_scalar() && in.node.text == "true";
+    if (!value && in.node.text != "false") in.reject_type("true or false", "Write `true`.");
+  }
   template <class T>
   static void read(const Entry& in, const Field& about, std::optional<T>& value) {
     read(in, with_type<T>(about), value.emplace());
@@ -614,6 +633,28 @@ struct Reader {
     }
     if (ends.size() != 2 || value[1] < value[0]) {
       in.reject("is not a first and a last cycle", fmt::format("It takes `{}`.", about.example));
+    }
+  }
+
+  // The ends of a window.
+  static void read(const Entry& in, const Field& about, std::array<double, 2>& window) {
+    const std::vector<Entry> ends = items_of(in, about.example);
+    for (std::size_t k = 0; k < std::min(ends.size(), window.size()); ++k) {
+      read(ends[k], {.range = about.range}, window[k]);
+    }
+    if (ends.size() != 2 || !(window[0] < window[1])) {
+      in.reject("is not a window from a low to a high value",
+                fmt::format("It takes `{}`.", about.example));
+    }
+  }
+
+  // Measures, or names of columns and their measures.
+  static void read(const Entry& in, const Field& about, std::vector<ColumnSpec>& columns) {
+    const bool named = in.is_map();
+    for (const Entry& one : named ? in.entries() : items_of(in, about.example)) {
+      ColumnSpec& column = columns.emplace_back();
+      if (named) read(Entry{one.key, one.key, one.path, one.problems}, {}, column.name);
+      read(one, about, column.measure);
     }
   }
 
@@ -675,14 +716,10 @@ struct Reader {
     }
   }
 
-  // Measures, or figures of the supplement.
+  // Figures of the supplement.
   static void read(const Entry& in, const Field& about, std::vector<string>& figures) {
     for (const Entry& item : items_of(in, about.example)) {
       string figure;
-      if (about.is_choice()) {
-        read(item, about, figures.emplace_back());
-        continue;
-      }
       read(item, {}, figure);
       if (figure.empty()) continue;
       if (std::ranges::find(figures, figure) != figures.end()) {
@@ -945,7 +982,6 @@ struct Reader {
   }
 
   static void check(const Entry& in, const Field& about, Placed<ClaimSpec>& claim) {
-    const auto at_cycle = in.find("at_cycle"), cycles = in.find("cycles");
     const auto between = in.find("between"), published = in.find("published");
     if (!between && !published) in.reject("lacks between", remedy_of(about));
     if (between && published) published->reject("does not go with between", "State one of them.");
@@ -956,32 +992,43 @@ struct Reader {
       of->reject("goes with published", "Take `between` for two variants.");
     }
     const auto relative = in.find("relative_margin");
+    const bool bound = published && claim.is != Relation::same;
     if (relative && in.find("margin")) {
       relative->reject("does not go with margin", "State one of them.");
-    } else if (!relative && !in.find("margin")) {
+    } else if (!relative && !in.find("margin") && !bound) {
       in.reject("lacks margin", remedy_of(about));
     }
     claim.relative = relative.has_value();
-    if (at_cycle && cycles) cycles->reject("does not go with at_cycle", "State one of them.");
+    std::vector<Entry> when;
+    for (const char* key : {"at_cycle", "cycles", "phi", "reaches"}) {
+      if (const auto stated = in.find(key)) when.push_back(*stated);
+    }
     const bool of_run = !claim.compare.empty() && is_parameter(claim.compare);
-    if (of_run && (at_cycle || cycles)) {
-      (at_cycle ? at_cycle : cycles)
-          ->reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
-    } else if (!claim.compare.empty() && !of_run && !at_cycle && !cycles) {
+    if (of_run && !when.empty()) {
+      when.front().reject(fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
+    } else if (when.size() > 1) {
+      when[1].reject(fmt::format("does not go with {}", when[0].key.text), "State one of them.");
+    } else if (!claim.compare.empty() && !of_run && when.empty()) {
       in.reject("lacks at_cycle or cycles", remedy_of(about));
     }
+    if (claim.reaches && !between) {
+      when.back().reject("goes with between", "A waiting time is compared with another one.");
+    }
+    if (claim.reaches && relative) relative->reject("does not go with reaches", "Take `margin`.");
   }
 };
 
 // Names of plots and claims, of their figures and of the panels of a plot differ from each other
-// and from those of the supplement's figures and panels.
-void check_own_names(const Entry& document) {
+// and from those of the supplement's figures and panels, unless they are parts of such a figure
+// that is stated here and not in another manifest. `listed`: the `figures` of this manifest.
+void check_own_names(const Entry& document, std::span<const Figure> supplement,
+                     const std::vector<string>& listed) {
   std::vector<Entry> items;
   for (const char* list : {"plots", "claims"}) {
     const auto own = document.find(list);
     for (const Entry& item : own ? own->items() : std::vector<Entry>()) items.push_back(item);
   }
-  std::set<string> taken;
+  std::map<string, string> taken;  // names, and their figures
   const auto is_taken = [&](const string& text) {
     return std::ranges::any_of(items, [&](const Entry& other) {
       const auto name = other.find("name");
@@ -994,15 +1041,21 @@ void check_own_names(const Entry& document) {
       const auto own = item.find(key);
       if (!own || !is_name(own->node.text)) continue;
       const string& text = own->node.text;
+      const auto its_figure = item.find("figure");
+      const string of = its_figure ? its_figure->node.text : "";
       const auto is_panel = [&](const Figure& figure) {
+        const bool computed = find_named(computed_figures(), figure.name) != nullptr;
+        const bool also_listed = std::ranges::find(listed, figure.name) != listed.end();
+        if (!computed && !also_listed && of == figure.name) return false;
         if (!text.starts_with(figure.name)) return false;
         const string_view rest = string_view(text).substr(figure.name.size());
         return rest.size() < 2 || rest.front() == '_';
       };
       const bool names_it = key == string_view("name");
-      if (std::ranges::any_of(all_figures(), is_panel)) {
+      if (std::ranges::any_of(supplement, is_panel)) {
         own->reject_value("is the name of a figure of the supplement", "Choose another one.");
-      } else if (is_taken(text) || (names_it ? !taken.insert(text).second : taken.contains(text))) {
+      } else if (is_taken(text) || (names_it ? !taken.emplace(text, of).second
+                                             : taken.contains(text) && taken.at(text) != text)) {
         own->reject_value("is the name of another plot or claim", "Choose another one.");
       }
     }
@@ -1017,7 +1070,7 @@ bool is_name(string_view text) {
          std::ranges::all_of(text, allowed);
 }
 
-Manifest read_manifest(string_view text, string_view file) {
+Manifest read_manifest(string_view text, string_view file, bool shipped) {
   const Node root = read_document(text, file);
   ProblemList problems(file);
   Manifest manifest;
@@ -1036,7 +1089,7 @@ Manifest read_manifest(string_view text, string_view file) {
     problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
   }
   if (const auto base = document.find("base")) manifest.base.at = base->key.at;
-  check_own_names(document);
+  check_own_names(document, shipped ? computed_figures() : all_figures(), manifest.figures);
   problems.raise();
   return manifest;
 }
