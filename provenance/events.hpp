@@ -30,12 +30,12 @@ struct ManifestRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  RunRecord run;  ///< without its id, and as nobody began it
-  Membership membership;
+  Stage run;  ///< without its id, and as nobody began it
+  Ask ask;
   static void fields(auto& e, auto field) {
     field("parent", e.run.parent), field("kind", e.run.kind), field("resolved", e.run.resolved);
-    field("grains", e.run.grains), field("target_cycles", e.membership.target_cycles);
-    field("membership", e.membership);
+    field("grains", e.run.grains), field("target_cycles", e.ask.target_cycles);
+    field("membership", e.ask);
   }
 };
 

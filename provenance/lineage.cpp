@@ -94,7 +94,7 @@ class LineageBuilder {
 };
 
 /// The lineage by the events before number `before`.
-RunLineage build_lineage(const RunRecord& run, const std::vector<Event>& events,
+RunLineage build_lineage(const Stage& run, const std::vector<Event>& events,
                          std::uint64_t before = UINT64_MAX) {
   RunLineage lineage{run, {}, {}};
   for (const Event& event : events) {
@@ -138,16 +138,16 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
 }
 
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
-  std::vector<RunRecord> chain;
+  std::vector<Stage> chain;
   std::set<std::string> seen;
   for (std::string next = id; !next.empty() && seen.insert(next).second;) {
-    chain.push_back(store.run(next));
+    chain.push_back(store.stage(next));
     next = chain.back().parent;
   }
   std::reverse(chain.begin(), chain.end());
   std::vector<RunLineage> stages;
   std::vector<Event> before;
-  for (const RunRecord& run : chain) {
+  for (const Stage& run : chain) {
     std::vector<Event> events = store.events(run_stream(run.id));
     RunLineage stage = build_lineage(run, events);
     for (Attempt& attempt : stage.attempts) {

@@ -76,9 +76,9 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
 
 void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
                         const std::string& b_name) {
-  std::map<std::string, RunRecord> known;
-  for (RunRecord& run : query_runs(a)) known.emplace(run.id, std::move(run));
-  for (const RunRecord& run : query_runs(b)) {
+  std::map<std::string, Stage> known;
+  for (Stage& run : query_stages(a)) known.emplace(run.id, std::move(run));
+  for (const Stage& run : query_stages(b)) {
     const auto same = known.find(run.id);
     if (same == known.end() || same_computation(same->second, run)) continue;
     throw StoreDamaged(fmt::format(
@@ -123,7 +123,7 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 
 /// Whether the event adds a place in an experiment, or raises its target.
 bool declares_news(const Database& into, const Event& event) {
-  const Membership m = std::get<events::RunDeclared>(events::decode(event)).membership;
+  const Ask m = std::get<events::RunDeclared>(events::decode(event)).ask;
   Statement same(into,
                  "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
                  "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
@@ -136,7 +136,7 @@ using Stream = std::vector<const Event*>;  // in the order of the log
 /// An attempt is copied when it recorded a checkpoint that is news, or when it ended the run in a
 /// further state than the store's.
 struct RunMerge {
-  std::optional<RunRecord> before;   ///< the run in the store before the merge
+  std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< the event that set its state
   std::set<std::string> known;       ///< checkpoints that are not news
   std::set<std::uint64_t> attempts;  ///< seq, in the source, of the events of attempts to copy
@@ -158,9 +158,9 @@ struct RunMerge {
   /// restores the store's own state.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
-    const RunState now = query_run(into, before->id).value().state;
+    const StageState now = query_stage(into, before->id).value().state;
     const bool more_to_do =
-        before->state == RunState::completed && now == RunState::declared;  // a longer target
+        before->state == StageState::completed && now == StageState::declared;  // a longer target
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
   }
@@ -195,9 +195,9 @@ std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& p
 }
 
 RunMerge plan_run(const Database& into, const EventLog& log, const Database& source_tables,
-                  const Stream& stream, const RunRecord& source_run) {
+                  const Stream& stream, const Stage& source_run) {
   RunMerge plan;
-  plan.before = query_run(into, source_run.id);
+  plan.before = query_stage(into, source_run.id);
   for (Event& event : log.events(run_stream(source_run.id))) {
     if (events::begins_attempt(event) || events::ends_attempt(event)) {
       plan.last_claim = std::move(event);
@@ -286,7 +286,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   std::map<std::string, Stream> streams;
   for (const Event& event : source.events) streams[event.stream].push_back(&event);
   std::map<std::string, RunMerge> runs;  // by stream
-  for (const RunRecord& run : query_runs(source.tables)) {
+  for (const Stage& run : query_stages(source.tables)) {
     const std::string stream = run_stream(run.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), run));
   }

@@ -122,10 +122,10 @@ class Projector {
       : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
   void operator()(const events::RunDeclared& e) const {
-    const RunRecord& d = e.run;
-    const Membership& m = e.membership;
+    const Stage& d = e.run;
+    const Ask& m = e.ask;
     require_cycles(m.target_cycles, m.checkpoint_every);
-    if (has_run(database_, id_)) {
+    if (has_stage(database_, id_)) {
       // A completed run may also have ended early, as other experiments asked for.
       run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
           "(target_cycles < ?2 OR cycle < ?2)",
@@ -283,13 +283,13 @@ State state_of(const Database& database, const std::string& name) {
   throw damaged_table(database, "has the unknown state '" + name + "'");
 }
 
-std::vector<Membership> query_memberships(const Database& database, const std::string& id) {
+std::vector<Ask> query_memberships(const Database& database, const std::string& id) {
   Statement query(database,
                   "SELECT memberships.*, newest.manifest IS memberships.manifest FROM memberships "
                   "LEFT JOIN newest USING (experiment, scale) WHERE run = ? ORDER BY ordinal",
                   id);
   return query.all([&](const Statement& row) {
-    Membership m;
+    Ask m;
     std::string run, labels, until, phases;
     std::uint64_t ordinal = 0, newest = 0;
     row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
@@ -305,11 +305,11 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
 
 /// `rest` follows FROM.
 template <class... Values>
-std::vector<RunRecord> select_runs(const Database& database, const std::string& rest,
-                                   const Values&... values) {
+std::vector<Stage> select_runs(const Database& database, const std::string& rest,
+                               const Values&... values) {
   Statement query(database, "SELECT * FROM runs " + rest, values...);
   return query.all([&](const Statement& row) {
-    RunRecord run;
+    Stage run;
     std::uint64_t ordinal = 0;
     std::string resolved, state, ends;
     row.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
@@ -319,8 +319,8 @@ std::vector<RunRecord> select_runs(const Database& database, const std::string& 
     if (!run.ends.is_array()) throw damaged_table(database, "holds no list of ends");
     run.resolved = parse(database, resolved);
     require_cycles(run.target_cycles, 1);
-    run.state = state_of<RunState>(database, state);
-    run.memberships = query_memberships(database, run.id);
+    run.state = state_of<StageState>(database, state);
+    run.asks = query_memberships(database, run.id);
     return run;
   });
 }
@@ -431,7 +431,7 @@ std::map<std::string, TableRows> projection_rows(const Database& database) {
   return tables;
 }
 
-NotFound unknown_run(std::string_view id) {
+NotFound unknown_stage(std::string_view id) {
   return NotFound(fmt::format("the store has no run '{}'; `shearcell status` lists its runs", id));
 }
 
@@ -439,20 +439,20 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256) {
   return NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
 }
 
-std::vector<RunRecord> query_runs(const Database& database) {
+std::vector<Stage> query_stages(const Database& database) {
   return select_runs(database, "ORDER BY ordinal");
 }
 
-std::optional<RunRecord> query_run(const Database& database, std::string_view id) {
+std::optional<Stage> query_stage(const Database& database, std::string_view id) {
   return only(select_runs(database, "WHERE id = ?", id));
 }
 
-bool has_run(const Database& database, std::string_view id) {
+bool has_stage(const Database& database, std::string_view id) {
   return Statement(database, "SELECT 1 FROM runs WHERE id = ?", id).step();
 }
 
-std::vector<std::string> query_run_ids(const Database& database, std::string_view prefix,
-                                       std::size_t limit) {
+std::vector<std::string> query_stage_ids(const Database& database, std::string_view prefix,
+                                         std::size_t limit) {
   Statement query(database,
                   "SELECT id FROM runs WHERE substr(id, 1, length(?1)) = ?1 ORDER BY id LIMIT ?2",
                   prefix, std::uint64_t{limit});

@@ -46,16 +46,16 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 
 // Queries. All throw StoreDamaged when a table holds a value that no event can give.
 
-NotFound unknown_run(std::string_view id);
+NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
 /// In the order of their declaration.
-std::vector<RunRecord> query_runs(const sqlite::Database& database);
-std::optional<RunRecord> query_run(const sqlite::Database& database, std::string_view id);
-bool has_run(const sqlite::Database& database, std::string_view id);
+std::vector<Stage> query_stages(const sqlite::Database& database);
+std::optional<Stage> query_stage(const sqlite::Database& database, std::string_view id);
+bool has_stage(const sqlite::Database& database, std::string_view id);
 /// Ids with this prefix, at most `limit`.
-std::vector<std::string> query_run_ids(const sqlite::Database& database, std::string_view prefix,
-                                       std::size_t limit);
+std::vector<std::string> query_stage_ids(const sqlite::Database& database, std::string_view prefix,
+                                         std::size_t limit);
 /// Checkpoints of one run, or of all (""), in ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
                                                 std::string_view run = "");

@@ -15,7 +15,7 @@
 namespace shearcell {
 
 /// The place of a run in an experiment. A run that two experiments share has two memberships.
-struct Membership {
+struct Ask {
   std::string experiment;
   std::string scale;                                ///< "" if the manifest has no scales
   std::string variant;                              ///< the swept values: "drag=still"
@@ -42,7 +42,7 @@ struct Membership {
 };
 
 /// What distinguishes the memberships of a run.
-inline auto place_of(const Membership& m) {
+inline auto place_of(const Ask& m) {
   return std::tie(m.experiment, m.scale, m.variant, m.seed, m.manifest);
 }
 
@@ -55,27 +55,27 @@ inline std::string scale_name(const std::string& scale) {
 enum class Listed { recorded, and_pruned, all };
 
 /// In the order in which a merge prefers them when two attempts reached the same step.
-enum class RunState { declared, running, interrupted, failed, completed };
+enum class StageState { declared, running, interrupted, failed, completed };
 
 template <>
-inline constexpr auto kNames<RunState> = names_in_order<RunState>("declared", "running",
-                                                                  "interrupted", "failed",
-                                                                  "completed");
+inline constexpr auto kNames<StageState> = names_in_order<StageState>("declared", "running",
+                                                                      "interrupted", "failed",
+                                                                      "completed");
 
 /// Whether nothing more is computed, unless the run is asked for again.
-inline bool has_ended(RunState state) {
-  return state == RunState::completed || state == RunState::failed;
+inline bool has_ended(StageState state) {
+  return state == StageState::completed || state == StageState::failed;
 }
 
 /// A stage as a manifest states it or as its events describe it.
-struct RunRecord {
+struct Stage {
   std::string id;                                      ///< 64 hex digits
   std::string parent;                                  ///< "" when there is none
   std::string kind;                                    ///< "prepare", "shear", ...
   nlohmann::json resolved = nlohmann::json::object();  ///< every parameter, in canonical form
   /// `declared`: not started, or completed and then given a longer target. `running`: started and
   /// not ended; after a kill this remains until the run is resumed.
-  RunState state = RunState::declared;
+  StageState state = StageState::declared;
   std::uint64_t grains = 0;
   std::uint64_t target_cycles = 0;                ///< the largest declared target
   std::uint64_t attempts = 0;                     ///< number of starts and resumes
@@ -85,9 +85,9 @@ struct RunRecord {
   double wall_seconds = 0;                        ///< sum over recorded efforts
   double particle_steps = 0;                      ///< sum over recorded efforts
   nlohmann::json ends = nlohmann::json::array();  ///< why each completion ended the run
-  std::string error;                    ///< why it failed or was interrupted; "" otherwise
-  std::string updated_at;               ///< time of its last event, UTC
-  std::vector<Membership> memberships;  ///< in the order in which they were declared
+  std::string error;       ///< why it failed or was interrupted; "" otherwise
+  std::string updated_at;  ///< time of its last event, UTC
+  std::vector<Ask> asks;   ///< in the order in which they were declared
 };
 
 /// Whether two stages with one id describe the same computation.

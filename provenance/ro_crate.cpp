@@ -114,7 +114,7 @@ json add_host(Graph& graph, const Maker& maker) {
 }
 
 /// Seed, resolved parameters and number of cycles of a run.
-json add_parameters(Graph& graph, const CrateFacts& facts, const RunRecord& run) {
+json add_parameters(Graph& graph, const CrateFacts& facts, const Stage& run) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
     given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", run.id, name)},
@@ -206,9 +206,9 @@ json add_licence(Graph& graph, const std::string& licence) {
                                              "them before you use the data."}});
 }
 
-std::string title_of(const RunRecord& run) {
-  if (run.memberships.empty()) return fmt::format("{} {:.12}", run.kind, run.id);
-  const Membership& member = run.memberships.front();
+std::string title_of(const Stage& run) {
+  if (run.asks.empty()) return fmt::format("{} {:.12}", run.kind, run.id);
+  const Ask& member = run.asks.front();
   return fmt::format("{} {}, seed {}: {} of {} grains (run {:.12})", member.experiment,
                      member.variant, member.seed, run.kind, run.grains, run.id);
 }
@@ -233,7 +233,7 @@ CrateFacts crate_facts(const Store& store, const std::string& run, std::string l
                        std::vector<std::string> left_out) {
   CrateFacts facts{run_lineage(store, run), {}, std::move(licence), std::move(left_out)};
   for (const RunLineage& stage : facts.stages) {
-    for (const Membership& member : stage.run.memberships) {
+    for (const Ask& member : stage.run.asks) {
       if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
       if (auto manifest = find_manifest(store, member.manifest)) {
         facts.manifests.push_back(std::move(*manifest));
@@ -257,7 +257,7 @@ json ro_crate_metadata(const CrateFacts& facts) {
   for (const RunLineage& stage : facts.stages) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
-      if (std::ranges::count(stage.run.memberships, manifest.sha256, &Membership::manifest) > 0) {
+      if (std::ranges::count(stage.run.asks, manifest.sha256, &Ask::manifest) > 0) {
         given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
@@ -273,7 +273,7 @@ json ro_crate_metadata(const CrateFacts& facts) {
              {"version", "0.5"}});
   const json& entities = graph.entities();
 
-  const RunRecord& run = facts.stages.back().run;
+  const Stage& run = facts.stages.back().run;
   json all = json::array();
   all.push_back({{"@id", kCrateMetadata},
                  {"@type", "CreativeWork"},

@@ -84,8 +84,8 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-bool adds_something(const RunRecord& known, const Membership& m) {
-  return std::ranges::none_of(known.memberships, [&](const Membership& old) {
+bool adds_something(const Stage& known, const Ask& m) {
+  return std::ranges::none_of(known.asks, [&](const Ask& old) {
     return place_of(old) == place_of(m) && old.checkpoint_every == m.checkpoint_every &&
            old.target_cycles >= m.target_cycles;
   });
@@ -100,8 +100,8 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
                        describe(lease->holder));
   }
   // Whoever continued it began an attempt, and a merge may have brought its end.
-  const auto run = query_run(database, id);
-  const bool own = run && run->attempts == attempt && run->state == RunState::running;
+  const auto run = query_stage(database, id);
+  const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";
 }
 
@@ -205,15 +205,15 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   return sha256;
 }
 
-void Store::declare_run(const RunRecord& declared) {
+void Store::declare_stage(const Stage& declared) {
   must_write();
   if (!is_sha256_hex(declared.id)) {
     throw std::invalid_argument(fmt::format("'{}' is not a run id", declared.id));
   }
   const std::scoped_lock guard(mutex_);
   sqlite::WriteTransaction lock(database_);
-  const auto known = query_run(database_, declared.id);
-  if (!known && !declared.parent.empty() && !query_run(database_, declared.parent)) {
+  const auto known = query_stage(database_, declared.id);
+  if (!known && !declared.parent.empty() && !query_stage(database_, declared.parent)) {
     throw std::invalid_argument(
         fmt::format("run {}: its parent {} was never declared", declared.id, declared.parent));
   }
@@ -221,30 +221,30 @@ void Store::declare_run(const RunRecord& declared) {
     throw std::invalid_argument(
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
-  for (const Membership& m : declared.memberships) {
+  for (const Ask& m : declared.asks) {
     if (known && !adds_something(*known, m)) continue;
     append(run_stream(declared.id), encode(events::RunDeclared{declared, m}), lock);
   }
   lock.commit();
 }
 
-std::uint64_t Store::start_run(const std::string& id, const json& host,
-                               const std::optional<std::string>& from_sha256,
-                               const std::string& parent_checkpoint, bool fill) {
+std::uint64_t Store::start_stage(const std::string& id, const json& host,
+                                 const std::optional<std::string>& from_sha256,
+                                 const std::string& parent_checkpoint, bool fill) {
   must_write();
   const std::scoped_lock guard(mutex_);
   if (held_.contains(id)) {
     throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
   }
   sqlite::WriteTransaction lock(database_);
-  const auto known = query_run(database_, id);
-  if (!known) throw unknown_run(id);
+  const auto known = query_stage(database_, id);
+  if (!known) throw unknown_stage(id);
   const auto lease = query_lease(database_, id);
   if (lease && lease->holder.token != self_.token && !lapsed(*lease, now_ms())) {
     throw RunHeld(
         fmt::format("run {}: another program computes it ({})", id, describe(lease->holder)));
   }
-  if ((known->state == RunState::completed) != fill) {
+  if ((known->state == StageState::completed) != fill) {
     throw ConcurrencyConflict(fmt::format("run {}: it is {}completed", id, fill ? "not " : ""));
   }
   const std::uint64_t attempt = known->attempts + 1;
@@ -265,7 +265,8 @@ std::uint64_t Store::start_run(const std::string& id, const json& host,
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
-  held_[id] = attempt;  // first, so that interrupt_run() works if the commit only reports an error
+  held_[id] =
+      attempt;  // first, so that interrupt_stage() works if the commit only reports an error
   lock.commit();
   return attempt;
 }
@@ -321,16 +322,16 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   return query_checkpoint(database_, id, sha256).value();
 }
 
-void Store::interrupt_run(const std::string& id, const std::string& why) {
+void Store::interrupt_stage(const std::string& id, const std::string& why) {
   append_held(id, encode(events::RunInterrupted{why}), true);
 }
 
-void Store::fail_run(const std::string& id, const std::string& why, const json& numbers) {
+void Store::fail_stage(const std::string& id, const std::string& why, const json& numbers) {
   append_held(id, encode(events::RunFailed{why, numbers}), true);
 }
 
-void Store::complete_run(const std::string& id, const json& summary,
-                         std::optional<std::uint64_t> target_cycles) {
+void Store::complete_stage(const std::string& id, const json& summary,
+                           std::optional<std::uint64_t> target_cycles) {
   append_held(id, encode(events::RunCompleted{summary, target_cycles}), true);
 }
 

@@ -63,16 +63,17 @@ struct MergeReport {
 /// when its run, step, cycle, time, units, number of grains, observables or state are not those
 /// that the record and the run's parameters say.
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
-                           const RunRecord& run);
+                           const Stage& run);
 
 /// Thread-safe. Several processes may open one store on a local disk; the log decides who was
 /// first. Every function may throw StoreDamaged, and std::runtime_error when the machine fails or
 /// another process keeps the store locked.
 ///
-/// Between `start_run` and the end of the attempt this object holds the run by a lease, which every
-/// record and `renew_leases` renew. Another program may take the run when the lease has expired, or
-/// at once when the holder's process is dead. The previous holder's next record then throws
-/// ConcurrencyConflict, and it must stop stepping the run. The destructor releases all leases.
+/// Between `start_stage` and the end of the attempt this object holds the run by a lease, which
+/// every record and `renew_leases` renew. Another program may take the run when the lease has
+/// expired, or at once when the holder's process is dead. The previous holder's next record then
+/// throws ConcurrencyConflict, and it must stop stepping the run. The destructor releases all
+/// leases.
 class Store {
  public:
   /// Throws StoreDamaged when the folder is not a store, has a newer schema, or, if it is to be
@@ -94,10 +95,10 @@ class Store {
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Records each membership of the run that is new or has a larger target. A longer target makes a
+  /// Records each ask of the run that is new or has a larger target. A longer target makes a
   /// completed run `declared` again. Throws std::invalid_argument when the id is not
   /// a SHA-256, belongs to other parameters, or the parent was never declared.
-  void declare_run(const RunRecord& run);
+  void declare_stage(const Stage& run);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` it continues from this
   /// checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when the run or
@@ -105,9 +106,9 @@ class Store {
   /// when this object holds it, when it is completed, or when a later checkpoint was recorded. With
   /// `fill` it must be completed: the attempt records checkpoints that the run lacks before its
   /// last one, and completes it again.
-  std::uint64_t start_run(const std::string& id, const nlohmann::json& host,
-                          const std::optional<std::string>& from_sha256 = std::nullopt,
-                          const std::string& parent_checkpoint = "", bool fill = false);
+  std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
+                            const std::optional<std::string>& from_sha256 = std::nullopt,
+                            const std::string& parent_checkpoint = "", bool fill = false);
 
   /// Renews the leases of all held runs; call it several times within `lease_seconds`. Runs that
   /// another program took are no longer held.
@@ -119,13 +120,14 @@ class Store {
   /// Throws std::invalid_argument when the checkpoint belongs to another run or holds NaN.
   CheckpointRecord record_checkpoint(const std::string& id, const Checkpoint& checkpoint,
                                      const Effort& effort = {});
-  void interrupt_run(const std::string& id, const std::string& why);
-  void fail_run(const std::string& id, const std::string& why,
-                const nlohmann::json& numbers = nlohmann::json::object());
+  void interrupt_stage(const std::string& id, const std::string& why);
+  void fail_stage(const std::string& id, const std::string& why,
+                  const nlohmann::json& numbers = nlohmann::json::object());
   /// `target_cycles` is the length that was reached; a run whose target is longer is declared
   /// again.
-  void complete_run(const std::string& id, const nlohmann::json& summary = nlohmann::json::object(),
-                    std::optional<std::uint64_t> target_cycles = std::nullopt);
+  void complete_stage(const std::string& id,
+                      const nlohmann::json& summary = nlohmann::json::object(),
+                      std::optional<std::uint64_t> target_cycles = std::nullopt);
 
   /// Excludes the checkpoint from now on; its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
@@ -147,11 +149,11 @@ class Store {
 
   // --- Reading ---
 
-  std::vector<RunRecord> runs() const;  ///< in the order of their declaration
-  RunRecord run(const std::string& id) const;
+  std::vector<Stage> stages() const;  ///< in the order of their declaration
+  Stage stage(const std::string& id) const;
   std::vector<Lease> leases() const;  ///< that have not lapsed
   /// The run with this prefix of the id. Throws NotFound, with the candidates if it is ambiguous.
-  RunRecord find_run(std::string_view prefix) const;
+  Stage find_stage(std::string_view prefix) const;
   /// In ascending order of step.
   std::vector<CheckpointRecord> checkpoints(const std::string& id,
                                             Listed listed = Listed::recorded) const;

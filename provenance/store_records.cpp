@@ -65,17 +65,17 @@ std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string
   return std::nullopt;
 }
 
-std::vector<RunRecord> Store::runs() const {
+std::vector<Stage> Store::stages() const {
   const std::scoped_lock guard(mutex_);
   const sqlite::ReadTransaction snapshot(database_);
-  return query_runs(database_);
+  return query_stages(database_);
 }
 
-RunRecord Store::run(const std::string& id) const {
+Stage Store::stage(const std::string& id) const {
   const std::scoped_lock guard(mutex_);
   const sqlite::ReadTransaction snapshot(database_);
-  auto found = query_run(database_, id);
-  if (!found) throw unknown_run(id);
+  auto found = query_stage(database_, id);
+  if (!found) throw unknown_stage(id);
   return std::move(*found);
 }
 
@@ -87,12 +87,12 @@ std::vector<Lease> Store::leases() const {
   return found;
 }
 
-RunRecord Store::find_run(std::string_view prefix) const {
+Stage Store::find_stage(std::string_view prefix) const {
   const std::scoped_lock guard(mutex_);
-  const std::vector<std::string> ids = query_run_ids(database_, prefix, kListed);
-  if (ids.empty()) throw unknown_run(prefix);
+  const std::vector<std::string> ids = query_stage_ids(database_, prefix, kListed);
+  if (ids.empty()) throw unknown_stage(prefix);
   require_one("runs", prefix, ids);
-  return run(ids.front());
+  return stage(ids.front());
 }
 
 std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
@@ -107,7 +107,7 @@ std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) 
 
 std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
   const std::scoped_lock guard(mutex_);
-  if (!has_run(database_, id)) throw unknown_run(id);
+  if (!has_stage(database_, id)) throw unknown_stage(id);
   auto found = query_checkpoints(database_, id);
   std::erase_if(found, [listed](const CheckpointRecord& record) {
     return (record.state == CheckpointState::rejected && listed != Listed::all) ||
@@ -135,7 +135,7 @@ Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
     require_kept();  // it may have been pruned since the record was read
     throw;
   }
-  const RunRecord of = run(record.run);
+  const Stage of = stage(record.run);
   try {
     return read_checkpoint(bytes, record, of);
   } catch (const StoreDamaged& damage) {
@@ -177,7 +177,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
   std::vector<CheckpointRecord> found;
-  for (const RunRecord& run : runs()) {
+  for (const Stage& run : stages()) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
@@ -211,7 +211,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
     sqlite::WriteTransaction lock(database_);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
-      const auto run = query_run(database_, record.run);
+      const auto run = query_stage(database_, record.run);
       if (!now || now->state != CheckpointState::recorded || !run || now->step >= run->step)
         continue;
       append(run_stream(record.run), events::encode(events::CheckpointPruned{{*now}}), lock);
@@ -255,7 +255,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
 }
 
 void Store::record_replay(const std::string& id, bool same, const nlohmann::json& facts) {
-  run(id);  // throws when it is unknown
+  stage(id);  // throws when it is unknown
   record(run_stream(id), {same ? "ReplayVerified" : "ReplayDiverged", facts});
 }
 

@@ -22,7 +22,7 @@ void require_same(std::string_view what, const auto& in_file, const auto& in_log
       "its {} is {}, and the log says {}; `regenerate` computes it again", what, in_file, in_log));
 }
 
-void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const RunRecord& run) {
+void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const Stage& run) {
   require_same("run", c.run, record.run);
   require_same("name", ObjectStore::file_of(record.sha256), record.file);
   require_same("step", c.state.step, record.step);
@@ -172,7 +172,7 @@ bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& 
 }
 
 void check_objects(const std::vector<CheckpointRecord>& records,
-                   const std::map<std::string, RunRecord>& runs, const sqlite::Database& database,
+                   const std::map<std::string, Stage>& runs, const sqlite::Database& database,
                    const ObjectStore& objects, VerifyReport& report) {
   std::set<std::string> known;
   for (const CheckpointRecord& record : records) {
@@ -226,7 +226,7 @@ void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport
 }  // namespace
 
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
-                           const RunRecord& run) {
+                           const Stage& run) {
   Checkpoint checkpoint = decode_checkpoint(image);
   require_plausible(checkpoint);
   require_recorded(checkpoint, record, run);
@@ -241,7 +241,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   const std::scoped_lock guard(mutex_);
   VerifyReport report;
   std::vector<CheckpointRecord> records;
-  std::map<std::string, RunRecord> runs;
+  std::map<std::string, Stage> runs;
   bool log_was_read = false;
   try {
     // One snapshot of the log; the files are read after it.
@@ -250,7 +250,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     check_chain(log_, report);
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);
-    for (RunRecord& run : query_runs(fresh)) runs.emplace(run.id, std::move(run));
+    for (Stage& run : query_stages(fresh)) runs.emplace(run.id, std::move(run));
     records = query_checkpoints(fresh);
     log_was_read = true;
     compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);

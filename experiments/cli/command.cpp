@@ -148,7 +148,7 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
   add_seed_option(command, selection.seeds);
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
-      ->check(one_of<RunState>());
+      ->check(one_of<StageState>());
 }
 
 void warn(Context& context, const std::string& warning) {
@@ -172,14 +172,14 @@ void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& contex
 
 // What the store has, for warnings.
 struct Known {
-  std::vector<RunRecord> runs;
+  std::vector<Stage> runs;
   std::vector<RegisteredManifest> manifests;  // in the order of registration
 };
 
 Known known_to(const Context& context) {
   try {
     if (const auto store = open_if_there(context.store)) {
-      return {store->runs(), registered_manifests(*store)};
+      return {store->stages(), registered_manifests(*store)};
     }
   } catch (const std::exception&) {
     // The command opens the store next, or creates it, and reports what is wrong.
@@ -195,12 +195,12 @@ void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Kno
   for (auto version = known.manifests.rbegin(); version != known.manifests.rend(); ++version) {
     if (version->experiment != plan.experiment) continue;
     std::size_t runs = 0, left_out = 0;
-    for (const RunRecord& run : known.runs) {
-      const bool has = std::ranges::any_of(run.memberships, [&](const Membership& m) {
+    for (const Stage& run : known.runs) {
+      const bool has = std::ranges::any_of(run.asks, [&](const Ask& m) {
         return m.experiment == plan.experiment && m.scale == plan.scale &&
                m.manifest == version->sha256;
       });
-      if (!has || run.kind == name_of(Stage::prepare)) continue;
+      if (!has || run.kind == name_of(StageKind::prepare)) continue;
       ++runs;
       left_out += planned.contains(run.id) ? 0 : 1;
     }

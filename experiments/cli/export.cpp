@@ -100,16 +100,16 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-struct WantedRun : SelectedRun {
-  std::vector<Membership> places = {};  // those selected; empty if the run was named by its id
+struct WantedRun : Run {
+  std::vector<Ask> places = {};  // those selected; empty if the run was named by its id
 };
 
 // The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
-  const RunRecord& run = wanted.run;
-  if (wanted.places.empty()) return checkpoints_for(store, run, run.memberships);
+  const Stage& run = wanted.run;
+  if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
   std::vector<CheckpointRecord> all;
-  for (const Membership& place : wanted.places) {
+  for (const Ask& place : wanted.places) {
     std::ranges::move(checkpoints_for(store, run, place, {}), std::back_inserter(all));
   }
   std::ranges::sort(all, {}, &CheckpointRecord::step);
@@ -122,7 +122,7 @@ std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& want
 
 std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& selected,
                                      const ExportOptions& options) {
-  const RunRecord& run = selected.run;
+  const Stage& run = selected.run;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
@@ -196,8 +196,7 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
   if (folder) fs::create_directory(out);
   std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every =
-      checkpoint_cadence(run.places.empty() ? run.run.memberships : run.places);
+  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.run.asks : run.places);
   MeasureSources sources(store, {{run.run.id, every}});
   sources.read_run(run.run.id);
   for (const CheckpointRecord& record : records) {
@@ -232,26 +231,26 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
   parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<WantedRun> runs;
   std::map<std::string, std::size_t> known;  // index in `runs`, by id
-  const auto add = [&](const SelectedRun& run) -> WantedRun& {
+  const auto add = [&](const Run& run) -> WantedRun& {
     const auto [at, fresh] = known.try_emplace(run.run.id, runs.size());
     if (fresh) runs.push_back({run});
     return runs[at->second];
   };
   for (const std::string& prefix : options.runs) {
-    const RunRecord run = store.find_run(prefix);
-    add({run, first_membership(run)});
+    const Stage run = store.find_stage(prefix);
+    add({run, first_ask(run)});
   }
   if (!runs.empty()) return runs;
   const NewestRuns newest = newest_runs(select_runs(store, options.selection));
   for (const std::string& note : newest.notes) print_stderr("{}\n", note);
-  for (const SelectedRun& one : newest.runs) add(one).places.push_back(one.membership);
+  for (const Run& one : newest.runs) add(one).places.push_back(one.ask);
   if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
   return runs;
 }
 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
-std::string entry_name(const SelectedRun& selected, const ExportFormat& format) {
-  const Membership& m = selected.membership;
+std::string entry_name(const Run& selected, const ExportFormat& format) {
+  const Ask& m = selected.ask;
   std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
                                  m.variant.substr(0, 100), m.seed, selected.run.id, format.ending);
   std::ranges::replace_if(

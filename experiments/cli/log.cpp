@@ -21,7 +21,7 @@ std::string gist(const nlohmann::json& body) {
 
 void print_log(const std::string& run, Context& context) {
   const Store store(context.store, Access::read);
-  const std::string stream = run.empty() ? "" : run_stream(store.find_run(run).id);
+  const std::string stream = run.empty() ? "" : run_stream(store.find_stage(run).id);
   const auto facts = [](const Event& event) -> Facts {
     nlohmann::json body = event.body();
     std::string most_useful = gist(body);

@@ -27,14 +27,14 @@ using ShownAt = std::map<std::pair<std::string, std::string>, Shown>;  // by exp
 /// What figures and tables show of a store.
 ShownAt shown_of(const Store& store) {
   ShownAt shown;
-  const std::vector<SelectedRun> all = select_runs(store, {});
-  const auto at = [&](const SelectedRun& one) -> Shown& {
-    return shown[{one.membership.experiment, one.membership.scale}];
+  const std::vector<Run> all = select_runs(store, {});
+  const auto at = [&](const Run& one) -> Shown& {
+    return shown[{one.ask.experiment, one.ask.scale}];
   };
-  for (const SelectedRun& one : all) at(one).left_out.insert(one.run.id);
-  for (const SelectedRun& one : newest_runs(all).runs) {
+  for (const Run& one : all) at(one).left_out.insert(one.run.id);
+  for (const Run& one : newest_runs(all).runs) {
     at(one).left_out.erase(one.run.id);
-    at(one).versions[one.membership.manifest].insert(one.run.id);
+    at(one).versions[one.ask.manifest].insert(one.run.id);
   }
   return shown;
 }

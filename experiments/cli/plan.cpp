@@ -30,7 +30,7 @@ using Line = PlannedStage;
 std::string state_of(const Line& line) {
   if (line.look.done) return "done";
   if (line.stage.attempts == 0) return "to do";
-  if (line.stage.state != RunState::completed) return std::string(name_of(line.stage.state));
+  if (line.stage.state != StageState::completed) return std::string(name_of(line.stage.state));
   // Short of checkpoints that were asked for later, or of cycles.
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
@@ -43,7 +43,7 @@ double cycles_of(const Line& line) {
 // Other experiments that have the stage.
 std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
-  for (const Membership& m : line.stage.memberships) {
+  for (const Ask& m : line.stage.asks) {
     const bool known = std::ranges::count(others, m.experiment) > 0;
     if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
   }
@@ -59,8 +59,8 @@ std::string remark(const Line& line) {
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = line.run->parameters;
-  if (line.stage.kind == name_of(Stage::prepare)) return settle_time_step(p);
-  if (line.stage.kind == name_of(Stage::stiffen)) return std::nullopt;
+  if (line.stage.kind == name_of(StageKind::prepare)) return settle_time_step(p);
+  if (line.stage.kind == name_of(StageKind::stiffen)) return std::nullopt;
   return shear_time_step(p);
 }
 
@@ -78,8 +78,8 @@ void print_numerics(const std::vector<Line>& lines) {
     const Parameters& p = line.run->parameters;
     const std::string& kind = line.stage.kind;
     Row row = {kind,
-               kind == name_of(Stage::prepare) ? "" : line.run->name,
-               kind == name_of(Stage::shear) ? std::to_string(p.steps_per_cycle) : "",
+               kind == name_of(StageKind::prepare) ? "" : line.run->name,
+               kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
                "",
                "",
                "",
@@ -120,14 +120,14 @@ std::vector<std::string> notes_of(const Plan& plan) {
 
 // Particle-steps that are left if runs end where others with the same `until` ended; null without
 // `until`, or where no such run has ended.
-nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
+nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // by `until`, since a search reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
-    std::vector<Membership> asks = line.asks;
-    for (Membership& ask : asks) {
+    std::vector<Ask> asks = line.asks;
+    for (Ask& ask : asks) {
       if (!has_until(ask) || line.look.done) continue;
       const auto [end, fresh] = ends.try_emplace(ask.until);
       if (fresh) end->second = expected_end(known, ask.until);
@@ -144,7 +144,7 @@ nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<RunR
 void print_until(const std::vector<Line>& lines, const nlohmann::json& left, double at_most) {
   std::set<std::string> ends;
   for (const Line& line : lines) {
-    for (const Membership& ask : line.asks) {
+    for (const Ask& ask : line.asks) {
       if (has_until(ask)) ends.insert(describe(until_from_json(ask.until)));
     }
   }
@@ -164,7 +164,7 @@ struct Left {
   double rate = 0;  ///< mean particle-steps/s of one core
 };
 
-Left left_of(const std::vector<Line>& lines, const std::vector<RunRecord>& known) {
+Left left_of(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   Left left;
   const Rates rates(known);
   for (const Line& line : lines) {
@@ -206,7 +206,7 @@ void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
   Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
   if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
   print_table(header, lines, [&](const Line& line) {
-    const bool prepare = line.stage.kind == name_of(Stage::prepare);
+    const bool prepare = line.stage.kind == name_of(StageKind::prepare);
     Row row = {line.stage.id.substr(0, 8),
                line.stage.kind,
                prepare ? "" : line.run->name,
@@ -225,7 +225,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
   const std::vector<Plan> plans = load_manifests(manifests, options, context).plans;
   const Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
-  const auto runs = store ? store->runs() : std::vector<RunRecord>{};
+  const auto runs = store ? store->stages() : std::vector<Stage>{};
   const std::vector<Line> lines = look_at(expanded, store ? &*store : nullptr);
   const Left left = left_of(lines, runs);
   const nlohmann::json with_until = left_until(lines, runs);

@@ -40,7 +40,7 @@ bool selects(const RunSelection& s) {
 std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
   std::vector<std::string> ids;
-  for (const SelectedRun& one : select_runs(store, selection)) {
+  for (const Run& one : select_runs(store, selection)) {
     if (std::ranges::count(ids, one.run.id) == 0) ids.push_back(one.run.id);
   }
   return ids;
@@ -54,7 +54,7 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
                                "choose what to delete: --keep-every K, --experiment E, --state "
                                "STATE, or runs; see prune --help");
   }
-  for (std::string& run : choice.runs) run = store.find_run(run).id;
+  for (std::string& run : choice.runs) run = store.find_stage(run).id;
   if (filtered) {
     std::vector<std::string> ids = selected_ids(store, options.selection);
     const bool named = !choice.runs.empty();
@@ -77,15 +77,15 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   std::map<std::string, std::vector<CheckpointRecord>> by_run;
   for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
   // All experiments that have the run: they lose its files too.
-  const auto experiments_of = [](const RunRecord& run) {
+  const auto experiments_of = [](const Stage& run) {
     std::set<std::string> names;
-    for (const Membership& m : run.memberships) names.insert(m.experiment);
+    for (const Ask& m : run.asks) names.insert(m.experiment);
     return fmt::format("{}", fmt::join(names, ", "));
   };
   const Row header = {"run", "experiment", "state", "to free", "of", "bytes"};
   print_table(header, by_run, [&](const auto& freed) -> Row {
     const auto& [id, of_run] = freed;
-    const RunRecord run = store.run(id);
+    const Stage run = store.stage(id);
     return {id.substr(0, 8),
             experiments_of(run),
             std::string(name_of(run.state)),
@@ -106,7 +106,7 @@ void prune(const PruneOptions& options, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records = prunable(options, store);
   const std::size_t kept = std::erase_if(
-      records, [&](const CheckpointRecord& c) { return why_not_again(store.run(c.run)); });
+      records, [&](const CheckpointRecord& c) { return why_not_again(store.stage(c.run)); });
   if (!context.json && kept > 0) {
     fmt::print("{} checkpoints of LAMMPS are kept: they cannot be recomputed\n", kept);
   }
@@ -187,7 +187,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   if (record.state == CheckpointState::recorded && store.load_if_readable(record)) {
     return say("kept", "the file is intact");
   }
-  if (const auto why = why_not_again(store.run(record.run))) {
+  if (const auto why = why_not_again(store.stage(record.run))) {
     fail(context, kOtherError);
     facts["why"] = *why;
     return say("refused", *why + "; keep a copy of its file elsewhere");

@@ -84,7 +84,7 @@ void run(const RunOptions& options, Context& context) {
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   std::set<std::string> left;
   std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
-    const bool leave = left.contains(job.parent) || store.run(job.id).state == RunState::failed;
+    const bool leave = left.contains(job.parent) || store.stage(job.id).state == StageState::failed;
     if (leave) left.insert(job.id);
     return leave;
   });
@@ -96,7 +96,7 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, bool& faile
   std::vector<StageJob> jobs = stages_to_resume(store, options.inputs);
   if (options.leave_failed) failed_before = leave_failed(store, jobs);
   const auto by_lammps = [&](const StageJob& job) {
-    return engine_of(store.run(job.id).resolved) == EngineKind::lammps;
+    return engine_of(store.stage(job.id).resolved) == EngineKind::lammps;
   };
   require_lammps_for_ranks(options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
   return compute(store, jobs, options);
@@ -143,8 +143,8 @@ void resume_task(const RunOptions& options, Context& context) {
   const bool is_copy = folder != task;
   std::optional<Store> store(std::in_place, folder, Access::write);
   std::set<std::string> runs;  // of the task, which alone are merged back
-  for (const RunRecord& run : store->runs()) runs.insert(run.id);
-  const auto report = [&] { write_task_report(task, store->runs()); };
+  for (const Stage& run : store->stages()) runs.insert(run.id);
+  const auto report = [&] { write_task_report(task, store->stages()); };
   const auto save = [&] {
     Store own(task, Access::write);
     merge_stores(own, {folder}, runs);

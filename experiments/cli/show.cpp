@@ -45,11 +45,11 @@ Facts checkpoint_facts(const CheckpointRecord& c) {
 
 /// `asked_by`: indices of the memberships whose figures and tables have the checkpoint; empty if
 /// only an interruption or another experiment's cadence left it.
-std::vector<Facts> facts_of_all(const Store& store, const RunRecord& run,
+std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
-  for (std::size_t k = 0; k < run.memberships.size(); ++k) {
-    for (const CheckpointRecord& c : checkpoints_for(store, run, run.memberships[k], {})) {
+  for (std::size_t k = 0; k < run.asks.size(); ++k) {
+    for (const CheckpointRecord& c : checkpoints_for(store, run, run.asks[k], {})) {
       asked_by[c.step].push_back(k);
     }
   }
@@ -111,9 +111,9 @@ void print(const CheckpointFacts& facts) {
   }
 }
 
-nlohmann::json run_facts(const Store& store, const RunRecord& run,
+nlohmann::json run_facts(const Store& store, const Stage& run,
                          const std::vector<CheckpointRecord>& checkpoints, Context& context) {
-  const auto member = [&](const Membership& m) -> nlohmann::json {
+  const auto member = [&](const Ask& m) -> nlohmann::json {
     return {{"experiment", m.experiment},
             {"scale", m.scale},
             {"variant", m.variant},
@@ -130,14 +130,14 @@ nlohmann::json run_facts(const Store& store, const RunRecord& run,
           {"parameters", effective_parameters(run.resolved)},
           {"attempts", run.attempts},
           {"engine", engine_of_run(store, run.id)},
-          {"memberships", json_list(run.memberships, member)},
+          {"memberships", json_list(run.asks, member)},
           {"checkpoints", to_json(facts_of_all(store, run, checkpoints))},
           {"measures", as_json(newest_measures(store, checkpoints, context))},
           {"error", run.error},
           {"ended", end_of(run)}};
 }
 
-void print_run(const Store& store, const RunRecord& run) {
+void print_run(const Store& store, const Stage& run) {
   const nlohmann::json engine = engine_of_run(store, run.id);
   print_text("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {}\n", run.id,
              run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
@@ -150,7 +150,7 @@ void print_run(const Store& store, const RunRecord& run) {
   if (const std::string why = describe_end(end_of(run)); !why.empty()) {
     print_text("ended    {}\n", why);
   }
-  for (const Membership& m : run.memberships) {
+  for (const Ask& m : run.asks) {
     print_text("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment, scale_name(m.scale),
                m.variant, m.seed, m.manifest);
     const nlohmann::json given = overrides_of(store, run, m);
@@ -171,7 +171,7 @@ void print_resolved(const nlohmann::json& resolved) {
   }
 }
 
-void show_run(const Store& store, const RunRecord& run, Context& context) {
+void show_run(const Store& store, const Stage& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
   if (context.json) return print_json(run_facts(store, run, checkpoints, context));
   print_run(store, run);
@@ -486,7 +486,7 @@ void show(const std::string& name, bool list, Context& context) {
     return show_published(store, name, list, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
-      for (const RunRecord& run : store.runs()) {
+      for (const Stage& run : store.stages()) {
         if (!run.id.starts_with(name)) continue;
         throw NotFound(
             fmt::format("a run and a checkpoint begin with '{}'; give more digits of one of\n"
@@ -496,7 +496,7 @@ void show(const std::string& name, bool list, Context& context) {
       return show_checkpoint(store, *checkpoint, context);
     }
   }
-  show_run(store, store.find_run(name), context);
+  show_run(store, store.find_stage(name), context);
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ namespace shearcell::cli {
 namespace {
 
 /// A run in its first place.
-struct ListedRun : SelectedRun {
-  std::vector<SelectedRun> places = {};  // one for each experiment, scale and variant
+struct ListedRun : Run {
+  std::vector<Run> places = {};  // one for each experiment, scale and variant
 };
 
 /// The selected runs, with their holders and their places in the queue.
@@ -39,10 +39,10 @@ struct View {
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read),
-        waiting(waiting_for_failed(store.runs())),
+        waiting(waiting_for_failed(store.stages())),
         queue(view_queue(store)),
         names(store) {
-    for (const SelectedRun& found : select_runs(store, selection)) {
+    for (const Run& found : select_runs(store, selection)) {
       // The places of a run follow each other.
       if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
       runs.back().places.push_back(found);
@@ -50,17 +50,15 @@ struct View {
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
 
-  std::string called(const SelectedRun& selected) const {
-    return names.of(selected.run, selected.membership);
-  }
+  std::string called(const Run& selected) const { return names.of(selected.run, selected.ask); }
 
-  const QueuedRun* queued(const RunRecord& run) const {
+  const QueuedRun* queued(const Stage& run) const {
     const auto found = queue.runs.find(run.id);
     return found == queue.runs.end() ? nullptr : &found->second;
   }
 };
 
-double rate(const RunRecord& run) {
+double rate(const Stage& run) {
   return run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
 }
 
@@ -83,8 +81,8 @@ nlohmann::json facts(const QueuedRun& run) {
 }
 
 /// The place of a run in an experiment.
-nlohmann::json place_facts(const SelectedRun& selected, const View& view) {
-  const Membership& m = selected.membership;
+nlohmann::json place_facts(const Run& selected, const View& view) {
+  const Ask& m = selected.ask;
   return {{"experiment", m.experiment},
           {"scale", m.scale},
           {"variant", m.variant},
@@ -93,12 +91,12 @@ nlohmann::json place_facts(const SelectedRun& selected, const View& view) {
 }
 
 nlohmann::json facts(const ListedRun& listed, const View& view) {
-  const RunRecord& run = listed.run;
+  const Stage& run = listed.run;
   const auto held = view.holders.find(run.id);
   const QueuedRun* queued = view.queued(run);
-  const auto place = [&](const SelectedRun& one) {
+  const auto place = [&](const Run& one) {
     nlohmann::json all = place_facts(one, view);
-    all.update({{"newest", one.membership.newest}, {"manifest", one.membership.manifest}});
+    all.update({{"newest", one.ask.newest}, {"manifest", one.ask.manifest}});
     return all;
   };
   nlohmann::json all = place_facts(listed, view);
@@ -126,17 +124,17 @@ nlohmann::json facts(const ListedRun& listed, const View& view) {
 /// State and progress of a run: as the store has them, or as its task reports them if that is
 /// ahead.
 struct Shown {
-  const RunRecord& run;
+  const Stage& run;
   const QueuedRun* queued;
 
   bool ahead() const {
-    return queued != nullptr && queued->reported && run.state != RunState::completed &&
+    return queued != nullptr && queued->reported && run.state != StageState::completed &&
            queued->reported->cycle >= run.cycle;
   }
-  RunState state() const { return ahead() ? queued->reported->state : run.state; }
+  StageState state() const { return ahead() ? queued->reported->state : run.state; }
   double cycle() const { return ahead() ? queued->reported->cycle : run.cycle; }
   std::string queue() const {
-    if (queued == nullptr || run.state == RunState::completed) return "";
+    if (queued == nullptr || run.state == StageState::completed) return "";
     const QueuedTask& task = queued->task;
     const std::string& more = task.state == "pending" ? task.reason : task.node;
     return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
@@ -156,19 +154,19 @@ struct Estimate {
 /// Nothing if nothing is left, or where this version cannot read a record (`verify` names it).
 /// Stages that failed or cannot start are left out.
 std::optional<Estimate> estimate(const View& view) {
-  const Rates rates(view.store.runs());
+  const Rates rates(view.store.stages());
   std::size_t running = 0;
   Estimate made;
-  for (const SelectedRun& selected : view.runs) {
-    const RunRecord& stage = selected.run;
+  for (const Run& selected : view.runs) {
+    const Stage& stage = selected.run;
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
-    if (stage.state == RunState::failed || view.waiting.contains(stage.id)) continue;
+    if (stage.state == StageState::failed || view.waiting.contains(stage.id)) continue;
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
-    made.at_most = made.at_most || std::ranges::any_of(stage.memberships, has_until);
+    made.at_most = made.at_most || std::ranges::any_of(stage.asks, has_until);
     made.work.add(stage, look.particle_steps, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
@@ -206,20 +204,20 @@ void print_tables(const View& view) {
   const bool queued = !view.queue.runs.empty();
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Row>> tables;
-  std::map<RunState, std::size_t> count;
+  std::map<StageState, std::size_t> count;
   for (const ListedRun& listed : view.runs) {
-    const RunRecord& run = listed.run;
+    const Stage& run = listed.run;
     const Shown shown{run, view.queued(run)};
     ++count[shown.state()];
-    for (const SelectedRun& selected : listed.places) {
-      const Membership& place = selected.membership;
+    for (const Run& selected : listed.places) {
+      const Ask& place = selected.ask;
       const std::string name = place.experiment + " at scale " + scale_name(place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
       Row& row = tables[name].emplace_back(Row{
           run.id.substr(0, 8), view.called(selected) + (place.newest ? "" : " (older version)"),
           std::to_string(place.seed), std::to_string(run.grains),
           fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
-          run.kind == name_of(Stage::prepare)
+          run.kind == name_of(StageKind::prepare)
               ? ""
               : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
           fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
@@ -245,7 +243,7 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   const auto waiting = std::ranges::count_if(
-      view.runs, [&](const SelectedRun& one) { return view.waiting.contains(one.run.id); });
+      view.runs, [&](const Run& one) { return view.waiting.contains(one.run.id); });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
@@ -259,7 +257,7 @@ void print(const View& view) {
   }
   if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
   for (const ListedRun& listed : view.runs) {
-    const RunRecord& run = listed.run;
+    const Stage& run = listed.run;
     if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(run); !ended.is_null()) {
       print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,

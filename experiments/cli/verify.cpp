@@ -79,7 +79,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   std::size_t left_out = 0;
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     if (why_not_again(run)) left_out += store.checkpoints(run.id, Listed::and_pruned).size();
   }
   if (!context.json) {
@@ -170,7 +170,7 @@ void verify(const VerifyOptions& options, Context& context) {
 void rebuild(Context& context) {
   Store store(context.store, Access::write);
   store.rebuild();
-  const std::vector<RunRecord> runs = store.runs();
+  const std::vector<Stage> runs = store.stages();
   const Head head = store.head();
   if (context.json) {
     print_json({{"events", head.seq}, {"runs", runs.size()}});

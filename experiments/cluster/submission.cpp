@@ -124,7 +124,7 @@ void apply(std::vector<Submission>& known, const Event& event) {
 /// The runs, and the packings that they start from.
 std::set<std::string> with_packings(const Store& store, const std::vector<std::string>& runs) {
   std::set<std::string> stages(runs.begin(), runs.end());
-  for (const std::string& run : runs) stages.insert(store.run(run).parent);
+  for (const std::string& run : runs) stages.insert(store.stage(run).parent);
   stages.erase("");  // of a packing
   return stages;
 }
@@ -153,7 +153,7 @@ void Share::add(const Share& other) {
 }
 
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
-  const Rates rates(store == nullptr ? std::vector<RunRecord>{} : store->runs());
+  const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
   const std::vector<PlannedStage> stages = look_at(joined(plans), store);
   const auto share = [&](const PlannedStage& one) {
     const double steps = one.look.particle_steps;
@@ -274,7 +274,7 @@ std::vector<Submission> read_submissions(const Store& store) {
 
 std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
-  const auto is_done = [&](const std::string& id) { return look_at(store, store.run(id)).done; };
+  const auto is_done = [&](const std::string& id) { return look_at(store, store.stage(id)).done; };
   std::erase_if(open, [&](const Submission& submission) {
     // Submissions without a folder were merged from other stores.
     return !fs::exists(submission.folder(store.folder())) ||
@@ -303,15 +303,16 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
   }
   for (const Lease& lease : store.leases()) runs.push_back(lease.run);
   std::set<std::string> busy = with_packings(store, runs);
-  for (const RunRecord& run : store.runs()) {
-    if (run.kind == name_of(Stage::prepare) && run.state == RunState::completed) busy.erase(run.id);
+  for (const Stage& run : store.stages()) {
+    if (run.kind == name_of(StageKind::prepare) && run.state == StageState::completed)
+      busy.erase(run.id);
   }
   return busy;
 }
 
-void write_task_report(const fs::path& folder, const std::vector<RunRecord>& runs) {
+void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
   json list = json::array();
-  for (const RunRecord& run : runs) {
+  for (const Stage& run : runs) {
     list.push_back({{"id", run.id}, {"state", name_of(run.state)}, {"cycle", run.cycle}});
   }
   try {
@@ -321,15 +322,15 @@ void write_task_report(const fs::path& folder, const std::vector<RunRecord>& run
   }
 }
 
-std::map<std::string, RunRecord> read_task_report(const fs::path& folder) {
-  std::map<std::string, RunRecord> reported;
+std::map<std::string, Stage> read_task_report(const fs::path& folder) {
+  std::map<std::string, Stage> reported;
   const json facts =
       parse_json(read_plain(report_file(folder), StoreLimits::value_bytes).value_or(""));
   try {
     for (const json& run : facts.at("runs")) {
-      const auto state = value_of<RunState>(run.at("state").get_ref<const std::string&>());
+      const auto state = value_of<StageState>(run.at("state").get_ref<const std::string&>());
       if (!state) continue;
-      RunRecord& record = reported[run.at("id").get<std::string>()];
+      Stage& record = reported[run.at("id").get<std::string>()];
       record.state = *state;
       record.cycle = run.at("cycle").get<double>();
     }

@@ -117,16 +117,16 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
 /// Writes `FOLDER.progress.json`, whole or not at all, for the task's store FOLDER. No other
 /// machine opens that store while the task runs, because SQLite's locks may not work between
 /// machines.
-void write_task_report(const std::filesystem::path& folder, const std::vector<RunRecord>& runs);
+void write_task_report(const std::filesystem::path& folder, const std::vector<Stage>& runs);
 
 /// The id, state and cycle of each run, by id; empty when the file is missing or invalid.
-std::map<std::string, RunRecord> read_task_report(const std::filesystem::path& folder);
+std::map<std::string, Stage> read_task_report(const std::filesystem::path& folder);
 
 struct QueuedRun {
   /// Its job is "17_3" for task 3 of array job 17, or "" if it was never queued. Its state is
   /// "pending", "running", ..., or "ended" after it left the queue.
   QueuedTask task;
-  std::optional<RunRecord> reported;  ///< by its task
+  std::optional<Stage> reported;  ///< by its task
 };
 
 struct QueueView {

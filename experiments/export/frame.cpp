@@ -64,9 +64,9 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, const Measures& 
   }
 }
 
-void add_facts(const CheckpointRecord& record, const SelectedRun& selected,
-               const Measures& measures, Frame& frame) {
-  const Membership& m = selected.membership;
+void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
+               Frame& frame) {
+  const Ask& m = selected.ask;
   frame.run = {{"run", selected.run.id},
                {"experiment", m.experiment},
                {"scale", m.scale},
@@ -92,7 +92,7 @@ std::string frame_name(const Frame& frame) {
   return settles ? fmt::format("step{}", frame.step) : fmt::format("{}", frame.cycle);
 }
 
-Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const SelectedRun& run,
+Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
                const MeasureSources* sources) {
   const MeasureSources alone(record.run, run.run);
   const Measures measures =

@@ -60,6 +60,6 @@ std::string frame_name(const Frame& frame);
 /// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. Throws
 /// as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-               const SelectedRun& run = {}, const MeasureSources* sources = nullptr);
+               const Run& run = {}, const MeasureSources* sources = nullptr);
 
 }  // namespace shearcell

@@ -27,8 +27,8 @@ namespace {
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-Membership ask_for(const Figure& figure, const CollectedRun& run) {
-  Membership ask = run.membership;
+Ask ask_for(const Figure& figure, const CollectedRun& run) {
+  Ask ask = run.ask;
   if (!figure.within) ask.checkpoint_phases.clear();
   return ask;
 }
@@ -47,7 +47,7 @@ double last_cycle(const Figure& figure, const CollectedRun& run) {
 /// measures nothing gets only the last one.
 std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
                                              const CollectedRun& run) {
-  const Membership ask = ask_for(figure, run);
+  const Ask ask = ask_for(figure, run);
   std::vector<CheckpointRecord> found =
       checkpoints_for(store, run.run, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
   if (figure.form == FigureForm::table && !found.empty()) {
@@ -61,7 +61,7 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
 std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const CollectedRun& run) {
   const std::optional<Drive> motion = shear_drive(run.run);
   if (!motion) return 0;
-  Membership ask = ask_for(figure, run);
+  Ask ask = ask_for(figure, run);
   ask.until = nullptr;
   ask.target_cycles = static_cast<std::uint64_t>(last_cycle(figure, run));
   const Outlook look = outlook(run.run, {&ask, 1}, seen_checkpoints(store, run.run.id));
@@ -99,9 +99,9 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
 /// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
 /// or can still be made.
 bool asks_for_one(const Figure& figure, const CollectedRun& run) {
-  if (!figure.within || run.run.kind != name_of(Stage::shear)) return true;
+  if (!figure.within || run.run.kind != name_of(StageKind::shear)) return true;
   double last = last_cycle(figure, run);
-  if (run.run.state == RunState::completed) last = std::min(last, run.run.cycle);
+  if (run.run.state == StageState::completed) last = std::min(last, run.run.cycle);
   return !asked_steps(run.run, ask_for(figure, run), first_cycle(figure), last).empty();
 }
 
@@ -109,10 +109,10 @@ bool asks_for_one(const Figure& figure, const CollectedRun& run) {
 void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, never, going_on;
   for (const CollectedRun& run : collected.runs) {
-    const std::string name = fmt::format("{} seed {}", run.name, run.membership.seed);
+    const std::string name = fmt::format("{} seed {}", run.name, run.ask.seed);
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
-    } else if (run.run.state != RunState::completed &&
+    } else if (run.run.state != StageState::completed &&
                run.checkpoints.back().cycle < last_cycle(figure, run)) {
       going_on.insert(name);
     }
@@ -150,28 +150,27 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
   for (const RegisteredManifest& manifest : manifests) {
     std::vector<nlohmann::json> variants;
     for (const CollectedRun& run : collected.runs) {
-      if (run.membership.experiment == manifest.experiment)
-        variants.push_back(run.membership.swept);
+      if (run.ask.experiment == manifest.experiment) variants.push_back(run.ask.swept);
     }
     if (variants.empty()) continue;
     const auto known = parsed(manifest);
     const auto labels = known ? known->labels : std::vector<VariantLabel>();
     const auto names = variant_names(variants, labels);
     for (CollectedRun& run : collected.runs) {
-      if (run.membership.experiment != manifest.experiment) continue;
-      run.name = names.at(run.membership.swept);
+      if (run.ask.experiment != manifest.experiment) continue;
+      run.name = names.at(run.ask.swept);
       run.named = std::ranges::any_of(
-          labels, [&](const VariantLabel& label) { return selects(label, run.membership.swept); });
+          labels, [&](const VariantLabel& label) { return selects(label, run.ask.swept); });
     }
   }
 }
 
 /// The selected runs of any version of the manifest, at least one. Throws NotFound.
-std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
-                                 const RunSelection& selection) {
-  std::vector<SelectedRun> found = select_runs(store, selection);
-  std::erase_if(found, [&](const SelectedRun& s) {
-    return !wanted.experiment.empty() && s.membership.experiment != wanted.experiment;
+std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
+                         const RunSelection& selection) {
+  std::vector<Run> found = select_runs(store, selection);
+  std::erase_if(found, [&](const Run& s) {
+    return !wanted.experiment.empty() && s.ask.experiment != wanted.experiment;
   });
   if (found.empty()) {
     throw NotFound(
@@ -183,14 +182,14 @@ std::vector<SelectedRun> runs_of(const Store& store, const WantedFigure& wanted,
 }
 
 /// The scale of the last run that a newest manifest declared; else that of the last run.
-std::string last_scale(const std::vector<SelectedRun>& runs,
+std::string last_scale(const std::vector<Run>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
-  const auto is_newest = [&](const SelectedRun& run) {
-    return std::ranges::find(manifests, run.membership.manifest, &RegisteredManifest::sha256) !=
+  const auto is_newest = [&](const Run& run) {
+    return std::ranges::find(manifests, run.ask.manifest, &RegisteredManifest::sha256) !=
            manifests.end();
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
-  return (last == runs.rend() ? runs.back() : *last).membership.scale;
+  return (last == runs.rend() ? runs.back() : *last).ask.scale;
 }
 
 /// Sets WantedFigure::also.
@@ -222,13 +221,13 @@ FigureRun unmeasured(const CollectedRun& input) {
   parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
   return {input.run.id,
           input.run.parent,
-          input.membership.experiment,
-          input.membership.variant,
+          input.ask.experiment,
+          input.ask.variant,
           input.name,
           input.named,
-          input.membership.swept,
+          input.ask.swept,
           std::move(parameters),
-          input.membership.seed,
+          input.ask.seed,
           {},
           std::min(input.end, input.run.cycle)};
 }
@@ -291,12 +290,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring) {
   const std::vector<RegisteredManifest> manifests = newest_manifests(store);
   CollectedRuns collected;
-  std::vector<SelectedRun> selected = runs_of(store, wanted, selection);
+  std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // experiments
-  std::erase_if(selected, [&](const SelectedRun& s) {
-    const bool is_at_scale = s.membership.scale == collected.scale;
-    (is_at_scale ? at_scale : elsewhere).insert(s.membership.experiment);
+  std::erase_if(selected, [&](const Run& s) {
+    const bool is_at_scale = s.ask.scale == collected.scale;
+    (is_at_scale ? at_scale : elsewhere).insert(s.ask.experiment);
     return !is_at_scale;
   });
   std::erase_if(elsewhere, [&](const std::string& name) { return at_scale.contains(name); });
@@ -312,7 +311,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
         wanted.path()));
   }
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
-  for (SelectedRun& run : newest.runs) collected.runs.push_back({std::move(run)});
+  for (Run& run : newest.runs) collected.runs.push_back({std::move(run)});
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);
@@ -322,12 +321,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   } else {
     std::set<std::pair<std::string, std::string>> known;
     std::erase_if(collected.runs, [&](const CollectedRun& run) {
-      return !known.emplace(run.membership.experiment, run.run.id).second;
+      return !known.emplace(run.ask.experiment, run.run.id).second;
     });
   }
   for (CollectedRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.run, run.membership, measuring)
-                       : static_cast<double>(run.membership.target_cycles);
+    run.end = measured ? end_for(store, run.run, run.ask, measuring)
+                       : static_cast<double>(run.ask.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }
   if (measured) {

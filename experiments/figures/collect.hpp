@@ -38,7 +38,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
                              const std::vector<std::string>& experiments = {});
 
 /// One run of a figure.
-struct CollectedRun : SelectedRun {
+struct CollectedRun : Run {
   std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest

@@ -31,7 +31,7 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   std::vector<CheckpointRecord> records;  // of one run after the other
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
-    options.cadence[input.run.id] = input.membership.checkpoint_every;
+    options.cadence[input.run.id] = input.ask.checkpoint_every;
   }
   std::vector<std::string> names;  // none of a table, which is not measured
   if (figure.form != FigureForm::table) {
@@ -81,14 +81,14 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
     const States states = states_of(used_checkpoints(store, result, runs[r]));
     list.push_back({{"run", input.run.id},
                     {"parent", input.run.parent},
-                    {"experiment", input.membership.experiment},
-                    {"manifest", input.membership.manifest},
-                    {"variant", input.membership.variant},
-                    {"seed", input.membership.seed},
+                    {"experiment", input.ask.experiment},
+                    {"manifest", input.ask.manifest},
+                    {"variant", input.ask.variant},
+                    {"seed", input.ask.seed},
                     {"cycles", states.cycles},
                     {"state_hash", states.state_hash},
                     {"states_sha256", states.sha256}});
-    if (auto given = overrides_of(store, input.run, input.membership); !given.is_null()) {
+    if (auto given = overrides_of(store, input.run, input.ask); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }
   }

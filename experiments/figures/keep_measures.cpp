@@ -96,7 +96,7 @@ class Keeping {
   /// Only of the cycles that figures take, since a simulation takes longer than an analysis.
   void simulate(const std::string& run, const std::vector<CheckpointRecord>& records,
                 const MeasureOptions& options) {
-    for (const Membership& m : store_.run(run).memberships) {
+    for (const Ask& m : store_.stage(run).asks) {
       for (const Figure& figure : simulating_[m.experiment]) {
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;
@@ -132,9 +132,9 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   std::set<std::string> seen;
   for (const CheckpointRecord& record : records) {
     if (!seen.insert(record.run).second) continue;
-    const std::vector<Membership> memberships = store.run(record.run).memberships;
-    for (const Membership& m : memberships) runs[m.checkpoint_every].insert(record.run);
-    if (memberships.empty()) runs[1].insert(record.run);  // no experiment of a damaged store has it
+    const std::vector<Ask> asks = store.stage(record.run).asks;
+    for (const Ask& m : asks) runs[m.checkpoint_every].insert(record.run);
+    if (asks.empty()) runs[1].insert(record.run);  // no experiment of a damaged store has it
   }
   Keeping keeping(store, options);
   for (const auto& [every, of_cadence] : runs) keeping.measure(of_cadence, every);

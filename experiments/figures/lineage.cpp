@@ -86,9 +86,9 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   if (states_of(found) != input.states) input.fault = "the log has other states at these cycles";
 }
 
-// The swept values of the run, by the membership that the figure used.
-json swept_values_of(const RunRecord& run, const FigureInput& input) {
-  for (const Membership& member : run.memberships) {
+// The swept values of the run, by the ask that the figure used.
+json swept_values_of(const Stage& run, const FigureInput& input) {
+  for (const Ask& member : run.asks) {
     // In figures of earlier programs the variant of an older version ends in that version.
     const bool same =
         input.variant == member.variant || input.variant.starts_with(member.variant + ",manifest=");
@@ -187,10 +187,10 @@ States states_of(const std::vector<CheckpointRecord>& checkpoints) {
           sha256_hex(hashes)};
 }
 
-json overrides_of(const Store& store, const RunRecord& run, const Membership& membership) {
-  if (run.kind != name_of(Stage::shear)) return nullptr;
-  const auto manifest = find_manifest(store, membership.manifest);
-  return manifest ? overrides(manifest->text, membership) : json();
+json overrides_of(const Store& store, const Stage& run, const Ask& ask) {
+  if (run.kind != name_of(StageKind::shear)) return nullptr;
+  const auto manifest = find_manifest(store, ask.manifest);
+  return manifest ? overrides(manifest->text, ask) : json();
 }
 
 std::string figure_name(const FigureRecord& record) {

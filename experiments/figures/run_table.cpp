@@ -22,14 +22,14 @@ using nlohmann::json;
 
 /// The source of the cells of a row.
 struct Row {
-  const SelectedRun* selected = nullptr;
+  const Run* selected = nullptr;
   const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not started
   Measures measures = {};
   const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
 };
 
 /// A run with its checkpoints and the measures of each.
-struct MeasuredRun : SelectedRun {
+struct MeasuredRun : Run {
   std::vector<CheckpointRecord> records = {};
   std::vector<Measures> measures = {};
 };
@@ -57,14 +57,13 @@ Column of_checkpoint(const char* name, const char* meaning, Value value) {
 std::vector<Column> names(const VariantNames& variants) {
   return {
       of_run("experiment", "name of the manifest's experiment",
-             [](const SelectedRun& s) { return s.membership.experiment; }),
+             [](const Run& s) { return s.ask.experiment; }),
       of_run("scale", "scale of the manifest",
-             [](const SelectedRun& s) { return scale_name(s.membership.scale); }),
+             [](const Run& s) { return scale_name(s.ask.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
-             [variants](const SelectedRun& s) { return variants.of(s.membership); }),
-      of_run("run", "id of the run", [](const SelectedRun& s) { return s.run.id; }),
-      of_run("seed", "seed of the random numbers",
-             [](const SelectedRun& s) { return s.membership.seed; }),
+             [variants](const Run& s) { return variants.of(s.ask); }),
+      of_run("run", "id of the run", [](const Run& s) { return s.run.id; }),
+      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.ask.seed; }),
   };
 }
 
@@ -119,26 +118,24 @@ std::vector<Column> ends() {
   columns.insert(
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
-              [](const SelectedRun& s) { return name_of(s.run.state); }),
+              [](const Run& s) { return name_of(s.run.state); }),
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
-              [](const SelectedRun& s) { return s.membership.target_cycles; }),
+              [](const Run& s) { return s.ask.target_cycles; }),
        of_run("wall_time_s", "time that the run took to compute, over all attempts",
-              [](const SelectedRun& s) { return number(s.run.wall_seconds); }),
+              [](const Run& s) { return number(s.run.wall_seconds); }),
        of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
-              [](const SelectedRun& s) {
-                return number(s.run.particle_steps / s.run.wall_seconds);
-              })});
+              [](const Run& s) { return number(s.run.particle_steps / s.run.wall_seconds); })});
   return columns;
 }
 
 /// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
-json swept_value(const Field& field, const SelectedRun& selected) try {
-  const auto value = selected.membership.swept.find(field.name);
-  if (value != selected.membership.swept.end()) return *value;
-  const StageRecord record = read_stage(selected.run.resolved);
+json swept_value(const Field& field, const Run& selected) try {
+  const auto value = selected.ask.swept.find(field.name);
+  if (value != selected.ask.swept.end()) return *value;
+  const StageInputs record = read_stage(selected.run.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? field.get(record.parameters) : json();
 } catch (const UnreadableRecord&) {
@@ -150,7 +147,7 @@ std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
                                     const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
   for (const MeasuredRun& run : runs) {
-    for (const auto& [key, value] : run.membership.swept.items()) swept.insert(key);
+    for (const auto& [key, value] : run.ask.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
@@ -175,9 +172,9 @@ std::vector<MeasuredRun> select(const Store& store, const RunSelection& selectio
   NewestRuns newest = newest_runs(select_runs(store, selection));
   table.notes = std::move(newest.notes);
   std::vector<MeasuredRun> runs;
-  for (SelectedRun& selected : newest.runs) {
+  for (Run& selected : newest.runs) {
     MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
-    run.records = checkpoints_for(store, run.run, run.membership, options);
+    run.records = checkpoints_for(store, run.run, run.ask, options);
     run.measures.resize(run.records.size());
   }
   return runs;
@@ -191,7 +188,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
                    const Wanted& wanted, RunTable& table) {
   // By cadence: experiments that share a run may ask for different ones.
   std::map<std::uint64_t, std::vector<MeasuredRun*>> groups;
-  for (MeasuredRun& run : runs) groups[run.membership.checkpoint_every].push_back(&run);
+  for (MeasuredRun& run : runs) groups[run.ask.checkpoint_every].push_back(&run);
   for (const auto& [every, group] : groups) {
     std::vector<CheckpointRecord> records;
     std::vector<Measures*> measures;
@@ -212,10 +209,10 @@ void measure_where(const Store& store, std::span<const std::string> names,
   }
 }
 
-FigureRun history_of(const SelectedRun& selected, std::span<const Row> rows) {
+FigureRun history_of(const Run& selected, std::span<const Row> rows) {
   FigureRun history;
   history.run_id = selected.run.id;
-  history.swept = selected.membership.swept;
+  history.swept = selected.ask.swept;
   history.parameters = effective_parameters(selected.run.resolved);
   for (const Row& row : rows) {
     if (!row.measures.numbers.contains("phi") ||
@@ -276,7 +273,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     }
     const FigureRun& history = table.histories.emplace_back(history_of(run, rows));
     Row last = rows.empty() ? Row{&run} : rows.back();
-    if (run.run.kind == name_of(Stage::shear)) last.history = &history;
+    if (run.run.kind == name_of(StageKind::shear)) last.history = &history;
     add(last);
   }
   return table;

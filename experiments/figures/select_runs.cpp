@@ -29,21 +29,21 @@ void require_found(const char* what, const Filter& filter) {
 }
 
 /// The same of all versions of a manifest.
-auto place(const Membership& m) {
+auto place(const Ask& m) {
   return std::tie(m.experiment, m.scale, m.variant, m.seed);
 }
 
-bool at_same_scale(const Membership& a, const Membership& b) {
+bool at_same_scale(const Ask& a, const Ask& b) {
   return a.experiment == b.experiment && a.scale == b.scale;
 }
 
 /// The places of the run in each experiment at each scale: those in the newest version of the
 /// manifest or, if that does not have the run, the place that was declared last.
-std::vector<Membership> places_of(const RunRecord& run) {
-  std::vector<Membership> places;
-  for (const Membership& m : run.memberships) {
-    const auto known = std::ranges::find_if(
-        places, [&](const Membership& other) { return at_same_scale(m, other); });
+std::vector<Ask> places_of(const Stage& run) {
+  std::vector<Ask> places;
+  for (const Ask& m : run.asks) {
+    const auto known =
+        std::ranges::find_if(places, [&](const Ask& other) { return at_same_scale(m, other); });
     if (known == places.end() || (known->newest && m.newest)) {
       places.push_back(m);
     } else if (m.newest || !known->newest) {
@@ -56,30 +56,27 @@ std::vector<Membership> places_of(const RunRecord& run) {
 
 /// By experiment, scale, variant and seed, so that the order does not depend on the store's
 /// history.
-bool in_order(const SelectedRun& a, const SelectedRun& b) {
-  const auto key = [](const Membership& m) {
-    return std::tie(m.experiment, m.scale, m.swept, m.seed);
-  };
-  return key(a.membership) < key(b.membership);
+bool in_order(const Run& a, const Run& b) {
+  const auto key = [](const Ask& m) { return std::tie(m.experiment, m.scale, m.swept, m.seed); };
+  return key(a.ask) < key(b.ask);
 }
 
 using ExperimentScale = std::pair<std::string, std::string>;
-ExperimentScale experiment_scale(const Membership& m) {
+ExperimentScale experiment_scale(const Ask& m) {
   return {m.experiment, m.scale};
 }
 
 /// Says where an edited manifest asks for fewer cycles than an older version made.
-void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::string>& notes) {
+void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& notes) {
   struct Shortened {
     std::size_t runs = 0;
     double had = 0;
   };
   std::map<ExperimentScale, Shortened> shortened;
   for (const auto& [run, m] : runs) {
-    const bool asked_for_more =
-        std::ranges::any_of(run.memberships, [&m = m](const Membership& older) {
-          return place(older) == place(m) && older.target_cycles > m.target_cycles;
-        });
+    const bool asked_for_more = std::ranges::any_of(run.asks, [&m = m](const Ask& older) {
+      return place(older) == place(m) && older.target_cycles > m.target_cycles;
+    });
     if (!asked_for_more || run.cycle <= static_cast<double>(m.target_cycles)) continue;
     Shortened& found = shortened[experiment_scale(m)];
     ++found.runs;
@@ -96,21 +93,21 @@ void note_shortened(const std::vector<SelectedRun>& runs, std::vector<std::strin
 
 }  // namespace
 
-Membership first_membership(const RunRecord& run) {
-  return run.memberships.empty() ? Membership{} : run.memberships.front();
+Ask first_ask(const Stage& run) {
+  return run.asks.empty() ? Ask{} : run.asks.front();
 }
 
-std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection) {
+std::vector<Run> select_runs(const Store& store, const RunSelection& selection) {
   Filter experiment(selection.experiments), scale(selection.scales);
   Filter seed(texts_of(selection.seeds));
   Filter variant(selection.variants, has_values, keys_of);
-  std::vector<SelectedRun> selected;
+  std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`
-  for (const RunRecord& run : store.runs()) {
-    const bool packing = run.kind == name_of(Stage::prepare);
+  for (const Stage& run : store.stages()) {
+    const bool packing = run.kind == name_of(StageKind::prepare);
     if (packing && !selection.packings) continue;
-    for (const Membership& m : places_of(run)) {
+    for (const Ask& m : places_of(run)) {
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(m.experiment);
       passes &= scale.passes(scale_name(m.scale));
@@ -123,7 +120,7 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
         // The same manifest may have meant another run to another version of the program.
         const Seed same = {experiment_scale(m), m.variant, m.seed};
         const auto [known, first] = seeds.try_emplace(same, selected.size());
-        if (!first) selected[known->second].membership.newest = false;
+        if (!first) selected[known->second].ask.newest = false;
         known->second = selected.size();
       }
       selected.push_back({run, m});
@@ -136,20 +133,19 @@ std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& sel
   return selected;
 }
 
-NewestRuns newest_runs(std::vector<SelectedRun> selected) {
-  std::erase_if(selected,
-                [](const SelectedRun& s) { return s.run.kind == name_of(Stage::prepare); });
-  const auto older = std::stable_partition(
-      selected.begin(), selected.end(), [](const SelectedRun& s) { return s.membership.newest; });
+NewestRuns newest_runs(std::vector<Run> selected) {
+  std::erase_if(selected, [](const Run& s) { return s.run.kind == name_of(StageKind::prepare); });
+  const auto older = std::stable_partition(selected.begin(), selected.end(),
+                                           [](const Run& s) { return s.ask.newest; });
   NewestRuns chosen;
   chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
   std::map<ExperimentScale, std::vector<std::string>> left;  // variants
-  for (const SelectedRun& one : std::ranges::subrange(older, selected.end())) {
-    const Membership& m = one.membership;
-    const auto instead = std::ranges::find_if(chosen.runs, [&](const SelectedRun& other) {
-      return place(other.membership) == place(m) && other.membership.manifest == m.manifest;
+  for (const Run& one : std::ranges::subrange(older, selected.end())) {
+    const Ask& m = one.ask;
+    const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {
+      return place(other.ask) == place(m) && other.ask.manifest == m.manifest;
     });
     if (instead == chosen.runs.end()) {
       left[experiment_scale(m)].push_back(m.variant);

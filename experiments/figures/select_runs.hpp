@@ -17,23 +17,23 @@ struct RunSelection {
   /// "fluid=cell" also selects the variant "fluid=cell,amplitude_rad=0.1".
   std::vector<std::string> variants = {};
   std::vector<std::uint64_t> seeds = {};
-  std::vector<std::string> states = {};  ///< names of RunState
+  std::vector<std::string> states = {};  ///< names of StageState
   bool packings = false;                 ///< settled packings too, whose variant is "packing"
 };
 
 /// A run in one of its places: a run of two experiments is selected once for each.
-struct SelectedRun {
-  RunRecord run;
+struct Run {
+  Stage run;
   /// `newest` is false also where the manifest was later declared with another run in this place.
-  Membership membership;
+  Ask ask;
 };
 
 /// In the order of declaration. Throws NotFound for an experiment, scale, variant or seed that the
 /// store does not have, and names those that it has.
-std::vector<SelectedRun> select_runs(const Store& store, const RunSelection& selection);
+std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
-  std::vector<SelectedRun> runs;   ///< by experiment, scale, variant and seed
+  std::vector<Run> runs;           ///< by experiment, scale, variant and seed
   std::vector<std::string> notes;  ///< what was left out
 };
 
@@ -41,9 +41,9 @@ struct NewestRuns {
 /// registered last of those that have runs at the scale. Each seed of a variant is listed once: a
 /// run counted twice would make errors too small. A run that is several variants is listed for
 /// each. Settled packings are left out.
-NewestRuns newest_runs(std::vector<SelectedRun> selected);
+NewestRuns newest_runs(std::vector<Run> selected);
 
-/// A run that no experiment declared, as a damaged store may hold it, has an empty membership.
-Membership first_membership(const RunRecord& run);
+/// A run that no experiment declared, as a damaged store may hold it, has an empty ask.
+Ask first_ask(const Stage& run);
 
 }  // namespace shearcell

@@ -252,10 +252,10 @@ string without_effect(string_view key, const Parameters& p) {
   const Field* field = find_field(key);
   const Identity identity = field == nullptr ? Identity{} : field->identity;
   if (p.protocol == ProtocolKind::stiffen) {
-    const bool of_shear =
-        identity.stage == Stage::shear || key == "cycles" || key == "until" || key == "checkpoints";
+    const bool of_shear = identity.stage == StageKind::shear || key == "cycles" || key == "until" ||
+                          key == "checkpoints";
     if (of_shear && key != "protocol") return "has no effect under protocol stiffen";
-  } else if (identity.stage == Stage::stiffen || key == "stiffness_decades") {
+  } else if (identity.stage == StageKind::stiffen || key == "stiffness_decades") {
     return "has an effect only under protocol stiffen";
   }
   if (identity.under && identity.under != p.protocol) {

@@ -83,10 +83,10 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
 }
 
 // `common`: the facts that all runs of the scale share.
-PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
+PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed) {
   PlannedRun run;
-  static_cast<Membership&>(run) = common;
+  static_cast<Ask&>(run) = common;
   run.variant = variant.name();
   run.swept = variant.swept_values();
   run.seed = seed;
@@ -94,19 +94,19 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.target_cycles = target_cycles(run.parameters);
   run.prepare = prepare_stage(run.parameters, seed);
   run.last = last_stage(run.parameters, seed, run.prepare);
-  if (run.last.kind == name_of(Stage::shear) && scale.until->until) {
+  if (run.last.kind == name_of(StageKind::shear) && scale.until->until) {
     run.until = to_json(*scale.until->until);
   }
-  run.memberships = {run};
+  run.asks = {run};
   return run;
 }
 
 // `place`: manifest, experiment and scale.
-void take_declared_lengths(const Membership& place, std::span<const RunRecord> known,
+void take_declared_lengths(const Ask& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
   std::map<std::string, std::uint64_t> longest;  // by variant
-  for (const RunRecord& run : known) {
-    for (const Membership& m : run.memberships) {
+  for (const Stage& run : known) {
+    for (const Ask& m : run.asks) {
       if (m.experiment != place.experiment || m.scale != place.scale) continue;
       if (m.manifest != place.manifest) continue;
       longest[m.variant] = std::max(longest[m.variant], m.target_cycles);
@@ -143,12 +143,12 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
   std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest.experiment, scale.name, {}, {}};
-  const Membership common = {.experiment = plan.experiment,
-                             .scale = plan.scale,
-                             .variant = {},
-                             .manifest = sha256_hex(manifest.text),
-                             .checkpoint_every = scale.checkpoints->every_cycles,
-                             .checkpoint_phases = scale.checkpoints->phases};
+  const Ask common = {.experiment = plan.experiment,
+                      .scale = plan.scale,
+                      .variant = {},
+                      .manifest = sha256_hex(manifest.text),
+                      .checkpoint_every = scale.checkpoints->every_cycles,
+                      .checkpoint_phases = scale.checkpoints->phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   Filter wanted(options.variants, has_values, keys_of), seed_filter(texts_of(options.only_seeds));
   std::vector<std::uint64_t> chosen_seeds;
@@ -209,8 +209,8 @@ Plan joined(std::span<const Plan> plans) {
         all.runs.push_back(run);
         continue;
       }
-      std::vector<Membership>& asks = all.runs[place->second].memberships;
-      std::ranges::copy(run.memberships, std::back_inserter(asks));
+      std::vector<Ask>& asks = all.runs[place->second].asks;
+      std::ranges::copy(run.asks, std::back_inserter(asks));
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));

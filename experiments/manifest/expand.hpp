@@ -24,16 +24,16 @@ struct ExpandOptions {
   std::optional<std::string> engine = {};      ///< instead of the manifest's; named in the variant
   /// Runs of the store. Warnings then assume the lengths that this manifest gave them before, if
   /// those are longer.
-  std::span<const RunRecord> known = {};
+  std::span<const Stage> known = {};
 };
 
 /// Its scale is empty when the manifest has none, and its variant "base" when nothing is swept.
-struct PlannedRun : Membership {
+struct PlannedRun : Ask {
   std::string name;  ///< of the variant, for people (variants.hpp)
-  RunRecord prepare;
-  RunRecord last;  ///< shear or stiffening of the packing
+  Stage prepare;
+  Stage last;  ///< shear or stiffening of the packing
   Parameters parameters;
-  std::vector<Membership> memberships;  ///< of each of the joined plans; its own first
+  std::vector<Ask> asks;  ///< of each of the joined plans; its own first
 };
 
 struct Plan {

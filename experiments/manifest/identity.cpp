@@ -31,8 +31,8 @@ json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
-RunRecord stage_of(Stage stage, const Parameters& given, std::uint64_t seed,
-                   const std::string& parent) {
+Stage stage_of(StageKind stage, const Parameters& given, std::uint64_t seed,
+               const std::string& parent) {
   const Parameters parameters = without_ineffective(given);
   json values = json::object();
   for (const Field& field : schema()) {
@@ -44,7 +44,7 @@ RunRecord stage_of(Stage stage, const Parameters& given, std::uint64_t seed,
   }
   json resolved = {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
   if (!parent.empty()) resolved["parent"] = parent;
-  RunRecord made;
+  Stage made;
   made.id = stage_key(resolved);
   made.parent = parent;
   made.kind = name_of(stage);
@@ -100,7 +100,7 @@ std::optional<ProtocolKind> protocol_in(const json& values) {
 
 // A parameter that does not affect the stage keeps its default. One that affects it and is missing
 // from the record has the value at which it is omitted.
-Parameters read_parameters(Stage stage, const json& values) {
+Parameters read_parameters(StageKind stage, const json& values) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   const auto protocol = protocol_in(values);
   Parameters parameters;
@@ -128,11 +128,11 @@ Parameters read_parameters(Stage stage, const json& values) {
 
 }  // namespace
 
-RunRecord prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  return stage_of(Stage::prepare, parameters, seed, "");
+Stage prepare_stage(const Parameters& parameters, std::uint64_t seed) {
+  return stage_of(StageKind::prepare, parameters, seed, "");
 }
 
-RunRecord last_stage(const Parameters& parameters, std::uint64_t seed, const RunRecord& parent) {
+Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent) {
   return stage_of(stage_after_settling(parameters.protocol), parameters, seed, parent.id);
 }
 
@@ -140,14 +140,14 @@ std::string stage_key(const json& resolved) {
   return sha256_hex(std::string(kDomain) + canonical_json(resolved));
 }
 
-StageRecord read_stage(const json& resolved) {
+StageInputs read_stage(const json& resolved) {
   if (!resolved.is_object()) throw UnreadableRecord("record of a stage: not a JSON object");
   const std::string name = text_member(resolved, "stage");
-  const std::optional<Stage> stage = value_of<Stage>(name);
+  const std::optional<StageKind> stage = value_of<StageKind>(name);
   if (!stage) throw damaged("stage", "is not one of prepare, shear, stiffen");
-  StageRecord record;
+  StageInputs record;
   record.stage = *stage;
-  const bool prepares = record.stage == Stage::prepare;
+  const bool prepares = record.stage == StageKind::prepare;
   if (!prepares) {
     record.parent = text_member(resolved, "parent");
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
@@ -159,10 +159,10 @@ StageRecord read_stage(const json& resolved) {
   if (record.parameters != without_ineffective(record.parameters)) {
     throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
   }
-  if (record.stage == Stage::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
+  if (record.stage == StageKind::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
   // This program never writes such a record.
-  if (record.stage == Stage::shear &&
-      stage_after_settling(record.parameters.protocol) != Stage::shear) {
+  if (record.stage == StageKind::shear &&
+      stage_after_settling(record.parameters.protocol) != StageKind::shear) {
     throw damaged("protocol", "is not one that shears");
   }
   for (const auto& [key, value] : resolved.items()) {

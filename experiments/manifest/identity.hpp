@@ -14,8 +14,8 @@ namespace shearcell {
 
 /// A stage, as read from its `resolved` record. Parameters that do not affect it, and lengths, have
 /// their defaults; the protocol of a stiffening is `stiffen`.
-struct StageRecord {
-  Stage stage = Stage::prepare;
+struct StageInputs {
+  StageKind stage = StageKind::prepare;
   std::string parent;
   std::uint64_t seed = 0;
   Parameters parameters;
@@ -24,10 +24,10 @@ struct StageRecord {
 /// The preparation: fill and settle. A stage that nobody asks for yet; its id is the hash of
 /// `resolved`, which `read_stage` reads back. Equal ids mean equal trajectories, so a stage is
 /// computed once.
-RunRecord prepare_stage(const Parameters& parameters, std::uint64_t seed);
+Stage prepare_stage(const Parameters& parameters, std::uint64_t seed);
 
 /// Shear or stiffening, by the protocol, of the packing that `parent` prepares.
-RunRecord last_stage(const Parameters& parameters, std::uint64_t seed, const RunRecord& parent);
+Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
 /// check a recorded run against its id.
@@ -41,7 +41,7 @@ struct UnreadableRecord : std::runtime_error {
 
 /// The record is not trusted: throws UnreadableRecord when something is missing, unknown or out of
 /// range. Compare stage_key(resolved) with the run's id as well.
-StageRecord read_stage(const nlohmann::json& resolved);
+StageInputs read_stage(const nlohmann::json& resolved);
 
 /// The parameters that affect the stage: those that the record states, and those that it omits at
 /// the value of all older runs, without constants of the record (Identity::recorded_as), which are

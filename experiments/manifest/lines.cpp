@@ -82,31 +82,31 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   return found;
 }
 
-nlohmann::json overrides(std::string_view text, const Membership& membership) {
+nlohmann::json overrides(std::string_view text, const Ask& ask) {
   const std::optional<Manifest> manifest = parsed(text);
   if (!manifest) return nullptr;
   nlohmann::json found;
   const auto add = [&](const char* key, const nlohmann::json& run, const nlohmann::json& stated) {
     found[key] = {{"run", run}, {"manifest", stated}};
   };
-  const Scale* scale = find_scale(*manifest, membership.scale);
+  const Scale* scale = find_scale(*manifest, ask.scale);
   const Scale stated = scale == nullptr ? manifest->base : whole_scale(*manifest, *scale);
   const auto selected = [&](const auto& swept) {
-    const auto value = membership.swept.find(swept.first);
-    return value != membership.swept.end() && *value == swept.second->value;
+    const auto value = ask.swept.find(swept.first);
+    return value != ask.swept.end() && *value == swept.second->value;
   };
   for (const Variant& variant : variants_of(stated)) {
     const std::uint64_t cycles = target_cycles(variant.parameters);
-    if (cycles == membership.target_cycles || !std::ranges::all_of(variant.swept, selected)) {
+    if (cycles == ask.target_cycles || !std::ranges::all_of(variant.swept, selected)) {
       continue;
     }
-    add("cycles", membership.target_cycles, cycles);
+    add("cycles", ask.target_cycles, cycles);
     break;
   }
   const std::vector<std::uint64_t>& seeds = stated.seeds->values;
-  if (std::ranges::count(seeds, membership.seed) == 0) add("seed", membership.seed, seeds);
-  const auto engine = membership.swept.find("engine");
-  if (engine != membership.swept.end() && find_axis(*stated.sweep, "engine") == nullptr) {
+  if (std::ranges::count(seeds, ask.seed) == 0) add("seed", ask.seed, seeds);
+  const auto engine = ask.swept.find("engine");
+  if (engine != ask.swept.end() && find_axis(*stated.sweep, "engine") == nullptr) {
     add("engine", *engine, value_at(stated, "engine"));
   }
   return found;

@@ -26,6 +26,6 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
 /// Where a shear run differs from its manifest, since the command line gave --cycles, --seeds or
 /// --engine: {"cycles", "seed" or "engine": {"run": VALUE, "manifest": VALUE}}; for "seed", the
 /// manifest's value is its list of seeds. Null if nothing differs or the manifest cannot be read.
-nlohmann::json overrides(std::string_view text, const Membership& membership);
+nlohmann::json overrides(std::string_view text, const Ask& ask);
 
 }  // namespace shearcell

@@ -12,10 +12,10 @@
 namespace shearcell {
 
 /// A link in a run's chain.
-enum class Stage : std::uint8_t { prepare, shear, stiffen };
+enum class StageKind : std::uint8_t { prepare, shear, stiffen };
 
 template <>
-inline constexpr auto kNames<Stage> = names_in_order<Stage>("prepare", "shear", "stiffen");
+inline constexpr auto kNames<StageKind> = names_in_order<StageKind>("prepare", "shear", "stiffen");
 
 /// Treatment of the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
 enum class ProtocolKind : std::uint8_t { continuous, paused, stiffen };
@@ -29,8 +29,8 @@ template <>
 inline constexpr auto kNames<EngineKind> = names_in_order<EngineKind>("shearcell", "lammps");
 
 /// The stage that a protocol adds to the settled packing.
-constexpr Stage stage_after_settling(ProtocolKind protocol) {
-  return protocol == ProtocolKind::stiffen ? Stage::stiffen : Stage::shear;
+constexpr StageKind stage_after_settling(ProtocolKind protocol) {
+  return protocol == ProtocolKind::stiffen ? StageKind::stiffen : StageKind::shear;
 }
 
 struct Parameters {

@@ -21,9 +21,9 @@ namespace {
 using nlohmann::json;
 using std::string_view;
 
-constexpr Identity kPrepare = {.stage = Stage::prepare};
-constexpr Identity kShear = {.stage = Stage::shear};
-constexpr Identity kStiffen = {.stage = Stage::stiffen};
+constexpr Identity kPrepare = {.stage = StageKind::prepare};
+constexpr Identity kShear = {.stage = StageKind::shear};
+constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
 
 constexpr Range from(double min, double max) {
@@ -131,7 +131,7 @@ std::span<const Field> schema() {
       row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", from(kSmallest, 1e12), kPrepare,
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
-          "pressure_at", "", "", {}, {.stage = Stage::prepare, .omitted_at = "moving_wall"},
+          "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
           "wall on which the pressure is P: `moving_wall`, whose load is then P A_w, or `top`, for "
           "which a moving bottom wall is loaded with P A_w plus the grains' weight; both are the "
           "same without gravity or with a moving top wall"),
@@ -155,7 +155,8 @@ std::span<const Field> schema() {
           "the "
           "walls' surface"),
       row<&P::wall_grain_draw>(
-          "wall_grain_draw", "", "1", from(0, 1e6), {.stage = Stage::prepare, .omitted_at = "0"},
+          "wall_grain_draw", "", "1", from(0, 1e6),
+          {.stage = StageKind::prepare, .omitted_at = "0"},
           "other values give other random places of the wall grains for the same seed"),
       row<&P::wall_mass_grains_per_d2>("wall_mass_grains_per_d2", "", "m/d^2", above(0, 1e6),
                                        kPrepare, "mass of the moving wall per area"),
@@ -182,7 +183,7 @@ std::span<const Field> schema() {
           "simulated time after which a packing that has not settled is a failure"),
       row<&P::max_overlap_diameters>(
           "max_overlap_diameters", "", "d", above(0, kLargestOverlapLimit),
-          {.stage = Stage::prepare, .recorded_as = "0.1"},
+          {.stage = StageKind::prepare, .recorded_as = "0.1"},
           "a stage whose largest overlap exceeds this stops as failed; with a larger value it "
           "continues"),
       // Shear.
@@ -199,17 +200,18 @@ std::span<const Field> schema() {
           "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
           "limit, 0.355"),
       row<&P::pause_s>(
-          "pause_s", "", "s", above(0, 1e6), {.stage = Stage::shear, .under = ProtocolKind::paused},
+          "pause_s", "", "s", above(0, 1e6),
+          {.stage = StageKind::shear, .under = ProtocolKind::paused},
           "rest between fixed walls after each cycle, under protocol paused (B.5); rounded to "
           "whole time steps"),
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
-          {.stage = Stage::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
+          {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
           "the moving wall during a pause: held at its height, or moving under its load"),
       row<&P::cycles>("cycles", "n", "1", from(0, 1e6), kNoKey,
                       "cycles to shear for; a larger value extends a run"),
       row<&P::engine>(
-          "engine", "", "", {}, {.stage = Stage::shear, .omitted_at = "shearcell"},
+          "engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
           "what computes the shear: this program, or LAMMPS (another run, equal up to rounding; "
           "settling is always ours)"),
       // Stiffening.
@@ -232,9 +234,9 @@ const Field* find_field(string_view name) {
   return find_named(schema(), name);
 }
 
-bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,
+bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKind> protocol,
             const json& value) {
-  if (!identity.stage || (*identity.stage != Stage::prepare && *identity.stage != stage))
+  if (!identity.stage || (*identity.stage != StageKind::prepare && *identity.stage != stage))
     return false;
   if (identity.under && identity.under != protocol) return false;
   return identity.omitted_at.empty() || value_text(value) != identity.omitted_at;

@@ -20,7 +20,7 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; another one enters the record of its own stage only.
 struct Identity {
-  std::optional<Stage> stage = {};         ///< first stage that it affects; nothing: in no key
+  std::optional<StageKind> stage = {};     ///< first stage that it affects; nothing: in no key
   std::optional<ProtocolKind> under = {};  ///< only under this protocol
   /// The record omits the parameter at this value (as in a manifest). For a parameter that is
   /// younger than the stores: the value of all older runs, which may differ from the default.
@@ -102,7 +102,7 @@ std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::s
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
 
 /// Whether the record of a stage holds the parameter when it has that value.
-bool enters(const Identity& identity, Stage stage, std::optional<ProtocolKind> protocol,
+bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKind> protocol,
             const nlohmann::json& value);
 
 /// "a number > 0 and <= 1e+06", "one of still, cell".

@@ -51,8 +51,8 @@ std::byte byte_of(const GrainField& field, double value) {
 constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
 struct ChosenRun {
-  RunRecord run;
-  Membership membership;
+  Stage run;
+  Ask ask;
   std::vector<CheckpointRecord> checkpoints;  // fit() reduces them to those to show
   std::size_t bytes = 0;                      // of one checkpoint in the page
   std::size_t grains = 0;
@@ -68,17 +68,17 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
 }
 
 /// The last run of each variant, of at most `limit` variants that are evenly chosen.
-std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<SelectedRun>& runs,
+std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
   for (const auto& [run, member] : runs) {
     if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, run.memberships);
+    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, run.asks);
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
     auto same = std::ranges::find(last, member.variant,
-                                  [](const ChosenRun& other) { return other.membership.variant; });
+                                  [](const ChosenRun& other) { return other.ask.variant; });
     if (same == last.end()) same = last.emplace(last.end());
     *same = {run, member, std::move(checkpoints)};
   }
@@ -91,14 +91,14 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   std::vector<ChosenRun> chosen;
   if (!choice.runs.empty()) {
     for (const std::string& id : choice.runs) {
-      const RunRecord run = store.find_run(id);
-      chosen.push_back({run, first_membership(run), store.checkpoints(run.id)});
+      const Stage run = store.find_stage(id);
+      chosen.push_back({run, first_ask(run), store.checkpoints(run.id)});
     }
     std::erase_if(chosen, [](const ChosenRun& run) { return run.checkpoints.empty(); });
     return chosen;
   }
   std::set<std::string> known;
-  const std::vector<SelectedRun> runs = newest_runs(select_runs(store, selection)).runs;
+  const std::vector<Run> runs = newest_runs(select_runs(store, selection)).runs;
   for (const std::string& experiment : experiments) {
     for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
       if (known.insert(run.run.id).second) chosen.push_back(std::move(run));
@@ -145,8 +145,7 @@ std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
 void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
   std::vector<std::string> left_out;
   while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
-    left_out.push_back(
-        fmt::format("{:.8} of {}", runs.back().run.id, runs.back().membership.experiment));
+    left_out.push_back(fmt::format("{:.8} of {}", runs.back().run.id, runs.back().ask.experiment));
     runs.pop_back();
   }
   if (!left_out.empty()) {
@@ -345,9 +344,9 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     packings.frames += list.size();
     if (list.empty()) continue;
     packings.runs.push_back({{"id", run.run.id},
-                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.membership),
-                                                   run.membership.seed, run.run.grains)},
-                             {"experiment", run.membership.experiment},
+                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.ask),
+                                                   run.ask.seed, run.run.grains)},
+                             {"experiment", run.ask.experiment},
                              {"grains", run.grains},
                              {"wall_grains", run.wall_grains},
                              {"frames", std::move(list)}});

@@ -163,9 +163,9 @@ json lineage_json(const ReportFigure& figure) {
 
 /// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
-  const RunRecord& run = stage.run;
+  const Stage& run = stage.run;
   json members = json::array(), attempts = json::array();
-  for (const Membership& member : run.memberships) {
+  for (const Ask& member : run.asks) {
     members.push_back(
         {{"manifest", brief(member.manifest)},
          {"text", fmt::format("{} at scale {}, {}, seed {}", member.experiment,
@@ -248,21 +248,21 @@ json step(const char* title, std::initializer_list<Count> counts) {
 }
 
 json stages_step(const char* title, const ReportExperiment& experiment, bool prepare) {
-  std::map<RunState, std::size_t> in;
-  for (const RunRecord& run : experiment.runs) {
-    if ((run.kind == name_of(Stage::prepare)) == prepare) ++in[run.state];
+  std::map<StageState, std::size_t> in;
+  for (const Stage& run : experiment.runs) {
+    if ((run.kind == name_of(StageKind::prepare)) == prepare) ++in[run.state];
   }
-  return step(title, {{"done", "✓", "done", in[RunState::completed]},
-                      {"running", "▸", "running", in[RunState::running]},
-                      {"stopped", "‖", "interrupted", in[RunState::interrupted]},
-                      {"failed", "✗", "failed", in[RunState::failed]},
-                      {"waiting", "·", "waiting", in[RunState::declared]}});
+  return step(title, {{"done", "✓", "done", in[StageState::completed]},
+                      {"running", "▸", "running", in[StageState::running]},
+                      {"stopped", "‖", "interrupted", in[StageState::interrupted]},
+                      {"failed", "✗", "failed", in[StageState::failed]},
+                      {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
 /// The way from the manifest to the figures, with the states of each step.
 json workflow(const ReportData& data, const ReportExperiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
-  for (const RunRecord& run : experiment.runs) {
+  for (const Stage& run : experiment.runs) {
     for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) ++in[c.record.state];
   }
   json manifest = step("Manifest", {});

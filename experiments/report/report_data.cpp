@@ -38,13 +38,13 @@ std::vector<ReportExperiment> experiments_of(const Store& store,
     experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();
   }
-  const std::vector<RunRecord> runs = store.runs();
+  const std::vector<Stage> runs = store.stages();
   for (ReportExperiment& experiment : found) {
-    const auto is_member = [&](const Membership& m) {
+    const auto is_member = [&](const Ask& m) {
       return m.experiment == experiment.manifest.experiment;
     };
-    for (const RunRecord& run : runs) {
-      if (std::ranges::any_of(run.memberships, is_member)) experiment.runs.push_back(run);
+    for (const Stage& run : runs) {
+      if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
     }
   }
   return found;
@@ -142,14 +142,13 @@ void add_runs(const Store& store, ReportData& data) {
       experiment.manifest_path = manifest->path;
       data.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
-    for (const RunRecord& run : experiment.runs) {
+    for (const Stage& run : experiment.runs) {
       add_run_lineage(store, run.id, data.runs);
       // How long a packing takes to settle is not known.
-      if (run.kind == name_of(Stage::prepare)) continue;
-      std::vector<Membership> asks = run.memberships;
-      std::erase_if(asks, [&](const Membership& ask) {
-        return ask.experiment != experiment.manifest.experiment;
-      });
+      if (run.kind == name_of(StageKind::prepare)) continue;
+      std::vector<Ask> asks = run.asks;
+      std::erase_if(
+          asks, [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
       const Outlook look = outlook(run, asks, seen_checkpoints(store, run.id));
       if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
     }

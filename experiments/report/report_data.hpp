@@ -55,7 +55,7 @@ struct ReportExperiment {
   bool labelled = false;                  ///< the manifest names variants
   std::vector<std::size_t> figures = {};  ///< of ReportData::figures
   std::vector<std::string> unmade = {};   ///< figures that cannot be made of its runs
-  std::vector<RunRecord> runs = {};
+  std::vector<Stage> runs = {};
   std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
   RunTable table = {};               ///< a row for each run, without those that settle packings
   /// For the front end, in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi,

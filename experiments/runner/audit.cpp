@@ -30,7 +30,7 @@ void require_same(const std::string& what, const json& recorded, const json& exp
 }
 
 /// Labels of parameters that do not act on the run, or are not part of its id, are not checked.
-void check_membership(const Membership& m, const StageRecord& stage, const json& resolved) {
+void check_ask(const Ask& m, const StageInputs& stage, const json& resolved) {
   require_same("seed", m.seed, stage.seed);
   for (const auto& [key, value] : m.swept.items()) {
     const Field* field = find_field(key);
@@ -46,16 +46,16 @@ void check_membership(const Membership& m, const StageRecord& stage, const json&
   }
 }
 
-void check_run(const RunRecord& run) {
+void check_run(const Stage& run) {
   if (stage_key(run.resolved) != run.id) {
     throw StoreDamaged("its recorded parameters are not those that it is named after");
   }
-  const StageRecord stage = read_stage(run.resolved);
+  const StageInputs stage = read_stage(run.resolved);
   require_same("kind", run.kind, name_of(stage.stage));
   require_same("parent", run.parent, stage.parent);
   require_same("grains", run.grains, stage.parameters.grains);
-  for (const Membership& membership : run.memberships) {
-    check_membership(membership, stage, run.resolved);
+  for (const Ask& ask : run.asks) {
+    check_ask(ask, stage, run.resolved);
   }
 }
 
@@ -86,7 +86,7 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 
 /// A run must start from the state at which the stage before it was completed. States that the
 /// store lacks are not checked: a merge leaves out files that another HDF5 library wrote.
-void check_beginning(const Store& store, const RunRecord& run,
+void check_beginning(const Store& store, const Stage& run,
                      const std::set<std::uint64_t>& completed) {
   for (const Event& event : store.events(run_stream(run.id), events::RunStarted::kType)) {
     const auto started = std::get<events::RunStarted>(events::decode(event));
@@ -164,7 +164,7 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
                                                    MeasureSources& sources, Listed listed) {
   std::vector<CheckpointRecord> found;
   std::set<std::string> seen;
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     for (CheckpointRecord& record : store.checkpoints(run.id, listed)) {
       const Cached cached = cache.get(keys_of(record, sources));
       const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
@@ -194,7 +194,7 @@ void copy_measures(const Store& store, DerivedCache& from) {
 std::vector<Finding> check_runs(const Store& store) {
   std::vector<Finding> findings;
   std::map<std::string, std::set<std::uint64_t>> completed;  // by parent
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     const auto note = [&](Finding::Severity severity, const std::exception& problem) {
       findings.push_back({severity, fmt::format("run {:.12}", run.id), run.id, problem.what()});
     };

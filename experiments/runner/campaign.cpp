@@ -99,7 +99,7 @@ class Campaign {
   // end.
   bool was_done(const StageJob& job) const {
     try {
-      return store_.run(job.id).state == RunState::completed;
+      return store_.stage(job.id).state == StageState::completed;
     } catch (const std::exception&) {
       return false;  // the next attempt to compute it reports why
     }
@@ -195,7 +195,7 @@ class Campaign {
 
   JobState compute(std::size_t j, bool was_held) {
     const StageJob& job = jobs_[j];
-    const RunRecord run = store_.run(job.id);
+    const Stage run = store_.stage(job.id);
     if (is_done(store_, run)) {
       if (was_held) {
         finish(job, &CampaignResult::elsewhere, "done by another program", true);
@@ -207,7 +207,7 @@ class Campaign {
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(j);
-    if (was_held && run.state == RunState::failed) {
+    if (was_held && run.state == StageState::failed) {
       note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
@@ -224,7 +224,7 @@ class Campaign {
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
       case StageOutcome::failed:
-        note(job, &CampaignResult::failed, store_.run(job.id).error);
+        note(job, &CampaignResult::failed, store_.stage(job.id).error);
         progress_.end(job.id, job.name, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
@@ -251,7 +251,7 @@ class Campaign {
   }
 
   std::string done_text(const StageJob& job) const {
-    const std::string why = describe_end(end_of(store_.run(job.id)));
+    const std::string why = describe_end(end_of(store_.stage(job.id)));
     return why.empty() ? "done" : "done, " + why;
   }
 
@@ -287,13 +287,13 @@ class Campaign {
 };
 
 // Variants that start from one packing share it, so its name says no variant.
-std::string job_name(const Membership& membership, const std::string& name) {
-  return fmt::format("{} {} seed={}", membership.experiment, name, membership.seed);
+std::string job_name(const Ask& ask, const std::string& name) {
+  return fmt::format("{} {} seed={}", ask.experiment, name, ask.seed);
 }
 
-StageJob job_of(const RunRecord& run, const VariantNames& names) {
-  if (run.memberships.empty()) return {run.id, run.parent, run.kind};
-  const Membership& place = run.memberships.front();
+StageJob job_of(const Stage& run, const VariantNames& names) {
+  if (run.asks.empty()) return {run.id, run.parent, run.kind};
+  const Ask& place = run.asks.front();
   return {run.id, run.parent, job_name(place, names.of(run, place))};
 }
 
@@ -331,23 +331,23 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   PackingNames packings;
   for (const PlannedRun& run : plan.runs) packings.add(run, run.prepare.resolved);
   for (const PlannedRun& run : plan.runs) {
-    for (RunRecord stage : {run.prepare, run.last}) {
-      const bool prepare = stage.kind == name_of(Stage::prepare);
+    for (Stage stage : {run.prepare, run.last}) {
+      const bool prepare = stage.kind == name_of(StageKind::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      Membership membership = run;
+      Ask ask = run;
       if (prepare) {
-        membership = {.experiment = run.experiment,
-                      .scale = run.scale,
-                      .variant = "packing",
-                      .seed = run.seed,
-                      .manifest = run.manifest,
-                      .checkpoint_every = run.checkpoint_every};
+        ask = {.experiment = run.experiment,
+               .scale = run.scale,
+               .variant = "packing",
+               .seed = run.seed,
+               .manifest = run.manifest,
+               .checkpoint_every = run.checkpoint_every};
       }
       const std::string name = prepare ? packings.of(run, stage.resolved) : run.name;
-      if (first) jobs.push_back({stage.id, stage.parent, job_name(membership, name)});
-      stage.memberships = {std::move(membership)};
-      store.declare_run(stage);
+      if (first) jobs.push_back({stage.id, stage.parent, job_name(ask, name)});
+      stage.asks = {std::move(ask)};
+      store.declare_stage(stage);
     }
   }
   tell_apart(jobs);
@@ -355,20 +355,20 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
 }
 
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
-  std::vector<RunRecord> asked;
-  for (const std::string& prefix : prefixes) asked.push_back(store.find_run(prefix));
+  std::vector<Stage> asked;
+  for (const std::string& prefix : prefixes) asked.push_back(store.find_stage(prefix));
   if (prefixes.empty()) {
-    asked = store.runs();
-    std::erase_if(asked, [&](const RunRecord& run) { return look_at(store, run).done; });
+    asked = store.stages();
+    std::erase_if(asked, [&](const Stage& run) { return look_at(store, run).done; });
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   std::set<std::string> wanted;
-  for (RunRecord run : asked) {
-    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.run(run.parent);
+  for (Stage run : asked) {
+    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.stage(run.parent);
   }
   std::vector<StageJob> jobs;
   const VariantNames names(store);
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     if (wanted.contains(run.id)) jobs.push_back(job_of(run, names));
   }
   tell_apart(jobs);

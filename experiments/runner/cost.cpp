@@ -58,15 +58,15 @@ double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-Rates::Rates(const std::vector<RunRecord>& runs) {
-  for (const RunRecord& run : runs) {
+Rates::Rates(const std::vector<Stage>& runs) {
+  for (const Stage& run : runs) {
     Sum& sum = sums_[engine_of(run.resolved)];
     sum.steps += run.particle_steps;
     sum.seconds += run.wall_seconds;
   }
 }
 
-Rate Rates::of(const RunRecord& stage) const {
+Rate Rates::of(const Stage& stage) const {
   const EngineKind engine = engine_of(stage.resolved);
   const auto grains = static_cast<double>(stage.grains);
   const auto sum = sums_.find(engine);
@@ -77,7 +77,7 @@ Rate Rates::of(const RunRecord& stage) const {
   return {assumed_rate(kOurRates, grains), false};
 }
 
-void Work::add(const RunRecord& stage, double steps_left, const Rates& rates) {
+void Work::add(const Stage& stage, double steps_left, const Rates& rates) {
   const Rate rate = rates.of(stage);
   const double own_seconds = steps_left / rate.particle_steps_per_second;
   ++stages;
@@ -91,12 +91,12 @@ double Work::seconds(std::size_t at_a_time) const {
   return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
 }
 
-std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs) {
+std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs) {
   std::set<std::string> failed, waiting;
-  for (const RunRecord& run : runs) {
-    if (run.state == RunState::failed) failed.insert(run.id);
+  for (const Stage& run : runs) {
+    if (run.state == StageState::failed) failed.insert(run.id);
   }
-  for (const RunRecord& run : runs) {
+  for (const Stage& run : runs) {
     if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
   }
   return waiting;

@@ -40,11 +40,11 @@ struct Rate {
 /// Particle-steps/s of recorded runs.
 class Rates {
  public:
-  explicit Rates(const std::vector<RunRecord>& runs);
+  explicit Rates(const std::vector<Stage>& runs);
 
   /// Mean over the runs of the stage's engine. Without such runs, the rate that was measured on
   /// another machine for this number of grains.
-  Rate of(const RunRecord& stage) const;
+  Rate of(const Stage& stage) const;
 
  private:
   struct Sum {
@@ -63,12 +63,12 @@ struct Work {
   std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
 
   /// Adds a stage, after its parent.
-  void add(const RunRecord& stage, double steps_left, const Rates& rates);
+  void add(const Stage& stage, double steps_left, const Rates& rates);
   /// Wall time [s] with so many stages at a time.
   double seconds(std::size_t at_a_time) const;
 };
 
 /// Ids of unfinished runs that cannot start, because the packing that they start from failed.
-std::set<std::string> waiting_for_failed(const std::vector<RunRecord>& runs);
+std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs);
 
 }  // namespace shearcell

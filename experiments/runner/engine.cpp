@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kPatience{10};
 
 class OwnEngine final : public Engine {
  public:
-  OwnEngine(const StagePlan& plan, Beginning&& beginning, std::size_t threads)
+  OwnEngine(const ReadyStage& plan, Beginning&& beginning, std::size_t threads)
       : plan_(plan), simulation_(make_simulation(plan, std::move(beginning), threads)) {}
 
   StageProgress advance() override {
@@ -34,17 +34,17 @@ class OwnEngine final : public Engine {
   std::uint64_t evaluations() const override { return simulation_.evaluations(); }
 
  private:
-  const StagePlan& plan_;
+  const ReadyStage& plan_;
   Simulation simulation_;
   StageProgress progress_;
 };
 
 class LammpsEngine final : public Engine {
  public:
-  LammpsEngine(const StagePlan& plan, Beginning&& beginning, const Parallel& parallel,
+  LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(checkpoint_cadence(plan.run.memberships) * cycle_steps(plan.protocol->drive())),
+        stride_(checkpoint_cadence(plan.run.asks) * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),
@@ -103,7 +103,7 @@ class LammpsEngine final : public Engine {
     return progress;
   }
 
-  const StagePlan& plan_;
+  const ReadyStage& plan_;
   std::uint64_t stride_;
   Cell cell_;
   State state_;  ///< of the last frame
@@ -114,7 +114,7 @@ class LammpsEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
+std::unique_ptr<Engine> make_engine(const ReadyStage& plan, Beginning&& beginning,
                                     const Parallel& parallel,
                                     const std::optional<LammpsProgram>& lammps) {
   if (lammps) {

@@ -33,7 +33,7 @@ class Engine {
 };
 
 /// Takes ownership of the beginning's cell and state. `lammps` computes the stage, if it is given.
-std::unique_ptr<Engine> make_engine(const StagePlan& plan, Beginning&& beginning,
+std::unique_ptr<Engine> make_engine(const ReadyStage& plan, Beginning&& beginning,
                                     const Parallel& parallel,
                                     const std::optional<LammpsProgram>& lammps = std::nullopt);
 

@@ -73,11 +73,11 @@ bool ended_by(const json& ended, const json& until) {
 
 /// The most cycles [at most those that the stage has] for which an experiment without this `until`
 /// asked when the stage ended; 0 without any.
-double longest_length(const RunRecord& stage, const json& ended) {
+double longest_length(const Stage& stage, const json& ended) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
   double longest = 0;
-  for (const Membership& ask : stage.memberships) {  // in the order of declaration
+  for (const Ask& ask : stage.asks) {  // in the order of declaration
     if (left-- == 0) break;
     const auto cycles = static_cast<double>(ask.target_cycles);
     if (cycles <= stage.cycle && !ended_by(ended, ask.until)) longest = std::max(longest, cycles);
@@ -87,33 +87,33 @@ double longest_length(const RunRecord& stage, const json& ended) {
 
 }  // namespace
 
-Outlook look_at(const Store& store, const RunRecord& stage) {
+Outlook look_at(const Store& store, const Stage& stage) {
   try {
-    return outlook(stage, stage.memberships, seen_checkpoints(store, stage.id));
+    return outlook(stage, stage.asks, seen_checkpoints(store, stage.id));
   } catch (const StoreDamaged& damage) {
-    const bool completed = stage.state == RunState::completed;
+    const bool completed = stage.state == StageState::completed;
     return {.done = completed, .from = stage.cycle, .unreadable = damage.what()};
   }
 }
 
 std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
-  std::map<std::string, RunRecord> known;
+  std::map<std::string, Stage> known;
   if (store != nullptr) {
-    for (RunRecord& stage : store->runs()) known.emplace(stage.id, std::move(stage));
+    for (Stage& stage : store->stages()) known.emplace(stage.id, std::move(stage));
   }
   std::vector<PlannedStage> stages;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
-    for (const RunRecord* planned : {&run.prepare, &run.last}) {
+    for (const Stage* planned : {&run.prepare, &run.last}) {
       if (!seen.insert(planned->id).second) continue;
       PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
       if (const auto found = known.find(planned->id); found != known.end()) {
         one.stage = std::move(found->second);
         one.stage.resolved = planned->resolved;  // that of the store may be damaged
-        one.asks = one.stage.memberships;
+        one.asks = one.stage.asks;
         one.checkpoints = seen_checkpoints(*store, one.stage.id);
       }
-      if (planned == &run.last) std::ranges::copy(run.memberships, std::back_inserter(one.asks));
+      if (planned == &run.last) std::ranges::copy(run.asks, std::back_inserter(one.asks));
       one.look = outlook(one.stage, one.asks, one.checkpoints);
     }
   }
@@ -128,7 +128,7 @@ std::vector<SeenCheckpoint> seen_checkpoints(const Store& store, const std::stri
   return seen;
 }
 
-Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membership> asks,
+Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
                std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options) {
   for (;;) {
     Outlook look = outlook(stage, asks, checkpoints);
@@ -137,24 +137,24 @@ Outlook decide(const Store& store, const RunRecord& stage, std::span<const Membe
   }
 }
 
-double end_for(const Store& store, const RunRecord& stage, const Membership& ask,
+double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
   // With one ask no other experiment can have continued it.
-  if (stage.memberships.size() < 2 || !has_until(ask)) {
+  if (stage.asks.size() < 2 || !has_until(ask)) {
     return static_cast<double>(ask.target_cycles);
   }
   std::vector<SeenCheckpoint> checkpoints = seen_checkpoints(store, stage.id);
   return decide(store, stage, {&ask, 1}, checkpoints, options).end;
 }
 
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              std::span<const Membership> asks, double first,
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              std::span<const Ask> asks, double first,
                                               double last) {
   std::vector<CheckpointRecord> found = store.checkpoints(stage.id, Listed::and_pruned);
   const double end = found.empty() ? 0 : std::min(last, found.back().cycle);
   const bool every = asks.empty() || !shear_drive(stage);
   std::set<std::uint64_t> steps;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     const auto asked = asked_steps(stage, ask, first, end);
     steps.insert(asked.begin(), asked.end());
   }
@@ -166,14 +166,13 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecor
   return found;
 }
 
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const RunRecord& stage,
-                                              const Membership& ask,
-                                              const MeasureOptions& options) {
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              const Ask& ask, const MeasureOptions& options) {
   return checkpoints_for(store, stage, {&ask, 1}, 0, end_for(store, stage, ask, options));
 }
 
-json end_of(const RunRecord& stage) {
-  if (stage.state != RunState::completed || stage.ends.empty() ||
+json end_of(const Stage& stage) {
+  if (stage.state != StageState::completed || stage.ends.empty() ||
       stage.cycle >= static_cast<double>(stage.target_cycles)) {
     return json();
   }
@@ -200,9 +199,9 @@ std::string describe_end(const json& ended) {
   return why;
 }
 
-std::optional<double> expected_end(std::span<const RunRecord> stages, const json& until) {
+std::optional<double> expected_end(std::span<const Stage> stages, const json& until) {
   double sum = 0, count = 0;
-  for (const RunRecord& stage : stages) {
+  for (const Stage& stage : stages) {
     const json ended = end_of(stage);
     if (ended.is_null() || ended.contains("cycles_asked") || !ended_by(ended, until)) continue;
     sum += stage.cycle;

@@ -16,7 +16,7 @@ namespace shearcell {
 
 namespace {
 
-RunFacts facts_of(const RunRecord& run) {
+RunFacts facts_of(const Stage& run) {
   RunFacts facts{.parameters = member_of(run.resolved, "parameters"), .drive = shear_drive(run)};
   if (!facts.drive) return facts;
   const Scene scene = shear_scene(read_stage(run.resolved).parameters);
@@ -32,14 +32,14 @@ RunFacts facts_of(const RunRecord& run) {
 
 }  // namespace
 
-MeasureSources::MeasureSources(const std::string& id, const RunRecord& run) {
+MeasureSources::MeasureSources(const std::string& id, const Stage& run) {
   runs_[id].facts = facts_of(run);
 }
 
 void MeasureSources::read_run(const std::string& run) {
   const auto [entry, first] = runs_.try_emplace(run);
   if (!first) return;
-  entry->second.facts = facts_of(store_->run(run));
+  entry->second.facts = facts_of(store_->stage(run));
   if (!entry->second.facts.drive) return;
   for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
     const std::uint64_t step = one.step;

@@ -23,7 +23,7 @@ class MeasureSources {
   explicit MeasureSources(const Store& store, std::map<std::string, std::uint64_t> cadence = {})
       : store_(&store), cadence_(std::move(cadence)) {}
   /// Of one run, under this id, without its earlier checkpoints.
-  MeasureSources(const std::string& id, const RunRecord& run);
+  MeasureSources(const std::string& id, const Stage& run);
 
   /// Reads the log, unless it has. The other functions need this of the checkpoint's run, and then
   /// any number of threads may call them.

@@ -26,7 +26,7 @@ using nlohmann::json;
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 constexpr double kMostCounted = 10'000;         // one by one; more are extrapolated
 
-std::optional<Until> until_of(const Membership& ask) try {
+std::optional<Until> until_of(const Ask& ask) try {
   if (!has_until(ask)) return std::nullopt;
   return until_from_json(ask.until);
 } catch (const std::runtime_error& problem) {
@@ -34,7 +34,7 @@ std::optional<Until> until_of(const Membership& ask) try {
 }
 
 /// The cycle at which the stage reached this `until`, as a completion recorded it.
-std::optional<double> recorded_reach(const RunRecord& stage, const Until& until, double every) {
+std::optional<double> recorded_reach(const Stage& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
     const json cycle = member_of(ended, "reached_at_cycle");
     if (member_of(ended, "measure") == name_of(until.measure) &&
@@ -54,8 +54,7 @@ struct End {
   const CheckpointRecord* undecided = nullptr;  ///< the first that may have reached it
 };
 
-End end_for(const RunRecord& stage, const Membership& ask,
-            std::span<const SeenCheckpoint> checkpoints) {
+End end_for(const Stage& stage, const Ask& ask, std::span<const SeenCheckpoint> checkpoints) {
   End end{static_cast<double>(ask.target_cycles)};
   const std::optional<Until> until = until_of(ask);
   if (!until) return end;
@@ -84,20 +83,20 @@ End end_for(const RunRecord& stage, const Membership& ask,
 }
 
 /// Whether what the completed stage has recorded meets the ask.
-bool is_covered(const RunRecord& stage, const Membership& ask) {
-  return stage.state == RunState::completed && has_until(ask) &&
-         std::ranges::any_of(stage.memberships, [&](const Membership& recorded) {
+bool is_covered(const Stage& stage, const Ask& ask) {
+  return stage.state == StageState::completed && has_until(ask) &&
+         std::ranges::any_of(stage.asks, [&](const Ask& recorded) {
            return recorded.until == ask.until && recorded.target_cycles >= ask.target_cycles &&
                   recorded.checkpoint_every % ask.checkpoint_every == 0;
          });
 }
 
 /// Sets the end. Returns whether the stage is as long as every ask wants it.
-bool find_end(const RunRecord& stage, std::span<const Membership> asks,
+bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const SeenCheckpoint> checkpoints, Outlook& look) {
   bool long_enough = true, reached = true;
   double latest = -1;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     const End end = end_for(stage, ask, checkpoints);
     const bool earlier =
         end.undecided != nullptr && (!look.undecided || end.undecided->step < look.undecided->step);
@@ -134,8 +133,8 @@ std::vector<std::uint64_t> steps_between(std::span<const CheckpointCadence> cade
 }
 
 /// Of a shear, whose end is known.
-void find_left(const RunRecord& stage, const Drive& motion, EngineKind engine,
-               std::span<const Membership> asks, std::span<const SeenCheckpoint> checkpoints,
+void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
+               std::span<const Ask> asks, std::span<const SeenCheckpoint> checkpoints,
                Outlook& look) {
   const auto whole = static_cast<double>(cycle_steps(motion));
   const double length = look.end * whole, now = static_cast<double>(stage.step);
@@ -172,18 +171,18 @@ void find_left(const RunRecord& stage, const Drive& motion, EngineKind engine,
 
 }  // namespace
 
-Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
+Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const SeenCheckpoint> checkpoints) {
   Outlook look{.from = stage.cycle};
   const bool long_enough = find_end(stage, asks, checkpoints, look);
-  const bool completed = stage.state == RunState::completed;
+  const bool completed = stage.state == StageState::completed;
   try {
-    const StageRecord known = read_stage(stage.resolved);
+    const StageInputs known = read_stage(stage.resolved);
     const Parameters& p = known.parameters;
     const auto grains = static_cast<double>(stage.grains);
-    if (known.stage == Stage::shear) {
+    if (known.stage == StageKind::shear) {
       find_left(stage, drive(p), p.engine, asks, checkpoints, look);
-    } else if (known.stage == Stage::stiffen) {
+    } else if (known.stage == StageKind::stiffen) {
       const double left = std::max(0.0, look.end - stage.cycle);
       look.particle_steps = grains * minimization_evaluations(grains) * left;
       look.checkpoints = left + (checkpoints.empty() ? 1 : 0);
@@ -200,12 +199,12 @@ Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
   return look;
 }
 
-bool has_until(const Membership& ask) {
+bool has_until(const Ask& ask) {
   return !ask.until.is_null();
 }
 
-std::optional<Drive> shear_drive(const RunRecord& stage) {
-  if (stage.kind != name_of(Stage::shear)) return std::nullopt;
+std::optional<Drive> shear_drive(const Stage& stage) {
+  if (stage.kind != name_of(StageKind::shear)) return std::nullopt;
   try {
     return drive(read_stage(stage.resolved).parameters);
   } catch (const UnreadableRecord&) {
@@ -213,9 +212,9 @@ std::optional<Drive> shear_drive(const RunRecord& stage) {
   }
 }
 
-std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, const Drive& drive) {
+std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive) {
   std::vector<CheckpointCadence> cadences;
-  for (const Membership& ask : asks) {
+  for (const Ask& ask : asks) {
     if (ask.checkpoint_phases.size() > ManifestLimits::values_per_list) {
       throw StoreDamaged(fmt::format("a record of experiment {}: checkpoint_phases: there are {}",
                                      ask.experiment, ask.checkpoint_phases.size()));
@@ -227,7 +226,7 @@ std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, con
   return cadences;
 }
 
-std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership& ask, double first,
+std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
                                        double last) {
   const std::optional<Drive> motion = shear_drive(stage);
   if (!motion || !(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return {};
@@ -237,9 +236,9 @@ std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership&
                        kMostListed);
 }
 
-std::uint64_t checkpoint_cadence(std::span<const Membership> asks) {
+std::uint64_t checkpoint_cadence(std::span<const Ask> asks) {
   std::uint64_t cadence = 0;
-  for (const Membership& ask : asks) cadence = std::gcd(cadence, ask.checkpoint_every);
+  for (const Ask& ask : asks) cadence = std::gcd(cadence, ask.checkpoint_every);
   return std::max<std::uint64_t>(cadence, 1);
 }
 

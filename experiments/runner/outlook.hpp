@@ -54,25 +54,25 @@ struct Outlook {
 /// without rejected ones. A completed stage also meets an ask with the `until` of a recorded one
 /// that asks for at least as many cycles. Throws StoreDamaged for an ask that no manifest can
 /// state.
-Outlook outlook(const RunRecord& stage, std::span<const Membership> asks,
+Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const SeenCheckpoint> checkpoints);
 
 /// Whether `until` may end the stage before the number of cycles that is asked for.
-bool has_until(const Membership& ask);
+bool has_until(const Ask& ask);
 
 /// The motion of the walls in a shear; nothing for another kind of stage, and for a record that
 /// this program cannot read (`verify` names it).
-std::optional<Drive> shear_drive(const RunRecord& stage);
+std::optional<Drive> shear_drive(const Stage& stage);
 
 /// When the asks want checkpoints of a shear. Throws as outlook().
-std::vector<CheckpointCadence> cadences_of(std::span<const Membership> asks, const Drive& drive);
+std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive);
 
 /// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` wants a checkpoint;
 /// ascending, at most a million. Empty if there is no shear_drive().
-std::vector<std::uint64_t> asked_steps(const RunRecord& stage, const Membership& ask, double first,
+std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
                                        double last);
 
 /// The longest interval [cycles] that gives every ask its checkpoints at whole cycles.
-std::uint64_t checkpoint_cadence(std::span<const Membership> asks);
+std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
 }  // namespace shearcell

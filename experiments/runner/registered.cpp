@@ -38,13 +38,13 @@ std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
   }
 }
 
-void PackingNames::add(const Membership& place, const nlohmann::json& resolved) {
+void PackingNames::add(const Ask& place, const nlohmann::json& resolved) {
   std::vector<nlohmann::json>& known = parameters_[{place.experiment, place.scale}];
   nlohmann::json parameters = effective_parameters(resolved);
   if (std::ranges::find(known, parameters) == known.end()) known.push_back(std::move(parameters));
 }
 
-std::string PackingNames::of(const Membership& place, const nlohmann::json& resolved) const {
+std::string PackingNames::of(const Ask& place, const nlohmann::json& resolved) const {
   const auto known = parameters_.find({place.experiment, place.scale});
   if (known == parameters_.end() || known->second.size() < 2) return "packing";
   const auto names = variant_names(known->second, {});
@@ -58,9 +58,9 @@ VariantNames::VariantNames(const Store& store) {
     if (auto known = parsed(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
   std::map<Group, std::vector<nlohmann::json>> variants;
-  for (const RunRecord& run : store.runs()) {
-    for (const Membership& m : run.memberships) {
-      if (run.kind == name_of(Stage::prepare)) {
+  for (const Stage& run : store.stages()) {
+    for (const Ask& m : run.asks) {
+      if (run.kind == name_of(StageKind::prepare)) {
         packings_.add(m, run.resolved);
       } else {
         variants[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
@@ -72,15 +72,15 @@ VariantNames::VariantNames(const Store& store) {
   }
 }
 
-std::string VariantNames::of(const Membership& m) const {
+std::string VariantNames::of(const Ask& m) const {
   const auto group = names_.find({m.experiment, m.manifest, m.scale});
   if (group == names_.end()) return m.variant;
   const auto name = group->second.find(m.swept);
   return name == group->second.end() ? m.variant : name->second;
 }
 
-std::string VariantNames::of(const RunRecord& run, const Membership& m) const {
-  return run.kind == name_of(Stage::prepare) ? packings_.of(m, run.resolved) : of(m);
+std::string VariantNames::of(const Stage& run, const Ask& m) const {
+  return run.kind == name_of(StageKind::prepare) ? packings_.of(m, run.resolved) : of(m);
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

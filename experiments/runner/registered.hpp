@@ -35,8 +35,8 @@ std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 class PackingNames {
  public:
   /// `resolved`: the parameters of the stage that settles it.
-  void add(const Membership& place, const nlohmann::json& resolved);
-  std::string of(const Membership& place, const nlohmann::json& resolved) const;
+  void add(const Ask& place, const nlohmann::json& resolved);
+  std::string of(const Ask& place, const nlohmann::json& resolved) const;
 
  private:
   using Group = std::pair<std::string, std::string>;         // experiment and scale
@@ -49,9 +49,9 @@ class VariantNames {
  public:
   VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
-  std::string of(const Membership& membership) const;  ///< if unknown, the variant itself
+  std::string of(const Ask& ask) const;  ///< if unknown, the variant itself
   /// The same; for a packing, its name by PackingNames.
-  std::string of(const RunRecord& run, const Membership& membership) const;
+  std::string of(const Stage& run, const Ask& ask) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale

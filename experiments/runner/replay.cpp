@@ -52,7 +52,7 @@ void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3X
 class Replaying {
  public:
   Replaying(Store& store, const CheckpointRecord& record)
-      : store_(store), plan_(plan_stage(store, store.run(record.run))) {
+      : store_(store), plan_(ready_stage(store, store.stage(record.run))) {
     replay_.record = record;
   }
 
@@ -146,7 +146,7 @@ class Replaying {
 
  private:
   Store& store_;
-  StagePlan plan_;
+  ReadyStage plan_;
   Replay replay_;
   std::uint64_t first_ = 0;
 };
@@ -164,14 +164,14 @@ nlohmann::json to_json(const Divergence& divergence) {
 
 std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     if (why_not_again(run)) continue;
     std::ranges::move(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found));
   }
   return found;
 }
 
-std::optional<std::string> why_not_again(const RunRecord& run) {
+std::optional<std::string> why_not_again(const Stage& run) {
   if (engine_of(run.resolved) == EngineKind::shearcell) return std::nullopt;
   return "LAMMPS made it, whose runs are not repeated bit for bit";
 }

@@ -39,7 +39,7 @@ struct Replay {
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
-std::optional<std::string> why_not_again(const RunRecord& run);
+std::optional<std::string> why_not_again(const Stage& run);
 
 /// `count` of them without repetition, or all; the same for the same seed.
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,

@@ -23,19 +23,19 @@
 namespace shearcell {
 namespace {
 
-Scene make_scene(const StageRecord& stage) {
+Scene make_scene(const StageInputs& stage) {
   switch (stage.stage) {
-    case Stage::shear:
+    case StageKind::shear:
       return shear_scene(stage.parameters);
-    case Stage::stiffen:
+    case StageKind::stiffen:
       return stiffen_scene(stage.parameters);
-    case Stage::prepare:
+    case StageKind::prepare:
       break;
   }
   return settle_scene(stage.parameters);
 }
 
-void require_memory(const StageRecord& stage) {
+void require_memory(const StageInputs& stage) {
   const double needed = run_bytes(geometry(stage.parameters));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
@@ -43,35 +43,34 @@ void require_memory(const StageRecord& stage) {
       stage.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-std::unique_ptr<Protocol> make_protocol(const StageRecord& stage, const RunRecord& run) {
+std::unique_ptr<Protocol> make_protocol(const StageInputs& stage, const Stage& run) {
   const Parameters& p = stage.parameters;
   const std::uint64_t cycles = run.target_cycles;
-  if (stage.stage == Stage::prepare) {
+  if (stage.stage == StageKind::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
                          p.settle_time_limit_s, p.max_overlap_diameters},
         settle_scene(p));
   }
-  if (stage.stage == Stage::stiffen) {
+  if (stage.stage == StageKind::stiffen) {
     StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, cycles,
-                                       cadences_of(run.memberships, drive(p)));
+  return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(run.asks, drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
 // manifest (campaign.cpp); for the other manifests it is `otherwise`.
-double overlap_limit(const Store& store, const RunRecord& run, double otherwise) {
-  double limit = run.memberships.empty() ? otherwise : 0;
-  for (const Membership& membership : run.memberships) {
+double overlap_limit(const Store& store, const Stage& run, double otherwise) {
+  double limit = run.asks.empty() ? otherwise : 0;
+  for (const Ask& ask : run.asks) {
     double stated = otherwise;
-    for (const Event& event : store.events("manifest/" + membership.manifest)) {
+    for (const Event& event : store.events("manifest/" + ask.manifest)) {
       try {
         const nlohmann::json info = event.body().at("info");
-        stated = info.value("max_overlap_diameters", nlohmann::json::object())
-                     .value(membership.scale, stated);
+        stated =
+            info.value("max_overlap_diameters", nlohmann::json::object()).value(ask.scale, stated);
       } catch (const nlohmann::json::exception& problem) {
         throw damaged_payload(event, problem);
       }
@@ -82,8 +81,8 @@ double overlap_limit(const Store& store, const RunRecord& run, double otherwise)
 }
 
 // Where the stage itself begins.
-Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage) {
-  const RunRecord& run = plan.run;
+Beginning begin_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage) {
+  const Stage& run = plan.run;
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.stage.parameters);
     Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
@@ -92,9 +91,9 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
-  const RunRecord ended = store.run(run.parent);
-  if (!parent || ended.state != RunState::completed || parent->record.step != ended.step) {
-    const bool recorded = ended.state == RunState::completed && !ended.state_hash.empty();
+  const Stage ended = store.stage(run.parent);
+  if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
+    const bool recorded = ended.state == StageState::completed && !ended.state_hash.empty();
     throw StoreDamaged(fmt::format(
         "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
         run.parent, run.id,
@@ -109,12 +108,12 @@ Beginning begin_stage(Store& store, const StagePlan& plan, std::vector<std::stri
 
 }  // namespace
 
-StagePlan plan_stage(const Store& store, RunRecord run) {
+ReadyStage ready_stage(const Store& store, Stage run) {
   if (stage_key(run.resolved) != run.id) {
     throw StoreDamaged("run " + run.id.substr(0, 12) +
                        ": its recorded parameters are not those that it is named after");
   }
-  StageRecord stage = read_stage(run.resolved);
+  StageInputs stage = read_stage(run.resolved);
   double& limit = stage.parameters.max_overlap_diameters;
   limit = overlap_limit(store, run, limit);
   require_memory(stage);
@@ -123,7 +122,7 @@ StagePlan plan_stage(const Store& store, RunRecord run) {
   return {std::move(run), std::move(stage), scene, std::move(protocol)};
 }
 
-Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
+Beginning continue_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step) {
   if (auto newest = store.newest_valid_checkpoint(plan.run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
@@ -132,7 +131,7 @@ Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::s
   return begin_stage(store, plan, damage);
 }
 
-Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads) {
+Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
   SimulationSettings settings;
   settings.threads = threads;
   settings.limits.overlap = plan.stage.parameters.max_overlap_diameters;
@@ -144,12 +143,12 @@ std::uint64_t chunk_steps(std::size_t grains) {
   return std::max<std::uint64_t>(1, 2'500'000 / std::max<std::size_t>(1, grains));
 }
 
-Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle) {
+Checkpoint make_checkpoint(const ReadyStage& plan, const Simulation& simulation, double cycle) {
   simulation.check_recordable();
   return make_checkpoint(plan, simulation.cell(), simulation.scene(), simulation.state(), cycle);
 }
 
-Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
+Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
   checkpoint.run = plan.run.id;
@@ -167,7 +166,7 @@ Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene&
                             {"contacts_per_grain", facts.contacts_per_grain},
                             {"wall_force_imbalance", facts.wall_imbalance},
                             {"cell_height_d", pose.top - pose.bottom}};
-  if (plan.stage.stage == Stage::stiffen) {
+  if (plan.stage.stage == StageKind::stiffen) {
     const Parameters& p = plan.stage.parameters;
     const double raised = scene.stiffness / plan.scene.stiffness;
     checkpoint.observables["stiffness_N_per_m"] = raised * p.stiffness_N_per_m;

@@ -23,16 +23,16 @@ struct Parallel {
 };
 
 /// The scene and the protocol of a stage.
-struct StagePlan {
-  RunRecord run;
-  StageRecord stage;
+struct ReadyStage {
+  Stage run;
+  StageInputs stage;
   Scene scene;
   std::unique_ptr<Protocol> protocol;
 };
 
 /// The watchdog's overlap limit is the largest that a manifest of the run states. Throws
 /// StoreDamaged when the recorded parameters do not give the run's id.
-StagePlan plan_stage(const Store& store, RunRecord run);
+ReadyStage ready_stage(const Store& store, Stage run);
 
 /// The state from which a stage is stepped on.
 struct Beginning {
@@ -47,21 +47,21 @@ struct Beginning {
 /// cannot be read or the parent is not completed, and Interrupted when a stop is requested during
 /// the filling.
 /// `damage` as in Store::newest_valid_checkpoint.
-Beginning continue_stage(Store& store, const StagePlan& plan, std::vector<std::string>* damage,
+Beginning continue_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
                          std::uint64_t before_step = UINT64_MAX);
 
 /// Takes ownership of the beginning's cell and state.
-Simulation make_simulation(const StagePlan& plan, Beginning&& beginning, std::size_t threads);
+Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads);
 
 /// Steps between two checks for signals and leases: about 50 ms of work.
 std::uint64_t chunk_steps(std::size_t grains);
 
 /// The checkpoint of the present state; it depends on the state alone. Throws NumericalFailure for
 /// an invalid state.
-Checkpoint make_checkpoint(const StagePlan& plan, const Simulation& simulation, double cycle);
+Checkpoint make_checkpoint(const ReadyStage& plan, const Simulation& simulation, double cycle);
 
 /// The same for a state that another engine computed; `scene` acts on it now.
-Checkpoint make_checkpoint(const StagePlan& plan, const Cell& cell, const Scene& scene,
+Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle);
 
 }  // namespace shearcell

@@ -20,8 +20,8 @@ namespace {
 // One attempt to compute a stage.
 class StageAttempt {
  public:
-  StageAttempt(Store& store, RunRecord run, const StageOptions& options)
-      : store_(store), options_(options), plan_(plan_stage(store, std::move(run))) {}
+  StageAttempt(Store& store, Stage run, const StageOptions& options)
+      : store_(store), options_(options), plan_(ready_stage(store, std::move(run))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;
@@ -47,7 +47,7 @@ class StageAttempt {
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel, lammps);
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
-      if (fresh && plan_.stage.stage != Stage::prepare) record(*engine, 0);
+      if (fresh && plan_.stage.stage != StageKind::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     });
@@ -61,7 +61,7 @@ class StageAttempt {
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
     // The stage is completed for all that were declared since.
-    if (ended.contains("memberships")) ended["memberships"] = plan_.run.memberships.size();
+    if (ended.contains("memberships")) ended["memberships"] = plan_.run.asks.size();
     start(beginning, host_facts(), true);
     return guarded([&] {
       const auto engine = make_engine(plan_, std::move(beginning), options_.parallel);
@@ -96,15 +96,15 @@ class StageAttempt {
     } catch (const Interrupted&) {
       return interrupted();
     } catch (const ProgramError& error) {
-      store_.fail_run(id(), error.what(), nlohmann::json::object());
+      store_.fail_stage(id(), error.what(), nlohmann::json::object());
       return StageOutcome::failed;
     } catch (const NumericalFailure& failure) {
-      store_.fail_run(id(), failure.what(),
-                      {{"quantity", failure.quantity},
-                       {"value", failure.value},
-                       {"limit", failure.limit},
-                       {"grain", failure.grain},
-                       {"step", failure.step}});
+      store_.fail_stage(id(), failure.what(),
+                        {{"quantity", failure.quantity},
+                         {"value", failure.value},
+                         {"limit", failure.limit},
+                         {"grain", failure.grain},
+                         {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
       release(failure);  // the disk, the memory or the store
@@ -115,7 +115,7 @@ class StageAttempt {
   void start(const Beginning& beginning, const nlohmann::json& facts, bool filling = false) {
     const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
     try {
-      store_.start_run(id(), facts, from, beginning.parent_checkpoint, filling);
+      store_.start_stage(id(), facts, from, beginning.parent_checkpoint, filling);
     } catch (const ConcurrencyConflict&) {
       throw;
     } catch (const std::exception& failure) {
@@ -127,7 +127,7 @@ class StageAttempt {
   // Lets other programs continue the run.
   void release(const std::exception& failure) {
     try {
-      store_.interrupt_run(id(), failure.what());
+      store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {  // for the same reason; then the run's lease expires
     }
   }
@@ -139,7 +139,7 @@ class StageAttempt {
       if (stop && !progress.checkpoint_due) progress = engine.halt();
       if (progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
-        complete({{"by", plan_.stage.stage == Stage::prepare ? "settled" : "cycles"}});
+        complete({{"by", plan_.stage.stage == StageKind::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
       // `until` is checked at whole cycles only.
@@ -152,23 +152,23 @@ class StageAttempt {
   }
 
   StageOutcome interrupted() {
-    store_.interrupt_run(id(), "stopped by a signal");
+    store_.interrupt_stage(id(), "stopped by a signal");
     return StageOutcome::interrupted;
   }
 
   // Completes the stage when what is recorded is all that the experiments ask for, those included
   // that declared it meanwhile.
   bool ends_early() {
-    const RunRecord now = store_.run(id());
-    if (seen_.empty() || std::ranges::none_of(now.memberships, has_until)) return false;
-    const nlohmann::json ended = decide(store_, now, now.memberships, seen_, {}).ended;
+    const Stage now = store_.stage(id());
+    if (seen_.empty() || std::ranges::none_of(now.asks, has_until)) return false;
+    const nlohmann::json ended = decide(store_, now, now.asks, seen_, {}).ended;
     recorded_.restart();  // measuring is not computing
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }
 
   void complete(const nlohmann::json& ended) {
-    store_.complete_run(id(), {{"ended", ended}}, plan_.run.target_cycles);
+    store_.complete_stage(id(), {{"ended", ended}}, plan_.run.target_cycles);
   }
 
   const std::string& id() const { return plan_.run.id; }
@@ -190,7 +190,7 @@ class StageAttempt {
     StageStatus status;
     status.cycle = cycle;
     status.target_cycles =
-        plan_.stage.stage != Stage::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
+        plan_.stage.stage != StageKind::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
     status.steps_per_second =
         static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
     status.grains = plan_.run.grains;
@@ -206,7 +206,7 @@ class StageAttempt {
 
   Store& store_;
   const StageOptions& options_;
-  StagePlan plan_;
+  ReadyStage plan_;
   std::vector<SeenCheckpoint> seen_;
   bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
@@ -214,7 +214,7 @@ class StageAttempt {
 };
 
 // If it is not, run_stage reports what is wrong with it.
-bool newest_is_sound(const Store& store, const RunRecord& run) {
+bool newest_is_sound(const Store& store, const Stage& run) {
   const auto recorded = store.checkpoints(run.id);
   return !recorded.empty() && store.load_if_readable(recorded.back());
 }
@@ -223,18 +223,18 @@ bool newest_is_sound(const Store& store, const RunRecord& run) {
 
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
   try {
-    RunRecord run = store.run(id);
+    Stage run = store.stage(id);
     bool computed = false;
-    if (run.state != RunState::completed || !newest_is_sound(store, run)) {
+    if (run.state != StageState::completed || !newest_is_sound(store, run)) {
       StageAttempt attempt(store, std::move(run), options);
       const StageOutcome outcome = attempt.run();
-      run = store.run(id);
-      if (outcome != StageOutcome::completed || run.state != RunState::completed) return outcome;
+      run = store.stage(id);
+      if (outcome != StageOutcome::completed || run.state != StageState::completed) return outcome;
       computed = attempt.computed();
     }
     // A denser cadence may have been asked for.
     const std::vector<std::uint64_t> missing =
-        outlook(run, run.memberships, seen_checkpoints(store, id)).missing;
+        outlook(run, run.asks, seen_checkpoints(store, id)).missing;
     if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
@@ -246,8 +246,8 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
   }
 }
 
-bool is_done(const Store& store, const RunRecord& stage) {
-  return outlook(stage, stage.memberships, seen_checkpoints(store, stage.id)).done &&
+bool is_done(const Store& store, const Stage& stage) {
+  return outlook(stage, stage.asks, seen_checkpoints(store, stage.id)).done &&
          newest_is_sound(store, stage);
 }
 

@@ -41,6 +41,6 @@ struct StageOptions {
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is done and its last state can be read.
-bool is_done(const Store& store, const RunRecord& stage);
+bool is_done(const Store& store, const Stage& stage);
 
 }  // namespace shearcell

@@ -47,17 +47,17 @@ std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
   const std::string manifest = store.register_manifest("bench: 1\n", "bench.yaml", {});
   std::vector<double> took;
   for (int r = 0; r < runs; ++r) {
-    RunRecord run = test::sample_run(r);
-    run.memberships[0].target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
-    run.memberships[0].manifest = manifest;
-    store.declare_run(run);
-    store.start_run(run.id, {{"host", "bench"}});
+    Stage run = test::sample_run(r);
+    run.asks[0].target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
+    run.asks[0].manifest = manifest;
+    store.declare_stage(run);
+    store.start_stage(run.id, {{"host", "bench"}});
     for (int c = 0; c < checkpoints; ++c) {
       const auto step = static_cast<std::uint64_t>(c) * test::kCycle;
       const Checkpoint checkpoint = test::sample_checkpoint(run.id, step);
       took.push_back(seconds([&] { store.record_checkpoint(run.id, checkpoint, {1, 1}); }));
     }
-    store.complete_run(run.id, {}, run.memberships[0].target_cycles);
+    store.complete_stage(run.id, {}, run.asks[0].target_cycles);
   }
   return took;
 }
@@ -101,7 +101,7 @@ void measure(const fs::path& folder, int runs, int checkpoints) {
 
   print_time("status: open, all runs, who holds them", slowest_of_three([&] {
                const Store store(folder, Access::read);
-               require(store.runs().size() == static_cast<std::size_t>(runs), "the runs");
+               require(store.stages().size() == static_cast<std::size_t>(runs), "the runs");
                require(store.leases().empty(), "no leases");
              }),
              "s", 0.5);

@@ -47,7 +47,7 @@ TEST_F(Submitted, TasksComputeTheirSharesAndTheirStoresMergeIntoTheWhole) {
   const Submission made = submit(shares());
   for (std::size_t task = 1; task <= 2; ++task) {
     Store own = store_of(made, task);
-    EXPECT_EQ(own.runs().size(), 3U) << "two runs and their packing, nothing else";
+    EXPECT_EQ(own.stages().size(), 3U) << "two runs and their packing, nothing else";
     EXPECT_EQ(resume(own).completed, 3U);
     EXPECT_TRUE(own.verify().ok());
   }
@@ -74,7 +74,7 @@ TEST_F(Submitted, ATaskContinuesFromTheStore) {
   }
   merge_tasks(store_, second);
   EXPECT_EQ(final_hashes(store_), computed_here(3));
-  for (const RunRecord& run : store_.runs()) {
+  for (const Stage& run : store_.stages()) {
     const auto records = store_.checkpoints(run.id);
     EXPECT_EQ(count_events(store_, "CheckpointRecorded", "run/" + run.id), records.size());
     if (run.kind == "prepare") {
@@ -109,8 +109,8 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 2U);
   merge_tasks(store_, made);
-  const RunRecord run = runs_of_kind(store_, "shear").front();
-  EXPECT_EQ(run.state, RunState::completed);
+  const Stage run = runs_of_kind(store_, "shear").front();
+  EXPECT_EQ(run.state, StageState::completed);
   EXPECT_EQ(run.cycle, 1);
   EXPECT_EQ(describe_end(end_of(run)), "phi >= 0.1 at cycle 0 and 1 more cycle");
   EXPECT_TRUE(shares_of({plan}, &store_).empty());
@@ -139,12 +139,12 @@ TEST_F(Submitted, RunsInTheQueueAreBusyWithTheirPackings) {
 }
 
 TEST_F(Submitted, RunsAtWorkHereAreBusyWithTheirPackings) {
-  const std::string run = shares().at(0).runs.at(0), packing = store_.run(run).parent;
+  const std::string run = shares().at(0).runs.at(0), packing = store_.stage(run).parent;
   EXPECT_TRUE(busy_runs(store_, {}).empty());
-  store_.start_run(run, nlohmann::json::object());
+  store_.start_stage(run, nlohmann::json::object());
   EXPECT_EQ(busy_runs(store_, {}), (std::set<std::string>{run, packing}));
-  store_.start_run(packing, nlohmann::json::object());
-  store_.complete_run(packing);
+  store_.start_stage(packing, nlohmann::json::object());
+  store_.complete_stage(packing);
   EXPECT_EQ(busy_runs(store_, {}), (std::set<std::string>{run})) << "others may start from it";
 }
 
@@ -243,13 +243,13 @@ TEST(TaskReport, IsReturnedAndValidated) {
   const TemporaryFolder folder;
   const fs::path task = folder.path() / "task-1";
   EXPECT_TRUE(read_task_report(task).empty());
-  RunRecord run;
+  Stage run;
   run.id = "abc";
-  run.state = RunState::interrupted;
+  run.state = StageState::interrupted;
   run.cycle = 1.5;
   write_task_report(task, {run});
   ASSERT_EQ(read_task_report(task).count("abc"), 1U);
-  EXPECT_EQ(read_task_report(task).at("abc").state, RunState::interrupted);
+  EXPECT_EQ(read_task_report(task).at("abc").state, StageState::interrupted);
   EXPECT_EQ(read_task_report(task).at("abc").cycle, 1.5);
   for (const char* text :
        {"", "{", "[]", "3", "{\"runs\":3}", "{\"runs\":[3]}", "{\"runs\":[{\"id\":1}]}",
@@ -326,7 +326,7 @@ TEST(Proposed, UsesTheRateOfEachStagesEngine) {
     return made.seconds(made.shares.at(0));
   };
   const auto shear = [](EngineKind engine) {
-    RunRecord stage;
+    Stage stage;
     stage.resolved = {{"parameters", {{"engine", name_of(engine)}}}};
     stage.grains = kGrains;
     return 2.0 * kStepsPerCycle * kGrains / Rates({}).of(stage).particle_steps_per_second;

@@ -156,7 +156,7 @@ TEST_F(EngineRun, IsNotResumedWithoutLammps) {
   }
   expect(1, {"resume", "-q", "--mpi", "2"}, {"Debian package lammps"});  // no run failed
   const Store store(path("shearcell-store"), Access::read);
-  EXPECT_EQ(sheared(store).state, RunState::declared);
+  EXPECT_EQ(sheared(store).state, StageState::declared);
 }
 
 TEST_F(EngineRun, ReportsTheErrorOfLammps) {

@@ -30,7 +30,7 @@ TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
     EXPECT_TRUE(seen.contains(job.parent)) << job.name;
     EXPECT_TRUE(seen.insert(job.id).second) << job.name;
   }
-  EXPECT_EQ(store_.runs().size(), 6U);
+  EXPECT_EQ(store_.stages().size(), 6U);
   EXPECT_EQ(stages_to_resume(store_, {}).size(), 6U);
 
   const Head head = store_.head();
@@ -59,8 +59,8 @@ TEST_F(CampaignTest, NamesPackingsByKeysThatAllHaveFirst) {
                                  "moving_wall]}}\n"));
   const VariantNames names(store_);
   std::set<std::string> found;
-  for (const RunRecord& packing : runs_of_kind(store_, "prepare")) {
-    found.insert(names.of(packing, packing.memberships.front()));
+  for (const Stage& packing : runs_of_kind(store_, "prepare")) {
+    found.insert(names.of(packing, packing.asks.front()));
   }
   EXPECT_EQ(found, (std::set<std::string>{"packing g=0 m/s^2",
                                           "packing g=9.81 m/s^2, pressure_at=moving_wall",
@@ -78,15 +78,15 @@ TEST_F(CampaignTest, ComputesEachPackingOnceForBothFluids) {
   ASSERT_EQ(sheared.size(), 2U);
   EXPECT_EQ(packings[0].attempts, 1U);
   EXPECT_EQ(packings[0].particle_steps, static_cast<double>(kGrains * packings[0].step));
-  for (const RunRecord& run : sheared) {
+  for (const Stage& run : sheared) {
     EXPECT_EQ(run.parent, packings[0].id);
-    EXPECT_EQ(run.state, RunState::completed);
+    EXPECT_EQ(run.state, StageState::completed);
     EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
     EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * 2 * kStepsPerCycle));
   }
   // Cycle 0 is the same packing for both; afterwards they differ.
   const Checkpoint settled = store_.load_checkpoint(store_.checkpoints(packings[0].id).back());
-  for (const RunRecord& run : sheared) {
+  for (const Stage& run : sheared) {
     const Checkpoint first = store_.load_checkpoint(store_.checkpoints(run.id).front());
     EXPECT_EQ(first.state.position, settled.state.position);
     EXPECT_EQ(first.state.velocity, settled.state.velocity);
@@ -122,7 +122,7 @@ TEST_F(CampaignTest, ExtendsARunWithoutRepeatingAStep) {
   const CampaignResult result = compute(store_, tiny_manifest(), {.cycles = 3});
   EXPECT_EQ(result.completed, 1U);
   EXPECT_EQ(result.already, 1U);
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   EXPECT_EQ(run.cycle, 3);
   EXPECT_EQ(run.attempts, 2U);
   EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
@@ -144,8 +144,8 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   EXPECT_EQ(jobs[1].id, wanted.id);
   Progress progress(jobs.size(), true);
   EXPECT_EQ(run_campaign(store_, jobs, 1, progress).completed, 2U);
-  EXPECT_EQ(store_.run(wanted.id).state, RunState::completed);
-  EXPECT_EQ(store_.run(all[1].id).state, RunState::declared);
+  EXPECT_EQ(store_.stage(wanted.id).state, StageState::completed);
+  EXPECT_EQ(store_.stage(all[1].id).state, StageState::declared);
 
   EXPECT_THROW(stages_to_resume(store_, {"no digest"}), NotFound);
   EXPECT_THROW(stages_to_resume(store_, {""}), NotFound) << "an empty prefix fits every run";
@@ -153,10 +153,10 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
 
 TEST_F(CampaignTest, ARecordThatCannotBeReadStopsOnlyItsRun) {
   declared(store_, tiny_manifest());
-  RunRecord run = sheared(store_);
+  Stage run = sheared(store_);
   run.resolved["parameters"]["of_a_newer_version"] = 1;
   run.id = stage_key(run.resolved);
-  store_.declare_run(run);
+  store_.declare_stage(run);
   const CampaignResult result = resume(store_);
   EXPECT_EQ(result.completed, 2U);
   EXPECT_EQ(result.blocked, 1U);
@@ -165,8 +165,8 @@ TEST_F(CampaignTest, ARecordThatCannotBeReadStopsOnlyItsRun) {
 
 TEST_F(CampaignTest, ZeroCyclesGiveThePackingAlone) {
   compute(store_, tiny_manifest(), {.cycles = 0});
-  const RunRecord run = sheared(store_);
-  EXPECT_EQ(run.state, RunState::completed);
+  const Stage run = sheared(store_);
+  EXPECT_EQ(run.state, StageState::completed);
   EXPECT_EQ(cycles_of(store_, run.id), std::vector<double>{0});
   EXPECT_EQ(run.particle_steps, 0);
 }
@@ -178,7 +178,7 @@ TEST_F(CampaignTest, ARunInTwoExperimentsRunsOnce) {
   EXPECT_EQ(result.already, 2U);
   EXPECT_EQ(result.completed, 1U);
   std::size_t shared = 0;
-  for (const RunRecord& run : store_.runs()) shared += run.memberships.size() == 2 ? 1 : 0;
+  for (const Stage& run : store_.stages()) shared += run.asks.size() == 2 ? 1 : 0;
   EXPECT_EQ(shared, 2U);
 }
 
@@ -188,11 +188,11 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   compute(store_, text + "checkpoints: {every_cycles: 3}\n");
   const std::string run = sheared(store_).id;
   EXPECT_EQ(cycles_of(store_, run), (std::vector<double>{0, 3, 6}));
-  const RunRecord before = store_.run(run);
+  const Stage before = store_.stage(run);
   EXPECT_EQ(compute(store_, text).completed, 1U);
   EXPECT_EQ(cycles_of(store_, run), (std::vector<double>{0, 1, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(store_.run(run).state, RunState::completed);
-  EXPECT_EQ(store_.run(run).state_hash, before.state_hash);
+  EXPECT_EQ(store_.stage(run).state, StageState::completed);
+  EXPECT_EQ(store_.stage(run).state_hash, before.state_hash);
   EXPECT_EQ(compute(store_, text).completed, 0U) << "nothing is left to do";
   EXPECT_TRUE(store_.verify().ok());
 
@@ -206,7 +206,7 @@ TEST_F(CampaignTest, ADenserCadenceAddsTheCheckpointsInBetween) {
   Store both(folder_.path() / "both", Access::create);
   declared(both, text + "checkpoints: {every_cycles: 2}\n");
   compute(both, "# three\n" + text + "checkpoints: {every_cycles: 3}\n");
-  EXPECT_TRUE(look_at(both, both.run(run)).missing.empty());
+  EXPECT_TRUE(look_at(both, both.stage(run)).missing.empty());
 }
 
 // An experiment whose last cycle is not a multiple of its cadence has a checkpoint there, whichever
@@ -250,11 +250,11 @@ TEST_F(CampaignTest, MergedFromThreeMachinesIsCompleteAndContinues) {
   EXPECT_EQ(reports[1].checkpoints, 0U) << "the second one computed what the first had";
   const Store whole(store_at("whole"), Access::read);
   EXPECT_EQ(final_hashes(merged), final_hashes(whole));
-  for (const RunRecord& run : whole.runs()) {
-    const RunRecord other = merged.run(run.id);
+  for (const Stage& run : whole.stages()) {
+    const Stage other = merged.stage(run.id);
     EXPECT_EQ(other.state, run.state);
     EXPECT_EQ(other.attempts, run.attempts);
-    EXPECT_EQ(other.memberships.size(), run.memberships.size());
+    EXPECT_EQ(other.asks.size(), run.asks.size());
     EXPECT_EQ(other.particle_steps, run.particle_steps) << "an effort was counted twice";
     EXPECT_EQ(cycles_of(merged, run.id), cycles_of(whole, run.id));
   }

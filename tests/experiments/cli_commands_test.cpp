@@ -114,15 +114,15 @@ TEST_F(Commands, MergeRejectsConflicts) {
     Store store(path("odd"), Access::create);
     const Store other(path("b"), Access::read);
     store.merge({path("a")});
-    const RunRecord sheared = runs_of_kind(store, "shear").at(0);
+    const Stage sheared = runs_of_kind(store, "shear").at(0);
     Checkpoint wrong = other.load_checkpoint(other.checkpoints(sheared.id).at(2));
     wrong.state.position(0, 0) += 1e-9;
-    RunRecord longer = declaration_of(sheared);
-    longer.memberships[0].target_cycles = 2;
-    store.declare_run(longer);
-    store.start_run(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
+    Stage longer = declaration_of(sheared);
+    longer.asks[0].target_cycles = 2;
+    store.declare_stage(longer);
+    store.start_stage(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
     store.record_checkpoint(sheared.id, wrong);
-    store.interrupt_run(sheared.id, "a test");
+    store.interrupt_stage(sheared.id, "a test");
   }
   expect(4, {"merge", "odd", "--store", "all"}, {"Nothing was merged"});
   EXPECT_EQ(hashes("all"), whole);
@@ -245,7 +245,7 @@ class SharedStore : public Commands {
   void expect_each_run_once(const std::map<std::string, std::string>& expected) {
     EXPECT_EQ(hashes(), expected);
     const Store store(path("shearcell-store"), Access::read);
-    for (const RunRecord& run : store.runs()) {
+    for (const Stage& run : store.stages()) {
       EXPECT_EQ(run.attempts, 1U) << run.id << " was done twice";
       EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step));
     }
@@ -314,8 +314,8 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
   campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});
   const auto expected = hashes();
   std::string victim;
-  for (const RunRecord& run : Store(path("shearcell-store"), Access::read).runs()) {
-    if (run.kind == "shear" && run.memberships.front().seed == 1) victim = run.id;
+  for (const Stage& run : Store(path("shearcell-store"), Access::read).stages()) {
+    if (run.kind == "shear" && run.asks.front().seed == 1) victim = run.id;
   }
   const std::string file = newest_file(victim);
   truncate_file(path(file));

@@ -96,7 +96,7 @@ TEST_F(Prune, DeletesOnlyWhatIsSelected) {
   EXPECT_EQ(cells.at("checkpoints").size(), 2U * 5U) << "of two runs all but the last";
   const Store store(path("shearcell-store"), Access::read);
   for (const auto& one : cells.at("checkpoints")) {
-    EXPECT_EQ(store.run(one.at("run")).memberships.front().variant, "fluid=cell");
+    EXPECT_EQ(store.stage(one.at("run")).asks.front().variant, "fluid=cell");
   }
 }
 
@@ -138,9 +138,9 @@ TEST_F(Prune, KeepsAStateThatCannotBeAnalysed) {
     together.state.position.col(1) = together.state.position.col(0);
     together.state.step += kStepsPerCycle / 2;
     together.cycle += 0.5;
-    store.start_run(run, {}, records[1].sha256, "", true);
+    store.start_stage(run, {}, records[1].sha256, "", true);
     file = store.record_checkpoint(run, together).file;
-    store.complete_run(run);
+    store.complete_stage(run);
   }
   expect(4, {"prune", run, "--yes"}, {"not measured: ", "kept: the file"});
   EXPECT_TRUE(fs::exists(path("shearcell-store/" + file)));

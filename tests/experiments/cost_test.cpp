@@ -26,8 +26,8 @@ PlannedRun only_run(const std::string& text) {
 }
 
 /// What is left of a stage of the run that nobody computed, or up to this cycle.
-Outlook left_of(const PlannedRun& run, const RunRecord& planned, double cycle = -1) {
-  RunRecord stage = planned;
+Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) {
+  Stage stage = planned;
   std::vector<SeenCheckpoint> seen;
   if (cycle >= 0) {
     stage.cycle = cycle;
@@ -37,7 +37,7 @@ Outlook left_of(const PlannedRun& run, const RunRecord& planned, double cycle = 
       seen.emplace_back().record.step = step;
     }
   }
-  return outlook(stage, run.memberships, seen);
+  return outlook(stage, run.asks, seen);
 }
 
 double bytes_of(const Store& store, const std::string& run) {
@@ -117,7 +117,7 @@ void expect_bounded(const std::string& text) {
       for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
       }
-      for (const RunRecord* stage : {&run.prepare, &run.last}) {
+      for (const Stage* stage : {&run.prepare, &run.last}) {
         const Outlook cost = left_of(run, *stage);
         EXPECT_TRUE(cost.particle_steps >= 0 && cost.particle_steps < 1e25) << cost.particle_steps;
         EXPECT_TRUE(cost.bytes >= 0 && cost.bytes < 1e20) << cost.bytes;
@@ -168,10 +168,10 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
     compute(store_, text);
     const PlannedRun run = only_run(text);
-    for (const RunRecord* stage : {&run.prepare, &run.last}) {
+    for (const Stage* stage : {&run.prepare, &run.last}) {
       const Outlook expected = left_of(run, *stage);
       const double bytes = bytes_of(store_, stage->id);
-      const double steps = store_.run(stage->id).particle_steps;
+      const double steps = store_.stage(stage->id).particle_steps;
       std::printf("%s %s: %.4g bytes, expected %.4g; %.4g particle-steps, expected %.4g\n", texture,
                   stage->kind.c_str(), bytes, expected.bytes, steps, expected.particle_steps);
       EXPECT_NEAR(expected.bytes / bytes, 1, 0.3);
@@ -185,7 +185,7 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
       tiny_manifest("  drag_kg_per_s: 1.28e-4\n  settle_time_step_s: 4.4e-5\n");
   compute(store_, text);
   const PlannedRun run = only_run(text);
-  const double steps = store_.run(run.prepare.id).particle_steps;
+  const double steps = store_.stage(run.prepare.id).particle_steps;
   const double expected = left_of(run, run.prepare).particle_steps;
   std::printf("%.4g particle-steps, expected %.4g\n", steps, expected);
   EXPECT_NEAR(expected / steps, 1, 0.3);
@@ -197,18 +197,18 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
 }
 
 TEST(Cost, UsesTheRateMeasuredInTheStore) {
-  RunRecord run;
+  Stage run;
   run.particle_steps = 3e8;
   run.wall_seconds = 10;
-  RunRecord other = run;
+  Stage other = run;
   other.particle_steps = 1e8;
   const Rate rate = Rates({run, other}).of(run);
   EXPECT_TRUE(rate.measured);
   EXPECT_EQ(rate.particle_steps_per_second, 2e7);
 }
 
-RunRecord stage_of(EngineKind engine, double grains) {
-  RunRecord stage;
+Stage stage_of(EngineKind engine, double grains) {
+  Stage stage;
   stage.resolved = {{"parameters", {{"engine", name_of(engine)}}}};
   stage.grains = static_cast<std::uint64_t>(grains);
   return stage;

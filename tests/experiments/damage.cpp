@@ -151,7 +151,7 @@ Damage states(const std::function<void(Checkpoint&)>& change) {
     {
       const Store known(store, Access::read);
       ObjectStore objects(store);
-      for (const RunRecord& run : known.runs()) {
+      for (const Stage& run : known.stages()) {
         for (const CheckpointRecord& record : known.checkpoints(run.id)) {
           Checkpoint checkpoint = known.load_checkpoint(record);
           change(checkpoint);

@@ -29,7 +29,7 @@ class DrawFigure : public DrawingTest {
  protected:
   double particle_steps() const {
     double sum = 0;
-    for (const RunRecord& run : store_.runs()) sum += run.particle_steps;
+    for (const Stage& run : store_.stages()) sum += run.particle_steps;
     return sum;
   }
 };
@@ -39,7 +39,7 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
   compute(store_, text);  // 2 cycles
   draw("before");
   compute(store_, renamed(tiny_manifest("  cycles: 4\n", kBothFluids + "seeds: 2\n"), "other"));
-  EXPECT_EQ(store_.runs().back().cycle, 4);
+  EXPECT_EQ(store_.stages().back().cycle, 4);
   draw("after");
   EXPECT_EQ(contents("after"), contents("before"));
 
@@ -56,8 +56,8 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
 std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRuns& collected) {
   std::set<std::pair<std::string, std::uint64_t>> found;
   for (const CollectedRun& run : collected.runs) {
-    EXPECT_TRUE(found.emplace(run.membership.variant, run.membership.seed).second)
-        << run.membership.variant << " seed " << run.membership.seed;
+    EXPECT_TRUE(found.emplace(run.ask.variant, run.ask.seed).second)
+        << run.ask.variant << " seed " << run.ask.seed;
   }
   return found;
 }
@@ -89,8 +89,8 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1, .variants = {"fluid=still"}});
   compute(store_, text, {.cycles = 1});
   std::string order;
-  for (const auto& [run, membership] : newest_runs(select_runs(store_, {})).runs)
-    order += membership.variant + std::to_string(membership.seed) + " ";
+  for (const auto& [run, ask] : newest_runs(select_runs(store_, {})).runs)
+    order += ask.variant + std::to_string(ask.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
 
@@ -116,9 +116,9 @@ TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
 // Another version of the program may resolve one manifest to other runs.
 TEST_F(DrawFigure, ASeedCountsOncePerVariant) {
   compute(store_, tiny_manifest("", kBothFluids));
-  RunRecord again = declaration_of(sheared(store_));
+  Stage again = declaration_of(sheared(store_));
   again.id = std::string(64, 'a');
-  store_.declare_run(again);
+  store_.declare_stage(again);
   const CollectedRuns collected = collect_runs(store_, kS2, {});
   EXPECT_EQ(distinct_runs(collected).size(), 1U);
   ASSERT_EQ(collected.notes.size(), 2U);
@@ -202,14 +202,14 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));
   EXPECT_TRUE(collect_runs(store_, kS2, {}).notes.empty()) << "made in the second run";
-  const RunRecord ours = sheared(store_);
-  RunRecord other = declaration_of(ours);
+  const Stage ours = sheared(store_);
+  Stage other = declaration_of(ours);
   other.id = std::string(64, 'b');
   other.resolved["parameters"]["engine"] = "lammps";
-  other.memberships = {ours.memberships.back()};
-  other.memberships[0].variant = "engine=lammps";
-  store_.declare_run(other);
-  store_.start_run(other.id, {});
+  other.asks = {ours.asks.back()};
+  other.asks[0].variant = "engine=lammps";
+  store_.declare_stage(other);
+  store_.start_stage(other.id, {});
   for (const CheckpointRecord& record : store_.checkpoints(ours.id)) {
     if (record.cycle == 1) continue;
     Checkpoint checkpoint = store_.load_checkpoint(record);
@@ -225,7 +225,7 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
 
 TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
   compute(store_, tiny_manifest("", "sweep: {grid: {protocol: [continuous, paused]}}\n"));
-  for (const RunRecord& run : store_.runs()) {
+  for (const Stage& run : store_.stages()) {
     if (run.kind == "prepare") continue;
     const std::vector<CheckpointRecord> records = store_.checkpoints(run.id);
     const auto at_rest = [&](std::size_t workers) {
@@ -425,7 +425,7 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
 
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   compute(store_, tiny_manifest("", kBothFluids));
-  const RunRecord run = runs_of_kind(store_, "shear").back();
+  const Stage run = runs_of_kind(store_, "shear").back();
   const CheckpointRecord record = store_.checkpoints(run.id).at(1);
   truncate_file(store_.folder() / record.file);
   const FigureSummary figure = draw("figures");

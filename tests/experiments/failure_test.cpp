@@ -35,18 +35,18 @@ TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
   std::printf("%s\n", result.messages[0].c_str());
   EXPECT_TRUE(has(result.messages[0], "settle_time_limit_s"));
 
-  for (const RunRecord& run : store_.runs()) {
+  for (const Stage& run : store_.stages()) {
     const bool sound = run.resolved.at("parameters").at("settle_time_limit_s") == 60;
     if (sound) {
-      EXPECT_EQ(run.state, RunState::completed);
+      EXPECT_EQ(run.state, StageState::completed);
       continue;
     }
     if (run.kind == "shear") {
-      EXPECT_EQ(run.state, RunState::declared) << "its packing failed, and yet it was begun";
+      EXPECT_EQ(run.state, StageState::declared) << "its packing failed, and yet it was begun";
       EXPECT_EQ(run.attempts, 0U);
       continue;
     }
-    EXPECT_EQ(run.state, RunState::failed);
+    EXPECT_EQ(run.state, StageState::failed);
     EXPECT_TRUE(has(run.error, "settle"));
     const Event last = store_.events("run/" + run.id).back();
     ASSERT_EQ(last.type, "RunFailed");
@@ -55,7 +55,7 @@ TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
     EXPECT_GE(numbers.at("value").get<double>(), 0.1);
     EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
   }
-  EXPECT_EQ(waiting_for_failed(store_.runs()).size(), 2U) << "the two shears cannot start";
+  EXPECT_EQ(waiting_for_failed(store_.stages()).size(), 2U) << "the two shears cannot start";
   // A second attempt fails in the same way.
   EXPECT_EQ(resume(store_).failed, 1U);
 }
@@ -63,10 +63,10 @@ TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
 TEST_F(Failure, AtTheOverlapLimitIsResolvedByALargerLimit) {
   const CampaignResult low = compute(store_, tiny_manifest("  max_overlap_diameters: 0.001\n"));
   EXPECT_EQ(low.failed, 1U);
-  const std::size_t runs = store_.runs().size();
+  const std::size_t runs = store_.stages().size();
   const CampaignResult usual = compute(store_, tiny_manifest(""));
   EXPECT_EQ(usual.failed, 0U);
-  EXPECT_EQ(store_.runs().size(), runs) << "the same runs";
+  EXPECT_EQ(store_.stages().size(), runs) << "the same runs";
 }
 
 TEST_F(Failure, UnderShearKeepsTheLastGoodCheckpoint) {
@@ -81,9 +81,9 @@ TEST_F(Failure, UnderShearKeepsTheLastGoodCheckpoint) {
   for (const std::string& message : result.messages) std::printf("%s\n", message.c_str());
   EXPECT_EQ(result.completed, 2U);
   ASSERT_EQ(result.failed, 1U);
-  for (const RunRecord& run : runs_of_kind(store_, "shear")) {
-    if (run.state == RunState::completed) continue;
-    ASSERT_EQ(run.state, RunState::failed);
+  for (const Stage& run : runs_of_kind(store_, "shear")) {
+    if (run.state == StageState::completed) continue;
+    ASSERT_EQ(run.state, StageState::failed);
     const auto kept = store_.checkpoints(run.id);
     ASSERT_FALSE(kept.empty());
     for (const CheckpointRecord& record : kept) {
@@ -108,13 +108,13 @@ TEST_F(Failure, IsDetectedInAShortRun) {
                                                               "  amplitude_rad: 0.5\n"
                                                               "  cycles: 1\n"));
   EXPECT_EQ(result.failed, 1U);
-  EXPECT_EQ(sheared(store_).state, RunState::failed);
+  EXPECT_EQ(sheared(store_).state, StageState::failed);
 }
 
 TEST_F(Failure, OfTheNewestCheckpointIsRepairedFromThePreviousOne) {
   compute(store_, tiny_manifest("", kBothFluids));
   const auto expected = final_hashes(store_);
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const CheckpointRecord newest = store_.checkpoints(run.id).back();
   truncate_file(file_of(newest));
   EXPECT_FALSE(store_.verify().ok());
@@ -130,12 +130,12 @@ TEST_F(Failure, OfTheNewestCheckpointIsRepairedFromThePreviousOne) {
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2}));
   EXPECT_TRUE(store_.verify().ok());
   // One cycle was computed twice.
-  EXPECT_EQ(store_.run(run.id).particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
+  EXPECT_EQ(store_.stage(run.id).particle_steps, static_cast<double>(kGrains * 3 * kStepsPerCycle));
 }
 
 TEST_F(Failure, OfTheLastStateLeavesWork) {
   compute(store_, tiny_manifest());
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const auto records = store_.checkpoints(run.id);
   ASSERT_EQ(records.size(), 3U);
   EXPECT_TRUE(is_done(store_, run));
@@ -144,15 +144,15 @@ TEST_F(Failure, OfTheLastStateLeavesWork) {
   truncate_file(file_of(records[2]));
   EXPECT_FALSE(is_done(store_, run));
 
-  RunRecord begun = run;
-  begun.state = RunState::interrupted;
+  Stage begun = run;
+  begun.state = StageState::interrupted;
   EXPECT_FALSE(is_done(store_, begun));
 }
 
 // Half done, so the run is not completed: the damage must be named all the same.
 TEST_F(Failure, OfTheNewestCheckpointOfAnUnfinishedRunIsNamed) {
   compute(store_, tiny_manifest());
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const CheckpointRecord newest = store_.checkpoints(run.id).back();
   truncate_file(file_of(newest));
   const CampaignResult result = compute(store_, tiny_manifest(), {.cycles = 3});
@@ -166,7 +166,7 @@ TEST_F(Failure, OfTheNewestCheckpointOfAnUnfinishedRunIsNamed) {
 TEST_F(Failure, OfEveryCheckpointRestartsFromThePacking) {
   compute(store_, tiny_manifest());
   const auto expected = final_hashes(store_);
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   for (const CheckpointRecord& record : store_.checkpoints(run.id)) truncate_file(file_of(record));
   EXPECT_EQ(compute(store_, tiny_manifest()).completed, 1U);
   EXPECT_EQ(final_hashes(store_), expected);
@@ -199,7 +199,7 @@ TEST_F(Failure, OfThePackingFileIsDetectedByResume) {
   EXPECT_GE(first.damaged, 1U);
   ASSERT_FALSE(first.messages.empty());
   resume(store_);
-  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+  for (const Stage& run : store_.stages()) EXPECT_EQ(run.state, StageState::completed);
 }
 
 // A packing that was sound when the campaign looked at it.
@@ -211,7 +211,7 @@ TEST_F(Failure, OfThePackingFileDoesNotStartARunFromAnUnsettledState) {
   truncate_file(file_of(settling.back()));
   EXPECT_THROW(run_stage(store_, jobs[1].id, {}), StoreDamaged);
   EXPECT_THROW(run_stage(store_, jobs[1].id, {}), StoreDamaged) << "the damage is known now";
-  EXPECT_EQ(store_.run(jobs[1].id).attempts, 0U);
+  EXPECT_EQ(store_.stage(jobs[1].id).attempts, 0U);
   EXPECT_EQ(resume(store_).completed, 2U);
   EXPECT_TRUE(store_.verify().ok());
   EXPECT_TRUE(check_runs(store_).empty());
@@ -222,8 +222,8 @@ TEST_F(Failure, OfARunThatStartedFromAnUnsettledStateIsNamed) {
   const std::vector<StageJob> jobs = declared(store_, tiny_manifest());
   interrupt_to_the_end(store_, jobs[0].id);
   const CheckpointRecord unsettled = store_.checkpoints(jobs[0].id).front();
-  store_.start_run(jobs[1].id, {}, std::nullopt, unsettled.sha256);
-  store_.interrupt_run(jobs[1].id, "a test");
+  store_.start_stage(jobs[1].id, {}, std::nullopt, unsettled.sha256);
+  store_.interrupt_stage(jobs[1].id, "a test");
   const std::vector<Finding> findings = check_runs(store_);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_EQ(findings[0].severity, Finding::Severity::error);

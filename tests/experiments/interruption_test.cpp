@@ -22,12 +22,12 @@ using Interruption = StoreTest;
 TEST_F(Interruption, AfterEachChunkChangesNothing) {
   for (const StageJob& job : declared(store_, tiny_manifest())) {
     const std::size_t interrupted = interrupt_to_the_end(
-        store_, job.id, [&] { EXPECT_EQ(store_.run(job.id).state, RunState::interrupted); });
-    const RunRecord run = store_.run(job.id);
+        store_, job.id, [&] { EXPECT_EQ(store_.stage(job.id).state, StageState::interrupted); });
+    const Stage run = store_.stage(job.id);
     std::printf("%s: interrupted %zu times\n", job.name.c_str(), interrupted);
     EXPECT_GE(interrupted, 3U);
     EXPECT_EQ(run.attempts, interrupted + 1);
-    EXPECT_EQ(run.state, RunState::completed);
+    EXPECT_EQ(run.state, StageState::completed);
     EXPECT_EQ(run.particle_steps, static_cast<double>(kGrains * run.step)) << "a step was repeated";
     EXPECT_EQ(count_events(store_, "RunInterrupted", "run/" + job.id), interrupted);
     EXPECT_EQ(count_events(store_, "RunResumed", "run/" + job.id), interrupted);
@@ -60,13 +60,13 @@ TEST_F(Interruption, ByAnotherProgramIsPreventedBetweenDistantCheckpoints) {
   int refused = 0, taken = 0;
   std::thread other([&] {
     while (!done) {
-      for (const RunRecord& run : runs_of_kind(store_, "shear")) {
-        if (run.state != RunState::running) continue;
+      for (const Stage& run : runs_of_kind(store_, "shear")) {
+        if (run.state != StageState::running) continue;
         try {
-          store_.start_run(run.id, {},
-                           store_.checkpoints(run.id).empty()
-                               ? std::nullopt
-                               : std::optional(store_.checkpoints(run.id).back().sha256));
+          store_.start_stage(run.id, {},
+                             store_.checkpoints(run.id).empty()
+                                 ? std::nullopt
+                                 : std::optional(store_.checkpoints(run.id).back().sha256));
           ++taken;
         } catch (const RunHeld&) {
           ++refused;
@@ -93,7 +93,7 @@ TEST_F(Interruption, KeepsTheCadenceOfItsCheckpoints) {
   ASSERT_EQ(jobs.size(), 2U);
   run_stage(store_, jobs[0].id, {});
   ASSERT_EQ(run_one_chunk(store_, jobs[1].id), StageOutcome::interrupted);
-  const double stopped_at = store_.run(jobs[1].id).cycle;
+  const double stopped_at = store_.stage(jobs[1].id).cycle;
   std::printf("stopped at cycle %g\n", stopped_at);
   ASSERT_GT(stopped_at, 0);
   ASSERT_LT(stopped_at, 1);

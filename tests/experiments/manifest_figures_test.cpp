@@ -88,21 +88,21 @@ TEST(FigureWarnings, TakeTheLengthThatTheStoreHas) {
   const std::string text =
       "experiment: a\nbase: {cycles: 3}\n" + kThreeSeeds + claim("compare: phi, at_cycle: 3");
   const Manifest manifest = parse_manifest(text, "test.yaml");
-  const auto warned = [&](const std::vector<RunRecord>& known) {
+  const auto warned = [&](const std::vector<Stage>& known) {
     return expand(manifest, {.cycles = 2, .known = known}).warnings.size();
   };
   EXPECT_EQ(warned({}), 1U);
-  std::vector<RunRecord> known;
+  std::vector<Stage> known;
   for (const char* variant : {"fluid=still", "fluid=cell"}) {
-    known.emplace_back().memberships = {{.experiment = "a",
-                                         .scale = "",
-                                         .variant = variant,
-                                         .seed = 1,
-                                         .manifest = sha256_hex(text),
-                                         .target_cycles = 5}};
+    known.emplace_back().asks = {{.experiment = "a",
+                                  .scale = "",
+                                  .variant = variant,
+                                  .seed = 1,
+                                  .manifest = sha256_hex(text),
+                                  .target_cycles = 5}};
   }
   EXPECT_EQ(warned(known), 0U);
-  known[0].memberships[0].manifest = sha256_hex("another text");
+  known[0].asks[0].manifest = sha256_hex("another text");
   EXPECT_EQ(warned(known), 1U) << "figures take what their own manifest asks for";
 }
 

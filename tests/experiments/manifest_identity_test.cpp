@@ -29,7 +29,7 @@ void expect_refused_with(json record, const char* key, std::initializer_list<jso
 
 TEST(Identity, DependsOnSeedAndParent) {
   EXPECT_NE(prepare_stage({}, 1).id, prepare_stage({}, 2).id);
-  RunRecord parent = prepare_stage({}, 1);
+  Stage parent = prepare_stage({}, 1);
   const std::string key = last_stage({}, 1, parent).id;
   EXPECT_NE(last_stage({}, 2, parent).id, key);
   parent.id[0] = parent.id[0] == '0' ? '1' : '0';
@@ -37,7 +37,7 @@ TEST(Identity, DependsOnSeedAndParent) {
 }
 
 TEST(Identity, DamagedRecordsAreRejectedByName) {
-  const RunRecord prepare = prepare_stage(oldest(), 1);
+  const Stage prepare = prepare_stage(oldest(), 1);
   const json good = last_stage(oldest(), 1, prepare).resolved;
   const auto message = [](const json& record) {
     return message_of<std::runtime_error>([&] { read_stage(record); });
@@ -73,7 +73,7 @@ TEST(Identity, DamagedRecordsAreRejectedByName) {
 // Pinned, so that no change of code renames the runs of existing stores unnoticed.
 TEST(Identity, KeysNeverChange) {
   const Parameters parameters = oldest();
-  const RunRecord prepare = prepare_stage(parameters, 1);
+  const Stage prepare = prepare_stage(parameters, 1);
   EXPECT_EQ(prepare.id, "11372fd7ee85ce5f268a00dfc54425ee42a83b439525ed42a3226df21f52c84a");
   EXPECT_EQ(last_stage(parameters, 1, prepare).id,
             "af0e1ba04e22e5c47270333c327e914b406392687715750da472a7d802d3dfc5");
@@ -84,15 +84,15 @@ TEST(Identity, KeysNeverChange) {
 TEST(Identity, OfAStiffeningHasOnlyTheParametersThatActOnIt) {
   Parameters parameters = oldest();
   parameters.protocol = ProtocolKind::stiffen;
-  const RunRecord prepare = prepare_stage(parameters, 1);
+  const Stage prepare = prepare_stage(parameters, 1);
   EXPECT_EQ(prepare.id, prepare_stage(oldest(), 1).id) << "it starts from the packing of a shear";
-  const RunRecord stiffen = last_stage(parameters, 1, prepare);
-  EXPECT_EQ(stiffen.kind, name_of(Stage::stiffen));
+  const Stage stiffen = last_stage(parameters, 1, prepare);
+  EXPECT_EQ(stiffen.kind, name_of(StageKind::stiffen));
   EXPECT_EQ(stiffen.id, "6e510f667806a5df08b990f7e0450abc4f7d1e616d178fc5444b0fd1984f4dd5");
-  EXPECT_EQ(last_stage({}, 1, prepare).kind, name_of(Stage::shear));
+  EXPECT_EQ(last_stage({}, 1, prepare).kind, name_of(StageKind::shear));
 
-  const StageRecord record = read_stage(json::parse(stiffen.resolved.dump()));
-  EXPECT_EQ(record.stage, Stage::stiffen);
+  const StageInputs record = read_stage(json::parse(stiffen.resolved.dump()));
+  EXPECT_EQ(record.stage, StageKind::stiffen);
   EXPECT_EQ(record.parent, prepare.id);
   EXPECT_EQ(record.parameters, parameters);
 
@@ -106,20 +106,20 @@ TEST(Identity, OfAStiffeningHasOnlyTheParametersThatActOnIt) {
 
 TEST(Identity, HasAPauseOnlyIfTheProtocolIsPaused) {
   Parameters longer{.pressure_at = PressureAt::moving_wall, .pause_s = 3};
-  const RunRecord prepare = prepare_stage(oldest(), 1);
+  const Stage prepare = prepare_stage(oldest(), 1);
   EXPECT_EQ(prepare_stage(longer, 1).id, prepare.id);
-  const RunRecord continuous = last_stage(longer, 1, prepare);
+  const Stage continuous = last_stage(longer, 1, prepare);
   EXPECT_EQ(continuous.id, last_stage(oldest(), 1, prepare).id);
   EXPECT_FALSE(continuous.resolved.at("parameters").contains("pause_s"));
 
   Parameters paused = oldest();
   paused.protocol = longer.protocol = ProtocolKind::paused;
   EXPECT_EQ(prepare_stage(paused, 1).id, prepare.id);
-  const RunRecord shear = last_stage(paused, 1, prepare);
+  const Stage shear = last_stage(paused, 1, prepare);
   // The runs of older stores, whose moving wall is free during a pause.
   Parameters free = paused;
   free.pause_walls = PauseWalls::moving;
-  const RunRecord older = last_stage(free, 1, prepare);
+  const Stage older = last_stage(free, 1, prepare);
   EXPECT_EQ(older.id, "e6e8e2b64efd95186ef23bc827b867e5441eefd1ef729840f8675abf5937903b");
   EXPECT_FALSE(older.resolved.at("parameters").contains("pause_walls"));
   EXPECT_EQ(read_stage(older.resolved).parameters, free);
@@ -134,10 +134,10 @@ TEST(Identity, HasAPauseOnlyIfTheProtocolIsPaused) {
 
 // A parameter younger than the stores: runs that do not use it keep the keys that they have.
 TEST(Identity, HasADrawOfWallGrainsOnlyIfNotTheFirst) {
-  const RunRecord first = prepare_stage({}, 1);
+  const Stage first = prepare_stage({}, 1);
   EXPECT_FALSE(first.resolved.at("parameters").contains("wall_grain_draw"));
   const Parameters redrawn{.wall_grain_draw = 2};
-  const RunRecord other = prepare_stage(redrawn, 1);
+  const Stage other = prepare_stage(redrawn, 1);
   EXPECT_NE(other.id, first.id);
   EXPECT_EQ(read_stage(other.resolved).parameters, redrawn);
   EXPECT_EQ(read_stage(last_stage(redrawn, 1, other).resolved).parameters, redrawn);
@@ -160,7 +160,7 @@ TEST(Identity, HasTheFormerDefaultOfTheOverlapLimit) {
 // Younger than the stores as well, and effective only where a moving bottom wall lifts grains.
 TEST(Identity, HasWhereThePressureActsOnlyIfItMatters) {
   const Parameters at_top;
-  const RunRecord stage = prepare_stage(at_top, 1);
+  const Stage stage = prepare_stage(at_top, 1);
   EXPECT_NE(stage.id, prepare_stage(oldest(), 1).id);
   EXPECT_EQ(read_stage(stage.resolved).parameters, at_top);
   for (const auto change : {+[](Parameters& p) { p.moving_wall = MovingWall::top; },
@@ -174,12 +174,12 @@ TEST(Identity, HasWhereThePressureActsOnlyIfItMatters) {
 }
 
 TEST(Identity, HasAnEngineOnlyInTheShearAndIfNotOurs) {
-  const RunRecord packing = prepare_stage({}, 1);
-  const RunRecord ours = last_stage({}, 1, packing);
+  const Stage packing = prepare_stage({}, 1);
+  const Stage ours = last_stage({}, 1, packing);
   EXPECT_FALSE(ours.resolved.at("parameters").contains("engine"));
   const Parameters other{.engine = EngineKind::lammps};
   EXPECT_EQ(prepare_stage(other, 1).id, packing.id);
-  const RunRecord theirs = last_stage(other, 1, packing);
+  const Stage theirs = last_stage(other, 1, packing);
   EXPECT_NE(theirs.id, ours.id);
   EXPECT_EQ(read_stage(theirs.resolved).parameters.engine, EngineKind::lammps);
   EXPECT_EQ(engine_of(theirs.resolved), EngineKind::lammps);

@@ -303,15 +303,15 @@ Parameters any_parameters() {
 // Whether the field affects the last stage, beside what affects its packing.
 bool has_effect(const Field& field, const Parameters& before, const Parameters& after) {
   if (field.name == "protocol") return true;
-  if (before.protocol == ProtocolKind::stiffen) return field.identity.stage == Stage::stiffen;
-  return field.identity.stage == Stage::shear &&
+  if (before.protocol == ProtocolKind::stiffen) return field.identity.stage == StageKind::stiffen;
+  return field.identity.stage == StageKind::shear &&
          (!field.identity.under || field.identity.under == after.protocol);
 }
 
 PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
   const Parameters before = any_parameters();
-  const RunRecord prepare = prepare_stage(before, 1);
-  const RunRecord last = last_stage(before, 1, prepare);
+  const Stage prepare = prepare_stage(before, 1);
+  const Stage last = last_stage(before, 1, prepare);
   for (const Field& field : schema()) {
     const json value = field.get(before);
     json other = any_value(field);
@@ -322,8 +322,8 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
     if (other == value) continue;
     Parameters after = before;
     field.set(after, other);
-    const RunRecord other_prepare = prepare_stage(after, 1);
-    const bool settling = field.identity.stage == Stage::prepare &&
+    const Stage other_prepare = prepare_stage(after, 1);
+    const bool settling = field.identity.stage == StageKind::prepare &&
                           field.identity.distinguishes_runs() &&
                           (field.name != "pressure_at" || depends_on_pressure_at(before));
     RC_LOG() << field.name << " " << value << " " << other << "\n";
@@ -336,18 +336,18 @@ PROPERTY(Identity, ChangesWithEachValueAsTheSchemaStates, 100) {
 PROPERTY(Identity, OfARecordReadBackIsTheSame, 300) {
   const Parameters parameters = any_parameters();
   const auto seed = *rc::gen::inRange<std::uint64_t>(1, 1ULL << 53);
-  const RunRecord prepare = prepare_stage(parameters, seed);
-  const RunRecord last = last_stage(parameters, seed, prepare);
-  for (const RunRecord& stage : {prepare, last}) {
+  const Stage prepare = prepare_stage(parameters, seed);
+  const Stage last = last_stage(parameters, seed, prepare);
+  for (const Stage& stage : {prepare, last}) {
     for (const std::string& text : {stage.resolved.dump(), canonical_json(stage.resolved)}) {
       const json stored = json::parse(text);
-      const StageRecord record = read_stage(stored);
+      const StageInputs record = read_stage(stored);
       RC_ASSERT(stage_key(stored) == stage.id);
       RC_ASSERT(record.seed == seed);
       RC_ASSERT(name_of(record.stage) == stage.kind && record.parent == stage.parent);
-      const RunRecord again = prepare_stage(record.parameters, seed);
+      const Stage again = prepare_stage(record.parameters, seed);
       RC_ASSERT(
-          (record.stage == Stage::prepare ? again : last_stage(record.parameters, seed, again))
+          (record.stage == StageKind::prepare ? again : last_stage(record.parameters, seed, again))
               .id == stage.id);
     }
   }

@@ -49,7 +49,7 @@ class Measure : public DrawingTest {
   }
   std::vector<CheckpointRecord> records() const {
     std::vector<CheckpointRecord> all;
-    for (const RunRecord& run : runs_of_kind(store_, "shear")) {
+    for (const Stage& run : runs_of_kind(store_, "shear")) {
       for (const CheckpointRecord& record : store_.checkpoints(run.id)) all.push_back(record);
     }
     return all;

@@ -50,7 +50,7 @@ TEST_F(PackingOf2000, SettlesAndCompactsAsExpected) {
                                         "experiment: packing\n"
                                         "base: {grains: 2000, cycles: 10}\n");
   ASSERT_EQ(result.completed, 2U);
-  const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
+  const Stage packing = runs_of_kind(store_, "prepare").at(0);
   const CheckpointRecord settled = store_.checkpoints(packing.id).back();
   const Analysis packed = analyse(store_.load_checkpoint(settled));
   const PackingMeasures& at_rest = packed.measures;
@@ -69,7 +69,7 @@ TEST_F(PackingOf2000, SettlesAndCompactsAsExpected) {
   EXPECT_LT(at_rest.mean_overlap, 4.5e-3);
   expect_balance(packed);
 
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const auto checkpoints = store_.checkpoints(run.id);
   ASSERT_EQ(checkpoints.size(), 11U);
   double late = 0;  // mean over the last three cycles
@@ -94,7 +94,7 @@ TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
                     "base: {grains: 2000, gravity_m_per_s2: 0, cycles: 0}\n")
                 .completed,
             2U);
-  const RunRecord packing = runs_of_kind(store_, "prepare").at(0);
+  const Stage packing = runs_of_kind(store_, "prepare").at(0);
   const Analysis found = analyse(store_.load_checkpoint(store_.checkpoints(packing.id).back()));
   const Mechanics& m = *found.mechanics;
   const Parameters table_1;

@@ -96,18 +96,16 @@ TEST_F(Phases, AreRecordedWithTheMembershipThatAsksForThem) {
       EXPECT_EQ(place.contains("checkpoint_phases"), store == &store_);
     }
   }
-  const auto phases = [](const RunRecord& stage) {
-    return stage.memberships.at(0).checkpoint_phases;
-  };
+  const auto phases = [](const Stage& stage) { return stage.asks.at(0).checkpoint_phases; };
   EXPECT_TRUE(phases(sheared(plain_)).empty());
   EXPECT_EQ(phases(sheared(store_)), (std::vector<double>{0.25, 0.7}));
-  EXPECT_TRUE(phases(store_.run(sheared(store_).parent)).empty());
+  EXPECT_TRUE(phases(store_.stage(sheared(store_).parent)).empty());
 }
 
 TEST_F(Phases, OfACompletedRunAreComputedByReplay) {
   compute(plain_, manifest(kPhases));
   compute(store_, manifest(""));
-  const RunRecord before = sheared(store_);
+  const Stage before = sheared(store_);
   EXPECT_FALSE(left_of(manifest("")));
   EXPECT_EQ(left_of(manifest(kPhases)), 0) << "not declared yet";
   declared(store_, manifest(kPhases));
@@ -119,7 +117,7 @@ TEST_F(Phases, OfACompletedRunAreComputedByReplay) {
   EXPECT_TRUE(stages_to_resume(store_, {}).empty());
   EXPECT_EQ(files(store_, false), files(plain_, false));
   EXPECT_EQ(sheared(store_).state_hash, before.state_hash);
-  EXPECT_EQ(sheared(store_).state, RunState::completed);
+  EXPECT_EQ(sheared(store_).state, StageState::completed);
   // What both ask for: 0.25 and 0.5 of every cycle, 0.7 of every other one.
   compute(store_, manifest("checkpoints: {phases: [0.25, 0.5]}\n"));
   EXPECT_EQ(cycles_of(store_, sheared(store_).id),
@@ -179,13 +177,13 @@ TEST_F(Phases, DoNotEndARun) {
 
 TEST_F(Phases, OfAForgedRecordAreRejected) {
   compute(plain_, manifest(""));
-  const RunRecord run = sheared(plain_);
-  RunRecord forged = declaration_of(run);
-  forged.memberships[0].experiment = "forged";
-  forged.memberships[0].checkpoint_phases.assign(1001, 0.5);
-  plain_.declare_run(forged);
-  EXPECT_THROW(is_done(plain_, plain_.run(run.id)), StoreDamaged);
-  EXPECT_THROW(plan_stage(plain_, plain_.run(run.id)), StoreDamaged);
+  const Stage run = sheared(plain_);
+  Stage forged = declaration_of(run);
+  forged.asks[0].experiment = "forged";
+  forged.asks[0].checkpoint_phases.assign(1001, 0.5);
+  plain_.declare_stage(forged);
+  EXPECT_THROW(is_done(plain_, plain_.stage(run.id)), StoreDamaged);
+  EXPECT_THROW(ready_stage(plain_, plain_.stage(run.id)), StoreDamaged);
 }
 
 // The area of the loop of the interior stress is not the work of the walls, as the layers at the
@@ -205,7 +203,7 @@ TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
         table.rows.at(row).at(static_cast<std::size_t>(at - table.columns.begin()));
     return cell.is_null() ? std::nan("") : cell.get<double>();
   };
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const auto records = store_.checkpoints(run.id);
   ASSERT_EQ(records.size(), table.rows.size());
   const Checkpoint last = store_.load_checkpoint(records.back());

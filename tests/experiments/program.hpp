@@ -116,7 +116,7 @@ class ProgramTest : public testing::Test {
 
   /// Id of the run that was declared last, which shears.
   std::string last_run() const {
-    return Store(path("shearcell-store"), Access::read).runs().back().id;
+    return Store(path("shearcell-store"), Access::read).stages().back().id;
   }
 
   /// File of the last checkpoint of a run, relative to the test's folder.

@@ -19,7 +19,7 @@ namespace {
 
 class Protocols : public StoreTest {
  protected:
-  std::vector<Checkpoint> states(const RunRecord& run) {
+  std::vector<Checkpoint> states(const Stage& run) {
     std::vector<Checkpoint> found;
     for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
       found.push_back(store_.load_checkpoint(record));
@@ -32,7 +32,7 @@ class Protocols : public StoreTest {
     EXPECT_EQ(result.failed + result.damaged + result.blocked, 0U);
   }
 
-  void expect_replays(const RunRecord& run) {
+  void expect_replays(const Stage& run) {
     for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
       const Replay replay = verify_by_replay(store_, record, 2);
       EXPECT_FALSE(replay.divergence) << record.cycle << ": " << replay.divergence->message;
@@ -89,7 +89,7 @@ TEST_F(Protocols, EitherWallMovesWithAndWithoutGravity) {
                                                  "gravity_m_per_s2: [9.81, 0]}}\n")),
                    8);
   std::vector<double> heights;
-  for (const RunRecord& run : runs_of_kind(store_, "shear")) {
+  for (const Stage& run : runs_of_kind(store_, "shear")) {
     const Parameters p = read_stage(run.resolved).parameters;
     const auto recorded = states(run);
     ASSERT_EQ(recorded.size(), 2U);
@@ -117,7 +117,7 @@ const std::string kStiffen = "  protocol: stiffen\n";
 
 TEST_F(Protocols, StiffeningRecordsEachSpringConstantAtRest) {
   expect_completed(compute(store_, tiny_manifest(kStiffen)), 2);
-  const RunRecord run = runs_of_kind(store_, "stiffen").at(0);
+  const Stage run = runs_of_kind(store_, "stiffen").at(0);
   EXPECT_EQ(run.target_cycles, 9U);
   EXPECT_EQ(run.cycle, 9);
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
@@ -156,8 +156,8 @@ TEST_F(Protocols, AnUnreachableToleranceFailsTheRunWithARemedy) {
   const CampaignResult result = compute(
       store_, tiny_manifest(kStiffen + "  grains: 80\n  minimize_force_tolerance: 1.0e-25\n"));
   EXPECT_EQ(result.failed, 1U);
-  const RunRecord run = runs_of_kind(store_, "stiffen").at(0);
-  EXPECT_EQ(run.state, RunState::failed);
+  const Stage run = runs_of_kind(store_, "stiffen").at(0);
+  EXPECT_EQ(run.state, StageState::failed);
   EXPECT_TRUE(has(run.error, "minimize_force_tolerance"));
   EXPECT_EQ(cycles_of(store_, run.id), (std::vector<double>{0}));
 }

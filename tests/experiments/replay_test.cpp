@@ -23,8 +23,8 @@ class ReplayTest : public DrawingTest {
  protected:
   ReplayTest() { compute(store_, tiny_manifest("  cycles: 4\n")); }
 
-  RunRecord sheared() const { return test::sheared(store_); }
-  RunRecord packing() const { return runs_of_kind(store_, "prepare").at(0); }
+  Stage sheared() const { return test::sheared(store_); }
+  Stage packing() const { return runs_of_kind(store_, "prepare").at(0); }
   bool there(const CheckpointRecord& record) const {
     return std::filesystem::exists(store_.folder() / record.file);
   }
@@ -41,7 +41,7 @@ TEST_F(ReplayTest, ReproducesEveryRecordedState) {
   }
   EXPECT_EQ(count_events(store_, "ReplayVerified"), all.size());
   EXPECT_EQ(final_hashes(store_), before);
-  for (const RunRecord& run : store_.runs()) EXPECT_EQ(run.state, RunState::completed);
+  for (const Stage& run : store_.stages()) EXPECT_EQ(run.state, StageState::completed);
   EXPECT_TRUE(store_.verify().ok());
 }
 
@@ -59,7 +59,7 @@ TEST_F(ReplayTest, FailsNowhereThatTheRunDidNot) {
   compute(parts, manifest("13"));
   compute(parts, manifest("31"));
   EXPECT_EQ(final_hashes(parts), undisturbed(manifest("31")));
-  const RunRecord run = test::sheared(parts);
+  const Stage run = test::sheared(parts);
   const Scene scene = shear_scene(read_stage(run.resolved).parameters);
   int over = 0;
   for (const CheckpointRecord& record : parts.checkpoints(run.id)) {
@@ -129,9 +129,9 @@ TEST_F(ReplayTest, RepairsADamagedFile) {
   EXPECT_FALSE(regenerate_checkpoint(store_, records[2]).divergence);
   EXPECT_TRUE(store_.verify().ok());
   store_.reject_checkpoint(sheared().id, records[4].sha256, "a test");
-  EXPECT_EQ(store_.run(sheared().id).cycle, 3);
+  EXPECT_EQ(store_.stage(sheared().id).cycle, 3);
   EXPECT_FALSE(regenerate_checkpoint(store_, records[4]).divergence);
-  EXPECT_EQ(store_.run(sheared().id).cycle, 4);
+  EXPECT_EQ(store_.stage(sheared().id).cycle, 4);
 }
 
 // The settled packing is damaged, and states of its settling are intact.
@@ -178,9 +178,9 @@ TEST_F(ReplayTest, ReportsWhereAStateDiverges) {
   wrong.cycle = 5;
   wrong.state.velocity(1, 17) += 0.25;
   declared(store_, tiny_manifest("  cycles: 4\n"), {.cycles = 6});
-  store_.start_run(sheared().id, {}, records[4].sha256);
+  store_.start_stage(sheared().id, {}, records[4].sha256);
   const CheckpointRecord record = store_.record_checkpoint(sheared().id, wrong);
-  store_.interrupt_run(sheared().id, "a test");
+  store_.interrupt_stage(sheared().id, "a test");
 
   const Replay replay = verify_by_replay(store_, record);
   ASSERT_TRUE(replay.divergence);

@@ -78,7 +78,7 @@ inline CampaignResult resume(Store& store, std::size_t workers = 2) {
 /// Run id -> hash of its last state.
 inline std::map<std::string, std::string> final_hashes(const Store& store) {
   std::map<std::string, std::string> hashes;
-  for (const RunRecord& run : store.runs()) hashes[run.id] = run.state_hash;
+  for (const Stage& run : store.stages()) hashes[run.id] = run.state_hash;
   return hashes;
 }
 
@@ -91,23 +91,23 @@ inline std::map<std::string, std::string> undisturbed(const std::string& text,
   return final_hashes(store);
 }
 
-inline std::vector<RunRecord> runs_of_kind(const Store& store, const std::string& kind) {
-  std::vector<RunRecord> found;
-  for (const RunRecord& run : store.runs()) {
+inline std::vector<Stage> runs_of_kind(const Store& store, const std::string& kind) {
+  std::vector<Stage> found;
+  for (const Stage& run : store.stages()) {
     if (run.kind == kind) found.push_back(run);
   }
   return found;
 }
 
 /// The first run that shears.
-inline RunRecord sheared(const Store& store) {
+inline Stage sheared(const Store& store) {
   return runs_of_kind(store, "shear").at(0);
 }
 
 /// Declares the run again for its first experiment.
-inline RunRecord declaration_of(RunRecord run) {
-  run.memberships.resize(1);
-  run.memberships[0].target_cycles = run.target_cycles;
+inline Stage declaration_of(Stage run) {
+  run.asks.resize(1);
+  run.asks[0].target_cycles = run.target_cycles;
   return run;
 }
 

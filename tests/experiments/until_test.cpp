@@ -17,9 +17,8 @@
 namespace shearcell::test {
 namespace {
 
-Membership ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt,
-               std::uint64_t every = 1) {
-  Membership made;
+Ask ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt, std::uint64_t every = 1) {
+  Ask made;
   made.checkpoint_every = every;
   made.target_cycles = cycles;
   if (until) made.until = to_json(*until);
@@ -38,9 +37,9 @@ std::vector<SeenCheckpoint> measured(std::initializer_list<double> percentages) 
 }
 
 // Why a running stage with these checkpoints ends at the last one.
-nlohmann::json ended(std::span<const Membership> asks, std::span<const SeenCheckpoint> seen) {
-  RunRecord stage;
-  stage.state = RunState::running;
+nlohmann::json ended(std::span<const Ask> asks, std::span<const SeenCheckpoint> seen) {
+  Stage stage;
+  stage.state = StageState::running;
   stage.cycle = seen.back().record.cycle;
   return outlook(stage, asks, seen).ended;
 }
@@ -50,7 +49,7 @@ TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
   const Until later{StopMeasure::crystalline_percent, 10, 3};
   const Until twenty{StopMeasure::crystalline_percent, 20, 0};
   struct Case {
-    std::vector<Membership> asks;
+    std::vector<Ask> asks;
     std::vector<SeenCheckpoint> measured;
     double reached;  // cycle; -1: the run continues
   };
@@ -94,7 +93,7 @@ class UntilTest : public StoreTest {
     whole_folder_ = new TemporaryFolder;
     Store store(whole_folder_->path() / "store", Access::create);
     compute(store, manifest(""));
-    const RunRecord run = sheared(store);
+    const Stage run = sheared(store);
     whole_ = new std::vector<CheckpointRecord>(store.checkpoints(run.id));
     ASSERT_EQ(whole_->size(), 7U);
     std::vector<double> phi;
@@ -121,8 +120,8 @@ class UntilTest : public StoreTest {
 
   // The checkpoints on the cadence are those of the whole run, up to where this one ended.
   static void expect_end(const Store& store, std::size_t last) {
-    const RunRecord run = sheared(store);
-    EXPECT_EQ(run.state, RunState::completed);
+    const Stage run = sheared(store);
+    EXPECT_EQ(run.state, StageState::completed);
     std::vector<CheckpointRecord> whole_cycles = store.checkpoints(run.id);
     std::erase_if(whole_cycles,
                   [](const CheckpointRecord& c) { return c.cycle != std::floor(c.cycle); });
@@ -135,7 +134,7 @@ class UntilTest : public StoreTest {
   }
 
   std::optional<double> expected(std::uint64_t extra_cycles) const {
-    return expected_end(store_.runs(), to_json(Until{StopMeasure::phi, value_, extra_cycles}));
+    return expected_end(store_.stages(), to_json(Until{StopMeasure::phi, value_, extra_cycles}));
   }
 
   static inline TemporaryFolder* whole_folder_ = nullptr;
@@ -147,7 +146,7 @@ class UntilTest : public StoreTest {
 TEST_F(UntilTest, EndsTheRunWithItsReasonAndKeepsTheMeasures) {
   EXPECT_EQ(compute(store_, manifest(until())).completed, 2U);
   expect_end(store_, end_);
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const nlohmann::json why = end_of(run);
   EXPECT_EQ(why.at("measure"), "phi");
   EXPECT_EQ(why.at("reached_at_cycle"), static_cast<double>(end_ - 1));
@@ -220,9 +219,9 @@ TEST_F(UntilTest, TheLongestOfTwoExperimentsCounts) {
 TEST_F(UntilTest, TheReasonIsThatOfTheLongestOfTwoExperiments) {
   compute(store_, renamed(tiny_manifest("  cycles: 5\n"), "twin"));
   EXPECT_EQ(compute(store_, manifest(until(0))).already, 2U) << "nothing is stepped";
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   EXPECT_EQ(run.cycle, 5);
-  EXPECT_EQ(run.state, RunState::completed);
+  EXPECT_EQ(run.state, StageState::completed);
   const nlohmann::json why = end_of(run);
   EXPECT_EQ(why.at("cycles_asked"), 5);
   EXPECT_TRUE(describe_end(why).starts_with("an experiment asks for 5 cycles; phi >= "));
@@ -233,7 +232,7 @@ TEST_F(UntilTest, TheReasonIsThatOfTheLongestOfTwoExperiments) {
 TEST_F(UntilTest, TheReasonIsNotAnEarlierUntil) {
   compute(store_, manifest(until(0)), {.cycles = 9});
   compute(store_, renamed(tiny_manifest("  cycles: 5\n", "until: {phi: 0.99}\n"), "twin"));
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   EXPECT_EQ(run.cycle, 5);
   EXPECT_TRUE(has(describe_end(end_of(run)), "an experiment asks for 5 cycles"));
 }
@@ -284,7 +283,7 @@ TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
     if (record.state == CheckpointState::pruned) regenerate_checkpoint(store_, record);
   }
   compute(store_, renamed(manifest(""), "twin"));
-  const RunRecord run = sheared(store_);
+  const Stage run = sheared(store_);
   const auto end = [&](std::size_t extra) {
     return end_for(store_, run, ask(6, Until{StopMeasure::phi, value_, extra}), {});
   };

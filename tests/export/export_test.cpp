@@ -58,8 +58,8 @@ nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
 }
 
 /// As a store would name it.
-SelectedRun about() {
-  SelectedRun run;
+Run about() {
+  Run run;
   run.run.id = std::string(64, 'a');
   run.run.resolved = {{"parameters",
                        {{"stiffness_N_per_m", 654.0},
@@ -68,10 +68,10 @@ SelectedRun about() {
                         {"gravity_m_per_s2", 9.81},
                         {"fluid", "still"},
                         {"steps_per_cycle", 45600}}}};
-  run.membership.experiment = "drag";
-  run.membership.scale = "smoke";
-  run.membership.variant = "fluid=still,amplitude_rad=0.0833";
-  run.membership.seed = 7;
+  run.ask.experiment = "drag";
+  run.ask.scale = "smoke";
+  run.ask.variant = "fluid=still,amplitude_rad=0.0833";
+  run.ask.seed = 7;
   return run;
 }
 
@@ -275,8 +275,8 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 
 TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
   const Parameters parameters;
-  SelectedRun run = about();
-  run.run.kind = name_of(Stage::shear);
+  Run run = about();
+  run.run.kind = name_of(StageKind::shear);
   run.run.resolved = last_stage(parameters, 1, prepare_stage(parameters, 1)).resolved;
   const Checkpoint checkpoint = checkpoints().front();  // upright, at the largest shear rate
   CheckpointRecord record = record_of(checkpoint);
@@ -329,8 +329,8 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
 
 TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   const TemporaryFolder folder;
-  SelectedRun run = about();
-  run.membership.scale.clear();  // a manifest without scales
+  Run run = about();
+  run.ask.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
@@ -339,7 +339,7 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
 }
 
 TEST(Export, HasOnlyKeysOfAManifest) {
-  SelectedRun run = about();
+  Run run = about();
   run.run.resolved["parameters"]["forged=1\n99\n"] = 1;
   for (const auto& [key, value] : frame_of(checkpoints().back(), {}, run).parameters) {
     EXPECT_FALSE(has(key, "forged"));

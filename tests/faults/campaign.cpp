@@ -97,8 +97,9 @@ std::vector<std::string> check_left_behind(const fs::path& folder, bool could_wr
         wrong.push_back(finding.subject + ": " + finding.message);
       }
     }
-    for (const RunRecord& run : store.runs()) {
-      if (could_write && run.state == RunState::running) wrong.push_back(run.id + " has no holder");
+    for (const Stage& run : store.stages()) {
+      if (could_write && run.state == StageState::running)
+        wrong.push_back(run.id + " has no holder");
       for (const CheckpointRecord& record : store.checkpoints(run.id)) {
         store.load_checkpoint(record);  // throws when it is missing or wrong
       }

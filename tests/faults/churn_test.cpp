@@ -60,7 +60,7 @@ class Churn : public testing::Test {
     const std::size_t choice = below(1000000);  // drawn in any case: what is drawn next stays so
     const Store store(at("one") / "store", Access::read);
     std::vector<std::string> pruned;
-    for (const RunRecord& run : store.runs()) {
+    for (const Stage& run : store.stages()) {
       for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         if (record.state == CheckpointState::pruned) pruned.push_back(record.sha256);
       }
@@ -159,7 +159,7 @@ class Churn : public testing::Test {
       EXPECT_TRUE(recorded.insert(event.stream + event.body().at("sha256").dump()).second)
           << "event " << event.seq << " records a checkpoint again";
     }
-    for (const RunRecord& run : store.runs()) {
+    for (const Stage& run : store.stages()) {
       std::set<std::uint64_t> steps;
       for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         EXPECT_TRUE(steps.insert(record.step).second) << run.id << " step " << record.step;
@@ -170,7 +170,7 @@ class Churn : public testing::Test {
   /// Every state at a step that the undisturbed store knows is the same state.
   static std::size_t expect_states_of(const Store& golden, const Store& store) {
     std::size_t compared = 0;
-    for (const RunRecord& run : golden.runs()) {
+    for (const Stage& run : golden.stages()) {
       std::map<std::uint64_t, std::string> states;
       for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
         states[record.step] = record.state_hash;
@@ -197,8 +197,8 @@ class Churn : public testing::Test {
     const Store store(one / "store", Access::read);
     EXPECT_EQ(final_hashes(store), final_hashes(golden));
     std::size_t again = 0;
-    for (const RunRecord& run : store.runs()) {
-      EXPECT_EQ(run.state, RunState::completed) << run.id;
+    for (const Stage& run : store.stages()) {
+      EXPECT_EQ(run.state, StageState::completed) << run.id;
       again += run.attempts - 1;
     }
     const VerifyReport report = store.verify();
@@ -210,7 +210,7 @@ class Churn : public testing::Test {
     std::printf(
         "%zu manifests, %zu runs begun again %zu times, %zu events; %zu states as in an "
         "undisturbed store\n",
-        manifests_.size(), store.runs().size(), again, store.events().size(), compared);
+        manifests_.size(), store.stages().size(), again, store.events().size(), compared);
   }
 
   void churn(std::size_t operations) {

@@ -44,8 +44,8 @@ class Kills : public testing::Test {
     const Store store(shared.path() / "store", Access::read);
     EXPECT_EQ(final_hashes(store), golden);
     std::size_t interrupted = 0;
-    for (const RunRecord& run : store.runs()) {
-      EXPECT_EQ(run.state, RunState::completed);
+    for (const Stage& run : store.stages()) {
+      EXPECT_EQ(run.state, StageState::completed);
       interrupted += run.attempts - 1;
     }
     EXPECT_TRUE(store.verify().ok());

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 std::set<std::string> facts(const fs::path& folder) {
   std::set<std::string> found;
   const Store store(folder / "store", Access::read);
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     found.insert(run.id + " " + std::string(name_of(run.state)) + " " + run.state_hash);
     for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::all)) {
       found.insert(record.sha256 + " " + std::string(name_of(record.state)));

@@ -47,24 +47,24 @@ fs::path make_store(const fs::path& folder) {
   Store store(folder, Access::create);
   const std::string manifest =
       store.register_manifest(kManifest, "a.yaml", {{"experiment", "a"}, {"figures", {"S2"}}});
-  RunRecord prepare = test::sample_run(0), shear = test::sample_run(1);
-  prepare.memberships[0].manifest = shear.memberships[0].manifest = manifest;
+  Stage prepare = test::sample_run(0), shear = test::sample_run(1);
+  prepare.asks[0].manifest = shear.asks[0].manifest = manifest;
   prepare.kind = "prepare";
   shear.parent = prepare.id;
-  store.declare_run(prepare);
-  store.declare_run(shear);
+  store.declare_stage(prepare);
+  store.declare_stage(shear);
   const nlohmann::json host = {{"host", "h"}, {"build", {{"version", "1"}}}};
-  store.start_run(prepare.id, host);
+  store.start_stage(prepare.id, host);
   const CheckpointRecord first = store.record_checkpoint(prepare.id, small_checkpoint(0));
-  store.complete_run(prepare.id);
-  store.start_run(shear.id, host, std::nullopt, first.sha256);
+  store.complete_stage(prepare.id);
+  store.start_stage(shear.id, host, std::nullopt, first.sha256);
   nlohmann::json inputs = nlohmann::json::array();
   for (const std::uint64_t step : {0U, 45600U}) {
     Checkpoint checkpoint = small_checkpoint(step);
     checkpoint.run = shear.id;
     inputs.push_back(store.record_checkpoint(shear.id, checkpoint).sha256);
   }
-  store.interrupt_run(shear.id, "a signal");
+  store.interrupt_stage(shear.id, "a signal");
   nlohmann::json input = {{"run", shear.id},      {"parent", prepare.id}, {"experiment", "a"},
                           {"manifest", manifest}, {"variant", "base"},    {"seed", 1},
                           {"checkpoints", inputs}};  // as earlier versions recorded it

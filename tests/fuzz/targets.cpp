@@ -89,9 +89,9 @@ void take_events(Input input) {
     attempt<StoreDamaged>([&] { apply(database, event); });
   }
   attempt<StoreDamaged>([&] {
-    for (const RunRecord& record : query_runs(database)) {
+    for (const Stage& record : query_stages(database)) {
       query_checkpoints(database, record.id);
-      query_run_ids(database, record.id.substr(0, 3), 10);
+      query_stage_ids(database, record.id.substr(0, 3), 10);
     }
     query_figures(database);
     projection_rows(database);
@@ -196,7 +196,7 @@ void attempt_store(Work&& work) {
 }
 
 void look_at_runs(const Store& store) {
-  for (const RunRecord& run : store.runs()) {
+  for (const Stage& run : store.stages()) {
     attempt_store([&] { store.checkpoints(run.id, Listed::all); });
     attempt_store([&] {
       // As the program writes it: a forged store may hold text that is not UTF-8.
@@ -228,7 +228,7 @@ void look_at(const fs::path& folder) {
     Store store(folder, Access::write);
     attempt_store([&] { store.rebuild(); });
     attempt_store([&] {
-      for (const RunRecord& run : store.runs()) store.newest_valid_checkpoint(run.id);
+      for (const Stage& run : store.stages()) store.newest_valid_checkpoint(run.id);
     });
     attempt_store([&] { store.verify(); });
     attempt_store([&] { store.prunable({}); });

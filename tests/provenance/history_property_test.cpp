@@ -33,12 +33,12 @@ Checkpoint sample(const std::string& id, std::uint64_t step) {
 }
 
 void declare(Store& store, const Act& act) {
-  RunRecord d = test::sample_run(act.run, act.amount);
+  Stage d = test::sample_run(act.run, act.amount);
   d.grains = 4;  // as sample() has
   if (act.run > 0) d.parent = run_id(0);
-  if (act.amount % 3 == 0) d.memberships[0].experiment = "another";
-  d.memberships[0].checkpoint_every = 1 + act.amount % 2;
-  store.declare_run(d);
+  if (act.amount % 3 == 0) d.asks[0].experiment = "another";
+  d.asks[0].checkpoint_every = 1 + act.amount % 2;
+  store.declare_stage(d);
 }
 
 void perform(Store& store, const Act& act) {
@@ -47,11 +47,11 @@ void perform(Store& store, const Act& act) {
   const auto some = act.amount % 2 == 0 ? std::nullopt : std::optional(act.amount);
   const auto last = known.empty() ? std::nullopt : std::optional(known.back().sha256);
   if (what == "declare") declare(store, act);
-  if (what == "start") store.start_run(id, {}, last);
+  if (what == "start") store.start_stage(id, {}, last);
   if (what == "record") store.record_checkpoint(id, sample(id, act.amount), {0.5, 100});
-  if (what == "interrupt") store.interrupt_run(id, "SIGTERM");
-  if (what == "fail") store.fail_run(id, "an overlap");
-  if (what == "complete") store.complete_run(id, {}, some);
+  if (what == "interrupt") store.interrupt_stage(id, "SIGTERM");
+  if (what == "fail") store.fail_stage(id, "an overlap");
+  if (what == "complete") store.complete_stage(id, {}, some);
   if (what == "figure")
     store.record_figure("S" + std::to_string(act.run), {{"inputs", {act.amount}}});
   if (what == "replay") store.record_replay(id, true, {{"step", act.amount}});
@@ -122,8 +122,8 @@ void expect_model(const Store& store) {
   for (const Event& event : store.events()) {
     if (event.stream.starts_with("run/")) runs[event.stream.substr(4)].apply(event);
   }
-  RC_ASSERT(store.runs().size() == runs.size());
-  for (const RunRecord& run : store.runs()) {
+  RC_ASSERT(store.stages().size() == runs.size());
+  for (const Stage& run : store.stages()) {
     const RunModel& model = runs.at(run.id);
     RC_ASSERT(name_of(run.state) == model.state);
     RC_ASSERT(run.target_cycles == model.target);

@@ -26,7 +26,7 @@ class LeaseTest : public ::testing::Test {
  protected:
   LeaseTest() {
     Store store(path_, Access::create);
-    for (int i = 0; i < 2; ++i) store.declare_run(sample_run(i));
+    for (int i = 0; i < 2; ++i) store.declare_stage(sample_run(i));
   }
 
   Store open(double lease_seconds = 60) { return Store(path_, Access::write, lease_seconds); }
@@ -39,41 +39,41 @@ class LeaseTest : public ::testing::Test {
 TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   Store first = open();
   Store second = open();
-  first.start_run(id_, {});
-  EXPECT_THROW(first.start_run(id_, {}), ConcurrencyConflict) << "it holds the run already";
-  expect_refused<RunHeld>([&] { second.start_run(id_, {}); },
+  first.start_stage(id_, {});
+  EXPECT_THROW(first.start_stage(id_, {}), ConcurrencyConflict) << "it holds the run already";
+  expect_refused<RunHeld>([&] { second.start_stage(id_, {}); },
                           {"process " + std::to_string(getpid())});
   const std::vector<Lease> leases = second.leases();
   ASSERT_EQ(leases.size(), 1u);
   EXPECT_EQ(leases[0].run, id_);
   EXPECT_EQ(leases[0].attempt, 1u);
   EXPECT_EQ(leases[0].holder.pid, static_cast<std::uint64_t>(getpid()));
-  second.start_run(run_id(0), {});  // another run is free
+  second.start_stage(run_id(0), {});  // another run is free
   first.record_checkpoint(id_, sample_checkpoint(id_));
-  first.complete_run(id_);
+  first.complete_stage(id_);
   EXPECT_EQ(second.leases().size(), 1u);
-  EXPECT_THROW(second.start_run(id_, {}), ConcurrencyConflict) << "it is completed";
+  EXPECT_THROW(second.start_stage(id_, {}), ConcurrencyConflict) << "it is completed";
 }
 
 TEST_F(LeaseTest, IsReleasedWhenTheStoreIsClosed) {
-  { open().start_run(id_, {}); }
+  { open().start_stage(id_, {}); }
   Store second = open();
   EXPECT_TRUE(second.leases().empty());
-  EXPECT_EQ(second.start_run(id_, {}), 2u);
+  EXPECT_EQ(second.start_stage(id_, {}), 2u);
 }
 
 TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
   Store first = open(0.4);
   Store second = open();
-  first.start_run(id_, {});
+  first.start_stage(id_, {});
   for (int i = 0; i < 6; ++i) {
     std::this_thread::sleep_for(100ms);
     first.renew_leases();
-    EXPECT_THROW(second.start_run(id_, {}), RunHeld);
+    EXPECT_THROW(second.start_stage(id_, {}), RunHeld);
   }
   std::this_thread::sleep_for(500ms);
   EXPECT_TRUE(first.holds(id_)) << "nobody took it";
-  EXPECT_EQ(second.start_run(id_, {}), 2u);
+  EXPECT_EQ(second.start_stage(id_, {}), 2u);
   first.renew_leases();
   EXPECT_FALSE(first.holds(id_));
   EXPECT_THROW(first.record_checkpoint(id_, sample_checkpoint(id_)), ConcurrencyConflict);
@@ -83,28 +83,28 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
 
 TEST_F(LeaseTest, OfARunThatAnotherProgramCompletedIsLost) {
   Store late = open(0);
-  late.start_run(id_, {});
+  late.start_stage(id_, {});
   Store other = open();
-  other.start_run(id_, {});
-  other.complete_run(id_);
+  other.start_stage(id_, {});
+  other.complete_stage(id_);
   ASSERT_TRUE(other.leases().empty());
   expect_refused<ConcurrencyConflict>([&] { late.record_checkpoint(id_, sample_checkpoint(id_)); },
                                       {"another process continued"});
   EXPECT_FALSE(late.holds(id_));
-  EXPECT_THROW(late.interrupt_run(id_, "late"), ConcurrencyConflict);
+  EXPECT_THROW(late.interrupt_stage(id_, "late"), ConcurrencyConflict);
   EXPECT_TRUE(other.checkpoints(id_).empty());
 }
 
 TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramContinued) {
   Store late = open(0.01);
-  late.start_run(id_, {});
+  late.start_stage(id_, {});
   std::this_thread::sleep_for(20ms);
   Store other = open();
-  other.start_run(id_, {});
-  other.interrupt_run(id_, "SIGTERM");
+  other.start_stage(id_, {});
+  other.interrupt_stage(id_, "SIGTERM");
   late.renew_leases();
   EXPECT_FALSE(late.holds(id_));
-  EXPECT_EQ(other.start_run(id_, {}), 3u);
+  EXPECT_EQ(other.start_stage(id_, {}), 3u);
 }
 
 TEST_F(LeaseTest, OfADeadProcessIsFreeAtOnce) {
@@ -112,7 +112,7 @@ TEST_F(LeaseTest, OfADeadProcessIsFreeAtOnce) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     Store store(path_, Access::write);
-    store.start_run(id_, {});
+    store.start_stage(id_, {});
     raise(SIGKILL);
   }
   // Dead, whether somebody has waited for it or not.
@@ -122,8 +122,8 @@ TEST_F(LeaseTest, OfADeadProcessIsFreeAtOnce) {
   EXPECT_TRUE(store.leases().empty());
   ASSERT_EQ(waitpid(child, nullptr, 0), child);
   EXPECT_TRUE(store.leases().empty());
-  EXPECT_EQ(store.run(id_).state, RunState::running);
-  EXPECT_EQ(store.start_run(id_, {}), 2u);
+  EXPECT_EQ(store.stage(id_).state, StageState::running);
+  EXPECT_EQ(store.start_stage(id_, {}), 2u);
 }
 
 TEST_F(LeaseTest, OfAnotherMachineMustExpire) {
@@ -150,7 +150,7 @@ TEST_F(LeaseTest, IsGrantedToOneOfMany) {
   start_threads(9, [&](std::size_t) {
     Store store = open();
     try {
-      store.start_run(id_, {});
+      store.start_stage(id_, {});
       ++won;
     } catch (const RunHeld&) {
       ++refused;
@@ -164,17 +164,17 @@ TEST_F(LeaseTest, IsGrantedToOneOfMany) {
 TEST_F(LeaseTest, DoesNotStartFromAnOutdatedState) {
   Store first = open();
   Store second = open();
-  first.start_run(id_, {});
+  first.start_stage(id_, {});
   const auto one = first.record_checkpoint(id_, sample_checkpoint(id_, 45600));
   const auto two = first.record_checkpoint(id_, sample_checkpoint(id_, 91200));
-  first.interrupt_run(id_, "SIGTERM");
-  EXPECT_THROW(second.start_run(id_, {}, one.sha256), ConcurrencyConflict);
-  EXPECT_EQ(second.start_run(id_, {}, two.sha256), 2u);
+  first.interrupt_stage(id_, "SIGTERM");
+  EXPECT_THROW(second.start_stage(id_, {}, one.sha256), ConcurrencyConflict);
+  EXPECT_EQ(second.start_stage(id_, {}, two.sha256), 2u);
 }
 
 TEST_F(LeaseTest, IsNotAProjection) {
   Store first = open();
-  first.start_run(id_, {});
+  first.start_stage(id_, {});
   Store second = open();
   second.rebuild();
   EXPECT_TRUE(second.verify().ok());
@@ -185,13 +185,13 @@ TEST_F(LeaseTest, IsNotAProjection) {
 // What `status` reads, again and again, beside a program that records.
 TEST_F(LeaseTest, ReadersDelayAWriterByMillisecondsAtMost) {
   Store writer = open();
-  writer.start_run(id_, {});
+  writer.start_stage(id_, {});
   std::atomic<bool> done = false;
   std::atomic<int> reads = 0;
   std::thread reader([&] {
     while (!done) {
       const Store store(path_, Access::read);
-      store.runs();
+      store.stages();
       store.leases();
       ++reads;
     }

@@ -33,7 +33,7 @@ struct SampleHistory {
 
   explicit SampleHistory(Store& store) {
     store.register_manifest("manifest", "/home/somebody/../m.yaml", {{"experiment", "drag"}});
-    RunRecord first = sample_run(1, 0), second = sample_run(2, 3);
+    Stage first = sample_run(1, 0), second = sample_run(2, 3);
     first.kind = "prepare";
     first.resolved = {{"stage", "prepare"}, {"seed", 7}, {"parameters", {{"mass_kg", 2e-5}}}};
     second.parent = first.id;
@@ -43,28 +43,28 @@ struct SampleHistory {
                        {"parameters", {{"fluid", "cell"}, {"mass_kg", 2e-5}}}};
     packing = first.id;
     sheared = second.id;
-    store.declare_run(first);
-    store.declare_run(second);
-    store.start_run(packing, sample_host("aaaa"));
+    store.declare_stage(first);
+    store.declare_stage(second);
+    store.start_stage(packing, sample_host("aaaa"));
     record(store, packing, 500);
-    store.complete_run(packing);
+    store.complete_stage(packing);
 
-    store.start_run(sheared, sample_host("aaaa"));
+    store.start_stage(sheared, sample_host("aaaa"));
     record(store, sheared, 0);
-    store.interrupt_run(sheared, "stopped by a signal");
+    store.interrupt_stage(sheared, "stopped by a signal");
     {
       Store killed(store.folder(), Access::write);
       const std::string from = killed.checkpoints(sheared).back().sha256;
-      killed.start_run(sheared, sample_host("aaaa"), from);
+      killed.start_stage(sheared, sample_host("aaaa"), from);
       rejected = record(killed, sheared, 45600);
     }
     store.reject_checkpoint(sheared, rejected, "its SHA-256 is not the recorded one");
-    store.start_run(sheared, sample_host("bbbb"), store.checkpoints(sheared).back().sha256);
-    store.fail_run(sheared, "an overlap of 0.3 d");
-    store.start_run(sheared, sample_host("bbbb"), store.checkpoints(sheared).back().sha256);
+    store.start_stage(sheared, sample_host("bbbb"), store.checkpoints(sheared).back().sha256);
+    store.fail_stage(sheared, "an overlap of 0.3 d");
+    store.start_stage(sheared, sample_host("bbbb"), store.checkpoints(sheared).back().sha256);
     record(store, sheared, 91200);
     record(store, sheared, 136800);
-    store.complete_run(sheared);
+    store.complete_stage(sheared);
   }
 
   static std::string record(Store& store, const std::string& run, std::uint64_t step) {

@@ -58,12 +58,12 @@ TEST_F(Lineage, ARejectedCheckpointIsMarkedUntilItIsRecomputed) {
     return run.find(history_.rejected)->record.state == CheckpointState::rejected;
   };
   EXPECT_TRUE(rejected());
-  RunRecord longer = sample_run(2, 9);
-  const RunRecord known = store_.run(history_.sheared);
+  Stage longer = sample_run(2, 9);
+  const Stage known = store_.stage(history_.sheared);
   longer.parent = known.parent;
   longer.resolved = known.resolved;
-  store_.declare_run(longer);
-  store_.start_run(history_.sheared, {}, store_.checkpoints(history_.sheared).back().sha256);
+  store_.declare_stage(longer);
+  store_.start_stage(history_.sheared, {}, store_.checkpoints(history_.sheared).back().sha256);
   EXPECT_EQ(SampleHistory::record(store_, history_.sheared, 45600), history_.rejected);
   EXPECT_FALSE(rejected());
   const RunLineage run = run_lineage(store_, history_.sheared).back();

@@ -23,21 +23,21 @@ class MergeTest : public ::testing::Test {
   /// Brings the run from its newest checkpoint to cycle `to` of `target`, and completes it there.
   static void advance(Store& store, int run, std::uint64_t to, std::uint64_t target) {
     const std::string id = run_id(run);
-    store.declare_run(sample_run(run, target));
+    store.declare_stage(sample_run(run, target));
     const auto known = store.checkpoints(id);
     std::uint64_t cycle = 0;
     if (known.empty()) {
-      store.start_run(id, {});
+      store.start_stage(id, {});
       store.record_checkpoint(id, sample_checkpoint(id, 0));
     } else {
       cycle = static_cast<std::uint64_t>(known.back().cycle);
-      store.start_run(id, {}, known.back().sha256);
+      store.start_stage(id, {}, known.back().sha256);
     }
     while (cycle < to) store.record_checkpoint(id, sample_checkpoint(id, ++cycle * kCycle), {1, 2});
     if (to == target) {
-      store.complete_run(id, {}, target);
+      store.complete_stage(id, {}, target);
     } else {
-      store.interrupt_run(id, "SIGTERM");
+      store.interrupt_stage(id, "SIGTERM");
     }
   }
 
@@ -155,14 +155,14 @@ TEST_F(MergeTest, IntoOneOfTheSourcesAndBack) {
   advance(b, 0, 6, 6);
   advance(b, 1, 1, 1);
   a.merge({path("b")});
-  EXPECT_EQ(a.run(run_id(0)).state, RunState::completed);
-  EXPECT_EQ(a.run(run_id(0)).cycle, 6);
+  EXPECT_EQ(a.stage(run_id(0)).state, StageState::completed);
+  EXPECT_EQ(a.stage(run_id(0)).cycle, 6);
   b.merge({path("a")});
   EXPECT_EQ(facts("a"), facts("b"));
   EXPECT_TRUE(a.verify().ok());
   EXPECT_TRUE(b.verify().ok());
   // One effort for each checkpoint: each was counted once.
-  EXPECT_EQ(a.run(run_id(0)).wall_seconds, 6);
+  EXPECT_EQ(a.stage(run_id(0)).wall_seconds, 6);
 }
 
 // An older attempt with states of its own must not make a completed run unfinished.
@@ -171,18 +171,18 @@ TEST_F(MergeTest, TheFurthestStateWins) {
   {
     Store b = open("b");
     const std::string id = run_id(0);
-    b.declare_run(sample_run(0, 3));
-    b.start_run(id, {});
+    b.declare_stage(sample_run(0, 3));
+    b.start_stage(id, {});
     b.record_checkpoint(id, sample_checkpoint(id, kCycle / 2));  // interrupted within a cycle
-    b.interrupt_run(id, "SIGTERM");
+    b.interrupt_stage(id, "SIGTERM");
   }
   for (const auto& [into, from] : {std::pair("a", "b"), std::pair("b", "a")}) {
     const std::string name = std::string(into) + "-and-" + from;
     copy(into, name);
     Store store = open(name);
     store.merge({path(from)});
-    const RunRecord run = store.run(run_id(0));
-    EXPECT_EQ(run.state, RunState::completed) << name;
+    const Stage run = store.stage(run_id(0));
+    EXPECT_EQ(run.state, StageState::completed) << name;
     EXPECT_EQ(run.cycle, 3) << name;
     EXPECT_EQ(run.error, "") << name;
     EXPECT_EQ(store.checkpoints(run.id).size(), 5u) << name;
@@ -196,8 +196,8 @@ TEST_F(MergeTest, RejectsDifferentStatesByNameAndChangesNothing) {
   computed("c", {{1, 1, 1}});
   {
     Store b = open("b");
-    b.declare_run(sample_run(0, 3));
-    b.start_run(id, {});
+    b.declare_stage(sample_run(0, 3));
+    b.start_stage(id, {});
     Checkpoint other = sample_checkpoint(id, kCycle);
     other.state.velocity(0, 0) += 1e-12;
     b.record_checkpoint(id, other);
@@ -253,10 +253,10 @@ TEST_F(MergeTest, NeitherWaitsForNorStopsOtherPrograms) {
   computed("b", {{0, 2, 2}});
   Store a = open("a");
   Store runner = open("a");
-  runner.declare_run(sample_run(0, 2));
-  runner.start_run(run_id(0), {});
+  runner.declare_stage(sample_run(0, 2));
+  runner.start_stage(run_id(0), {});
   EXPECT_THROW(a.merge({path("b")}), MachineError);
-  runner.interrupt_run(run_id(0), "done");
+  runner.interrupt_stage(run_id(0), "done");
   EXPECT_EQ(a.merge({path("b")}).at(0).checkpoints, 3u);
 }
 
@@ -289,9 +289,9 @@ TEST_F(MergeTest, OfABackupRestoresRejectedFiles) {
   std::vector<std::string> damage;
   a.newest_valid_checkpoint(id, &damage);
   ASSERT_EQ(damage.size(), 1u);
-  ASSERT_EQ(a.run(id).cycle, 2);
+  ASSERT_EQ(a.stage(id).cycle, 2);
   EXPECT_EQ(a.merge({path("backup")}).at(0).checkpoints, 1u);
-  EXPECT_EQ(a.run(id).cycle, 3);
+  EXPECT_EQ(a.stage(id).cycle, 3);
   EXPECT_EQ(a.newest_valid_checkpoint(id)->record.cycle, 3);
   EXPECT_TRUE(a.verify().findings.empty());
   EXPECT_EQ(a.merge({path("backup")}).at(0).checkpoints, 0u);
@@ -300,7 +300,7 @@ TEST_F(MergeTest, OfABackupRestoresRejectedFiles) {
 TEST_F(MergeTest, ReadsAStoreOfTheFirstSchema) {
   Store a = open("a");
   a.merge({fs::path(SHEARCELL_TEST_DATA) / "store_v1"});
-  EXPECT_EQ(a.runs().size(), 2u);
+  EXPECT_EQ(a.stages().size(), 2u);
   EXPECT_EQ(a.events().size(), 16u);
   EXPECT_EQ(a.events().at(4).schema, 1u);
   EXPECT_TRUE(a.verify().ok());

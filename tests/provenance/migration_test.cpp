@@ -39,8 +39,8 @@ class MigrationTest : public ::testing::Test {
 void expect_what_was_stored(const Store& store) {
   EXPECT_EQ(store.head().seq, 15u);
   EXPECT_EQ(store.head().hash, kHead);
-  const RunRecord run = store.run(kSheared);
-  EXPECT_EQ(run.state, RunState::completed);
+  const Stage run = store.stage(kSheared);
+  EXPECT_EQ(run.state, StageState::completed);
   EXPECT_EQ(run.cycle, 2);
   EXPECT_EQ(run.attempts, 2u);
   EXPECT_EQ(run.state_hash, kLastState);
@@ -94,14 +94,14 @@ TEST_F(MigrationTest, RebuildGivesTheOldTables) {
 TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
   for (const Access access : {Access::read, Access::write}) {
     const Store store(path_, access);
-    for (const RunRecord& run : store.runs()) {
+    for (const Stage& run : store.stages()) {
       const auto ends = store.events("run/" + run.id, "RunCompleted");
       ASSERT_EQ(run.ends.size(), ends.size());
       for (std::size_t k = 0; k < ends.size(); ++k) {
         EXPECT_EQ(run.ends[k], member_of(ends[k].body().at("summary"), "ended"));
       }
-      ASSERT_EQ(run.memberships.size(), 1u);
-      const Membership& ask = run.memberships[0];
+      ASSERT_EQ(run.asks.size(), 1u);
+      const Ask& ask = run.asks[0];
       EXPECT_TRUE(ask.until.is_null());
       EXPECT_TRUE(ask.checkpoint_phases.empty());
       EXPECT_TRUE(ask.newest);
@@ -112,12 +112,12 @@ TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
 
 TEST_F(MigrationTest, AMigratedStoreCanBeContinued) {
   Store store(path_, Access::write);
-  RunRecord run = store.run(kSheared);
-  run.memberships.at(0).target_cycles = 3;
-  store.declare_run(run);
-  store.start_run(run.id, {}, store.checkpoints(run.id).back().sha256);
+  Stage run = store.stage(kSheared);
+  run.asks.at(0).target_cycles = 3;
+  store.declare_stage(run);
+  store.start_stage(run.id, {}, store.checkpoints(run.id).back().sha256);
   EXPECT_EQ(store.events("run/" + run.id).back().schema, 2u);
-  store.complete_run(run.id, {}, 3);
+  store.complete_stage(run.id, {}, 3);
   EXPECT_TRUE(store.verify(Head{15, kHead}).ok());
 }
 

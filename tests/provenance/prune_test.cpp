@@ -15,16 +15,16 @@ class PruneTest : public ::testing::Test {
   /// Run 0 with cycles 0 to 6 has completed; run 1, which began from cycle 3 of it, has failed.
   PruneTest() {
     for (int i = 0; i < 2; ++i) {
-      RunRecord declaration = sample_run(i, 6);
+      Stage declaration = sample_run(i, 6);
       if (i == 1) declaration.parent = run_id(0);
-      store_.declare_run(declaration);
+      store_.declare_stage(declaration);
     }
-    store_.start_run(run_id(0), {});
+    store_.start_stage(run_id(0), {});
     for (std::uint64_t c = 0; c <= 6; ++c) record(0, c);
-    store_.complete_run(run_id(0), {}, 6);
-    store_.start_run(run_id(1), {}, std::nullopt, records_[3].sha256);
+    store_.complete_stage(run_id(0), {}, 6);
+    store_.start_stage(run_id(1), {}, std::nullopt, records_[3].sha256);
     for (std::uint64_t c = 0; c <= 2; ++c) record(1, c);
-    store_.fail_run(run_id(1), "unstable");
+    store_.fail_stage(run_id(1), "unstable");
   }
 
   void record(int run, std::uint64_t cycle) {
@@ -57,8 +57,8 @@ TEST_F(PruneTest, ChoosesByCadenceAndRun) {
 
 // They have no cycles, so a cadence keeps the first and the last.
 TEST_F(PruneTest, ACadenceFreesCheckpointsOfSettling) {
-  store_.declare_run(sample_run(2, 6));
-  store_.start_run(run_id(2), {});
+  store_.declare_stage(sample_run(2, 6));
+  store_.start_stage(run_id(2), {});
   for (std::uint64_t part = 0; part <= 3; ++part) {
     Checkpoint checkpoint = sample_checkpoint(run_id(2), part * kCycle);
     checkpoint.cycle = 0;
@@ -76,13 +76,13 @@ TEST_F(PruneTest, FreesTheFilesAndKeepsTheRecords) {
   ASSERT_EQ(cycles(chosen), (std::vector<double>{1, 2, 4, 5, 1}));
   std::uint64_t bytes = 0;
   for (const CheckpointRecord& record : chosen) bytes += record.size;
-  const auto before = store_.runs();
+  const auto before = store_.stages();
   EXPECT_EQ(store_.prune(chosen), bytes);
   for (const CheckpointRecord& record : chosen) EXPECT_FALSE(there(record));
   EXPECT_EQ(cycles(store_.checkpoints(run_id(0))), (std::vector<double>{0, 3, 6}));
   EXPECT_EQ(store_.checkpoints(run_id(0), Listed::all).size(), 7u);
-  EXPECT_EQ(store_.run(run_id(0)).step, before[0].step);
-  EXPECT_EQ(store_.run(run_id(0)).state, RunState::completed);
+  EXPECT_EQ(store_.stage(run_id(0)).step, before[0].step);
+  EXPECT_EQ(store_.stage(run_id(0)).state, StageState::completed);
   EXPECT_TRUE(store_.prunable({{}, 3}).empty());
   const VerifyReport report = store_.verify();
   EXPECT_TRUE(report.ok());
@@ -142,7 +142,7 @@ TEST_F(PruneTest, RestoresTheSameBytesOnly) {
 
 TEST_F(PruneTest, AcceptsAPrunedStateThatIsRecordedAgain) {
   store_.prune({records_[8]});
-  store_.start_run(run_id(1), {}, records_[9].sha256);
+  store_.start_stage(run_id(1), {}, records_[9].sha256);
   store_.record_checkpoint(run_id(1), sample_checkpoint(run_id(1), kCycle));
   EXPECT_EQ(store_.checkpoints(run_id(1)).size(), 3u);
   EXPECT_TRUE(there(records_[8]));

@@ -51,7 +51,7 @@ TEST_F(Crate, MeetsItsSpecificationsAndHoldsItsFiles) {
                               "/../provenance/check_crate.py '" + crate_.string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(files_.size(), of_type("File").size() + 1);
-  EXPECT_EQ(entities_.at("./").at("datePublished"), store_.run(history_.sheared).updated_at);
+  EXPECT_EQ(entities_.at("./").at("datePublished"), store_.stage(history_.sheared).updated_at);
   // One packing and three states; the rejected one is described but not copied.
   EXPECT_EQ(read_bytes(crate_ / "manifests" / (sha256_hex("manifest") + ".yaml")), "manifest");
   EXPECT_FALSE(entities_.contains("checkpoints/" + history_.rejected + ".h5"));
@@ -97,11 +97,11 @@ TEST_F(Crate, AnActionHasManifestPackingSeedAndParameters) {
 TEST_F(Crate, AnActionHasNoLaterManifestAndNoConstantOfTheRecord) {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));  // times are kept in milliseconds
   store_.register_manifest("later", "later.yaml", {{"experiment", "drag"}});
-  const RunRecord run = store_.run(history_.sheared);
-  RunRecord again = sample_run(2, 3);
+  const Stage run = store_.stage(history_.sheared);
+  Stage again = sample_run(2, 3);
   again.parent = run.parent, again.resolved = run.resolved;
-  again.memberships[0].manifest = sha256_hex("later");
-  store_.declare_run(again);
+  again.asks[0].manifest = sha256_hex("later");
+  store_.declare_stage(again);
   const CrateFacts facts = crate_facts(store_, history_.sheared, "", {"mass_kg"});
   EXPECT_EQ(facts.manifests.size(), 2U);
   const json metadata = ro_crate_metadata(facts);

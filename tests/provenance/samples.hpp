@@ -53,19 +53,19 @@ inline std::string run_id(int number) {
   return sha256_hex("run " + std::to_string(number));
 }
 
-inline RunRecord sample_run(int number, std::uint64_t target = 5) {
-  RunRecord d;
+inline Stage sample_run(int number, std::uint64_t target = 5) {
+  Stage d;
   d.id = run_id(number);
   d.kind = "shear";
   d.resolved = {{"amplitude_rad", 0.0833}, {"drag", "still"}, {"number", number}};
   d.grains = 20;
-  d.memberships = {{.experiment = "drag",
-                    .scale = "smoke",
-                    .variant = "drag=still",
-                    .swept = {{"drag", "still"}},
-                    .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
-                    .manifest = sha256_hex("manifest"),
-                    .target_cycles = target}};
+  d.asks = {{.experiment = "drag",
+             .scale = "smoke",
+             .variant = "drag=still",
+             .swept = {{"drag", "still"}},
+             .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
+             .manifest = sha256_hex("manifest"),
+             .target_cycles = target}};
   return d;
 }
 

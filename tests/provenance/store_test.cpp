@@ -20,7 +20,7 @@ using namespace test;  // NOLINT(google-build-using-namespace): the helpers of t
 
 class StoreTest : public ::testing::Test {
  protected:
-  StoreTest() { store_.declare_run(sample_run(1)); }
+  StoreTest() { store_.declare_stage(sample_run(1)); }
 
   Store open(Access access = Access::create) const { return Store(path_, access); }
 
@@ -47,9 +47,9 @@ TEST_F(StoreTest, IsNotMixedWithOtherFiles) {
 }
 
 TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
-  EXPECT_EQ(store_.run(id_).state, RunState::declared);
-  EXPECT_EQ(store_.start_run(id_, {{"cpu", "test"}}), 1u);
-  EXPECT_EQ(store_.run(id_).state, RunState::running);
+  EXPECT_EQ(store_.stage(id_).state, StageState::declared);
+  EXPECT_EQ(store_.start_stage(id_, {{"cpu", "test"}}), 1u);
+  EXPECT_EQ(store_.stage(id_).state, StageState::running);
   const Checkpoint c = sample_checkpoint(id_, 45600);
   const CheckpointRecord record =
       store_.record_checkpoint(id_, c, {.wall_seconds = 2.5, .particle_steps = 912000});
@@ -57,10 +57,10 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   EXPECT_EQ(record.step, 45600u);
   EXPECT_EQ(record.observables, c.observables);
   EXPECT_EQ(fs::file_size(path_ / record.file), record.size);
-  store_.complete_run(id_);
+  store_.complete_stage(id_);
 
-  const RunRecord run = store_.run(id_);
-  EXPECT_EQ(run.state, RunState::completed);
+  const Stage run = store_.stage(id_);
+  EXPECT_EQ(run.state, StageState::completed);
   EXPECT_EQ(run.cycle, 1);
   EXPECT_EQ(run.step, 45600u);
   EXPECT_EQ(run.state_hash, record.state_hash);
@@ -68,9 +68,9 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   EXPECT_EQ(run.particle_steps, 912000);
   EXPECT_EQ(run.attempts, 1u);
   EXPECT_EQ(run.resolved, sample_run(1).resolved);
-  ASSERT_EQ(run.memberships.size(), 1u);
-  EXPECT_EQ(run.memberships[0].seed, sample_run(1).memberships[0].seed);
-  EXPECT_EQ(run.memberships[0].target_cycles, 5u);
+  ASSERT_EQ(run.asks.size(), 1u);
+  EXPECT_EQ(run.asks[0].seed, sample_run(1).asks[0].seed);
+  EXPECT_EQ(run.asks[0].target_cycles, 5u);
   EXPECT_EQ(types("run/" + id_), (std::vector<std::string>{"RunDeclared", "RunStarted",
                                                            "CheckpointRecorded", "RunCompleted"}));
   EXPECT_TRUE(store_.verify().ok());
@@ -79,14 +79,14 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
 TEST_F(StoreTest, IsTheSameWhenOpenedAgain) {
   {
     Store killed = open();
-    killed.start_run(id_, {});
+    killed.start_stage(id_, {});
     killed.record_checkpoint(id_, sample_checkpoint(id_));
   }
-  EXPECT_EQ(store_.run(id_).state, RunState::running);
+  EXPECT_EQ(store_.stage(id_).state, StageState::running);
   const auto newest = store_.newest_valid_checkpoint(id_);
   ASSERT_TRUE(newest.has_value());
   EXPECT_EQ(state_hash(newest->checkpoint), state_hash(sample_checkpoint(id_)));
-  EXPECT_EQ(store_.start_run(id_, {}, newest->record.sha256), 2u);
+  EXPECT_EQ(store_.start_stage(id_, {}, newest->record.sha256), 2u);
   const Event resumed = store_.events("run/" + id_).back();
   EXPECT_EQ(resumed.type, "RunResumed");
   EXPECT_EQ(resumed.body()["from"]["sha256"], newest->record.sha256);
@@ -102,64 +102,64 @@ TEST_F(StoreTest, KeepsAManifestOnce) {
 }
 
 TEST_F(StoreTest, RecordsADeclarationOnlyIfItIsNew) {
-  RunRecord d = sample_run(1);
-  store_.declare_run(d);
+  Stage d = sample_run(1);
+  store_.declare_stage(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.memberships[0].target_cycles = 3;  // less than what is declared
-  store_.declare_run(d);
+  d.asks[0].target_cycles = 3;  // less than what is declared
+  store_.declare_stage(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.memberships[0].experiment = "other";
-  store_.declare_run(d);
-  EXPECT_EQ(store_.run(id_).memberships.size(), 2u);
-  EXPECT_EQ(store_.run(id_).memberships[1].target_cycles, 3u);
-  EXPECT_EQ(store_.run(id_).target_cycles, 5u);
+  d.asks[0].experiment = "other";
+  store_.declare_stage(d);
+  EXPECT_EQ(store_.stage(id_).asks.size(), 2u);
+  EXPECT_EQ(store_.stage(id_).asks[1].target_cycles, 3u);
+  EXPECT_EQ(store_.stage(id_).target_cycles, 5u);
   d.resolved["drag"] = "cell";
-  EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
+  EXPECT_THROW(store_.declare_stage(d), std::invalid_argument);
   d.id = "run 1";
-  EXPECT_THROW(store_.declare_run(d), std::invalid_argument);
-  RunRecord orphan = sample_run(2);
+  EXPECT_THROW(store_.declare_stage(d), std::invalid_argument);
+  Stage orphan = sample_run(2);
   orphan.parent = run_id(99);
-  EXPECT_THROW(store_.declare_run(orphan), std::invalid_argument);
+  EXPECT_THROW(store_.declare_stage(orphan), std::invalid_argument);
 }
 
 TEST_F(StoreTest, ALongerTargetReopensACompletedRun) {
-  store_.start_run(id_, {});
-  store_.complete_run(id_);
-  EXPECT_THROW(store_.start_run(id_, {}), ConcurrencyConflict);
-  store_.declare_run(sample_run(1, 8));
-  EXPECT_EQ(store_.run(id_).state, RunState::declared);
-  EXPECT_EQ(store_.run(id_).target_cycles, 8u);
-  EXPECT_EQ(store_.run(id_).memberships.size(), 1u);
-  EXPECT_EQ(store_.run(id_).memberships[0].target_cycles, 8u);
-  EXPECT_EQ(store_.start_run(id_, {}), 2u);
+  store_.start_stage(id_, {});
+  store_.complete_stage(id_);
+  EXPECT_THROW(store_.start_stage(id_, {}), ConcurrencyConflict);
+  store_.declare_stage(sample_run(1, 8));
+  EXPECT_EQ(store_.stage(id_).state, StageState::declared);
+  EXPECT_EQ(store_.stage(id_).target_cycles, 8u);
+  EXPECT_EQ(store_.stage(id_).asks.size(), 1u);
+  EXPECT_EQ(store_.stage(id_).asks[0].target_cycles, 8u);
+  EXPECT_EQ(store_.start_stage(id_, {}), 2u);
 }
 
 TEST_F(StoreTest, ReportsWhyARunStopped) {
-  store_.start_run(id_, {});
-  store_.interrupt_run(id_, "SIGINT");
-  EXPECT_EQ(store_.run(id_).state, RunState::interrupted);
-  EXPECT_EQ(store_.run(id_).error, "SIGINT");
-  store_.start_run(id_, {});
-  EXPECT_EQ(store_.run(id_).error, "");
-  store_.fail_run(id_, "an overlap of 0.3 d", {{"overlap_d", 0.3}});
-  EXPECT_EQ(store_.run(id_).state, RunState::failed);
-  EXPECT_EQ(store_.run(id_).error, "an overlap of 0.3 d");
+  store_.start_stage(id_, {});
+  store_.interrupt_stage(id_, "SIGINT");
+  EXPECT_EQ(store_.stage(id_).state, StageState::interrupted);
+  EXPECT_EQ(store_.stage(id_).error, "SIGINT");
+  store_.start_stage(id_, {});
+  EXPECT_EQ(store_.stage(id_).error, "");
+  store_.fail_stage(id_, "an overlap of 0.3 d", {{"overlap_d", 0.3}});
+  EXPECT_EQ(store_.stage(id_).state, StageState::failed);
+  EXPECT_EQ(store_.stage(id_).error, "an overlap of 0.3 d");
 }
 
 TEST_F(StoreTest, ANewMembershipDoesNotStopARunner) {
-  store_.start_run(id_, {});
-  RunRecord shared = sample_run(1);
-  shared.memberships[0].experiment = "other";
-  open().declare_run(shared);
+  store_.start_stage(id_, {});
+  Stage shared = sample_run(1);
+  shared.asks[0].experiment = "other";
+  open().declare_stage(shared);
   store_.record_checkpoint(id_, sample_checkpoint(id_));
-  store_.complete_run(id_);
+  store_.complete_stage(id_);
   EXPECT_TRUE(store_.verify().ok());
 }
 
 TEST_F(StoreTest, RecordsTheSameCheckpointOnce) {
   const Checkpoint c = sample_checkpoint(id_);
   EXPECT_THROW(store_.record_checkpoint(id_, c), ConcurrencyConflict);  // no program holds the run
-  store_.start_run(id_, {});
+  store_.start_stage(id_, {});
   const CheckpointRecord once = store_.record_checkpoint(id_, c);
   EXPECT_EQ(store_.record_checkpoint(id_, c).seq, once.seq);
   EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
@@ -167,11 +167,11 @@ TEST_F(StoreTest, RecordsTheSameCheckpointOnce) {
 }
 
 TEST_F(StoreTest, SkipsADamagedNewestCheckpoint) {
-  store_.start_run(id_, {});
+  store_.start_stage(id_, {});
   const auto first = store_.record_checkpoint(id_, sample_checkpoint(id_, 45600));
   const auto second = store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));
   const auto third = store_.record_checkpoint(id_, sample_checkpoint(id_, 136800));
-  store_.interrupt_run(id_, "SIGTERM");
+  store_.interrupt_stage(id_, "SIGTERM");
   fs::resize_file(path_ / third.file, third.size / 2);
   fs::remove(path_ / second.file);
 
@@ -188,13 +188,13 @@ TEST_F(StoreTest, SkipsADamagedNewestCheckpoint) {
   EXPECT_EQ(damage.size(), 2u);
   EXPECT_EQ(store_.checkpoints(id_).size(), 1u);
   EXPECT_EQ(store_.checkpoints(id_, Listed::all).size(), 3u);
-  EXPECT_EQ(store_.run(id_).step, 45600u);
+  EXPECT_EQ(store_.stage(id_).step, 45600u);
   EXPECT_EQ(types("run/" + id_).back(), "CheckpointRejected");
 
-  store_.start_run(id_, {}, first.sha256);
+  store_.start_stage(id_, {}, first.sha256);
   store_.record_checkpoint(id_, sample_checkpoint(id_, 91200));  // computed again
   EXPECT_EQ(store_.newest_valid_checkpoint(id_)->record.sha256, second.sha256);
-  EXPECT_EQ(store_.run(id_).step, 91200u);
+  EXPECT_EQ(store_.stage(id_).step, 91200u);
 }
 
 TEST_F(StoreTest, TheManifestRegisteredLastIsTheNewestEvenIfTheClockWentBack) {
@@ -230,14 +230,14 @@ TEST_F(StoreTest, ListsCheckpointsInATimeIndependentOfTheNumberOfRuns) {
 }
 
 TEST_F(StoreTest, FindsARunByItsPrefix) {
-  for (int i = 0; i < 40; ++i) store_.declare_run(sample_run(i));
-  EXPECT_EQ(store_.find_run(run_id(7).substr(0, 12)).id, run_id(7));
-  expect_refused<NotFound>([&] { store_.find_run(""); }, {"several runs", "\n  ..."});
-  EXPECT_THROW(store_.find_run("xyz"), NotFound);
-  EXPECT_THROW(store_.find_run("%"), NotFound);
-  EXPECT_THROW(store_.run(run_id(7).substr(0, 12)), NotFound);
-  EXPECT_EQ(store_.runs().size(), 40u);
-  EXPECT_EQ(store_.runs()[7].id, run_id(7));
+  for (int i = 0; i < 40; ++i) store_.declare_stage(sample_run(i));
+  EXPECT_EQ(store_.find_stage(run_id(7).substr(0, 12)).id, run_id(7));
+  expect_refused<NotFound>([&] { store_.find_stage(""); }, {"several runs", "\n  ..."});
+  EXPECT_THROW(store_.find_stage("xyz"), NotFound);
+  EXPECT_THROW(store_.find_stage("%"), NotFound);
+  EXPECT_THROW(store_.stage(run_id(7).substr(0, 12)), NotFound);
+  EXPECT_EQ(store_.stages().size(), 40u);
+  EXPECT_EQ(store_.stages()[7].id, run_id(7));
 }
 
 TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
@@ -264,16 +264,16 @@ TEST_F(StoreTest, AcceptsRecordsFromManyThreadsAndProcesses) {
     std::optional<Store> own;  // a connection of its own, as another process has
     if (i % 2 == 0) own.emplace(path_, Access::write);
     Store& store = own ? *own : store_;
-    store.declare_run(sample_run(i));
-    store.start_run(run_id(i), {});
+    store.declare_stage(sample_run(i));
+    store.start_stage(run_id(i), {});
     for (std::uint64_t step = 0; step < 5; ++step) {
       store.record_checkpoint(run_id(i), sample_checkpoint(run_id(i), step));
-      store.runs();
+      store.stages();
     }
-    store.complete_run(run_id(i));
+    store.complete_stage(run_id(i));
   });
   for (int i = 2; i < 2 + kRuns; ++i) {
-    EXPECT_EQ(store_.run(run_id(i)).state, RunState::completed);
+    EXPECT_EQ(store_.stage(run_id(i)).state, StageState::completed);
   }
   const VerifyReport report = store_.verify();
   EXPECT_TRUE(report.ok());
@@ -283,10 +283,10 @@ TEST_F(StoreTest, AcceptsRecordsFromManyThreadsAndProcesses) {
 TEST_F(StoreTest, AReaderChangesNothing) {
   const std::string before = read_bytes(path_ / "store.sqlite");
   Store reader = open(Access::read);
-  EXPECT_THROW(reader.declare_run(sample_run(2)), std::logic_error);
-  EXPECT_THROW(reader.start_run(id_, {}), std::logic_error);
+  EXPECT_THROW(reader.declare_stage(sample_run(2)), std::logic_error);
+  EXPECT_THROW(reader.start_stage(id_, {}), std::logic_error);
   EXPECT_THROW(reader.rebuild(), std::logic_error);
-  EXPECT_EQ(reader.runs().size(), 1u);
+  EXPECT_EQ(reader.stages().size(), 1u);
   EXPECT_TRUE(reader.verify().ok());
   EXPECT_EQ(read_bytes(path_ / "store.sqlite"), before);
 }
@@ -296,7 +296,7 @@ TEST_F(StoreTest, CanBeCreatedAfterAnInterruptedCreation) {
   fs::create_directories(other);
   write_bytes(other / "store.sqlite", "");
   Store store(other, Access::create);
-  store.declare_run(sample_run(1));
+  store.declare_stage(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
 }
 
@@ -305,16 +305,16 @@ TEST_F(StoreTest, IsReadOnlyIfItMayNotBeWritten) {
   const auto expect_only_read = [&](const fs::path& path) {
     fs::permissions(path, fs::perms::owner_write, fs::perm_options::remove);
     expect_refused<MachineError>([&] { open(Access::write); }, {path.string(), "permissions"});
-    EXPECT_EQ(open(Access::read).runs().size(), 1u);
+    EXPECT_EQ(open(Access::read).stages().size(), 1u);
     fs::permissions(path, fs::perms::owner_write, fs::perm_options::add);
   };
   expect_only_read(path_);
   expect_only_read(path_ / "store.sqlite");
-  EXPECT_EQ(open(Access::write).runs().size(), 1u);
+  EXPECT_EQ(open(Access::write).stages().size(), 1u);
 }
 
 TEST_F(StoreTest, IsReadOnlyWithoutItsObjects) {
-  store_.start_run(id_, {});
+  store_.start_stage(id_, {});
   store_.record_checkpoint(id_, sample_checkpoint(id_));
   const Head head = store_.head();
   fs::remove_all(path_ / "objects");

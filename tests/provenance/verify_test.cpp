@@ -26,20 +26,20 @@ class VerifyTest : public ::testing::Test {
     store.register_manifest("a: 1\n", "a.yaml", {{"experiment", "a"}});
     for (int i = 0; i < 2; ++i) {
       const std::string id = run_id(i);
-      RunRecord declaration = sample_run(i);
+      Stage declaration = sample_run(i);
       if (i == 1) declaration.parent = run_id(0);
-      store.declare_run(declaration);
-      store.start_run(id, {{"cpu", "test"}});
+      store.declare_stage(declaration);
+      store.start_stage(id, {{"cpu", "test"}});
       for (std::uint64_t step = 0; step < 3; ++step) {
         records_.push_back(store.record_checkpoint(id, sample_checkpoint(id, step), {0.1, 60}));
       }
     }
-    store.complete_run(run_id(0), {{"cycles", 3}});
-    store.fail_run(run_id(1), "unstable");
+    store.complete_stage(run_id(0), {{"cycles", 3}});
+    store.fail_stage(run_id(1), "unstable");
     store.reject_checkpoint(run_id(1), records_.back().sha256, "test");
     store.prune({records_[0]});
     store.record_replay(run_id(0), true, {{"step", 2}});
-    store.declare_run(sample_run(0, 9));
+    store.declare_stage(sample_run(0, 9));
     store.record_figure("S2a", {{"inputs", {records_[2].sha256}}});
     head_ = store.head();
     events_ = store.events();
@@ -304,7 +304,7 @@ TEST_F(VerifyTest, NamesOrphans) {
 
 TEST_F(VerifyTest, ReportsAStepThatWasReproducedDifferently) {
   Store store(path_, Access::write);
-  store.start_run(run_id(1), {}, records_[4].sha256);
+  store.start_stage(run_id(1), {}, records_[4].sha256);
   Checkpoint other = sample_checkpoint(run_id(1), 1);
   other.state.position(0, 1) += 1;
   store.record_checkpoint(run_id(1), other);

@@ -144,9 +144,9 @@ TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
 TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
   const Manifest longer = parse_manifest(tiny_manifest("  cycles: 5\n", kBothFluids), "tiny.yaml");
   declare(store_, longer, expand(longer));
-  const RunRecord run = runs_of_kind(store_, "shear").front();
-  store_.start_run(run.id, {}, store_.checkpoints(run.id).back().sha256);
-  store_.fail_run(run.id, "blew up");
+  const Stage run = runs_of_kind(store_, "shear").front();
+  store_.start_stage(run.id, {}, store_.checkpoints(run.id).back().sha256);
+  store_.fail_stage(run.id, "blew up");
   const std::string html = make(drawings());
   const std::size_t begin = html.find("<ol class=\"workflow\"");
   ASSERT_NE(begin, std::string::npos);
@@ -212,22 +212,22 @@ TEST_F(ReportOf, NeedsAnExperiment) {
 // Such a store is never written by this program, and may be handed to it.
 TEST_F(ReportOf, ShowsMarkupAsText) {
   const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a()'>\"&<!--";
-  RunRecord run;
-  run.memberships.emplace_back().target_cycles = 1;
-  run.memberships[0].manifest = store_.register_manifest(
+  Stage run;
+  run.asks.emplace_back().target_cycles = 1;
+  run.asks[0].manifest = store_.register_manifest(
       "# " + evil + "\n", evil + ".yaml",
       {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
   run.id = std::string(64, 'a');
   run.kind = evil;
   run.resolved = {{evil, evil}};
   run.grains = 10;
-  run.memberships[0].experiment = evil;
-  run.memberships[0].scale = evil;
-  run.memberships[0].variant = evil;
-  run.memberships[0].swept = {{evil, evil}};
-  store_.declare_run(run);
-  store_.start_run(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
-  store_.fail_run(run.id, evil);
+  run.asks[0].experiment = evil;
+  run.asks[0].scale = evil;
+  run.asks[0].variant = evil;
+  run.asks[0].swept = {{evil, evil}};
+  store_.declare_stage(run);
+  store_.start_stage(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
+  store_.fail_stage(run.id, evil);
 
   for (const ReportOptions& options : {ReportOptions(), drawings()}) {
     const std::string html = make(options);
