@@ -317,15 +317,4 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
   return table;
 }
 
-FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves) {
-  static const std::array<MeasureColumn, 3> measures = {
-      {{"phi", "", "phi"}, {"phi_u", "", "phi_uncorrected"}, {"overlap", "d", "mean_overlap_d"}}};
-  return against_cycle(name, curves, measures, phi_axis());
-}
-
-FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves) {
-  return against_phi(name, curves, {"crystalline", "percent", "crystalline_percent"},
-                     crystalline_axis());
-}
-
 }  // namespace shearcell

@@ -106,9 +106,4 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
 FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
                         const MeasureColumn& measure, Axis y);
 
-/// phi, and columns of phi_u and the mean overlap.
-FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves);
-/// The percentage of crystalline grains.
-FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves);
-
 }  // namespace shearcell

@@ -140,11 +140,6 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
-std::vector<Figure> stated_figures(const RegisteredManifest& manifest) {
-  const std::optional<Manifest> read_one = parsed(manifest);
-  return read_one ? stated_figures(*read_one) : std::vector<Figure>();
-}
-
 /// Names the variants of the runs, which may be of several versions of a manifest.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -257,7 +252,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const RegisteredManifest& manifest : manifests) {
-    std::vector<Figure> stated = stated_figures(manifest);
+    const std::optional<Manifest> read_one = parsed(manifest);
+    std::vector<Figure> stated = read_one ? stated_figures(*read_one) : std::vector<Figure>();
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;

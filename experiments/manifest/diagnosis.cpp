@@ -515,16 +515,13 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
   return found;
 }
 
-/// A scale, its variants and its number of seeds.
-struct Planned {
-  const Scale& scale;
-  std::span<const Variant> variants;
-  std::size_t seeds;
+struct ClaimProblems {
+  std::vector<string> refusals;  // why `figures` will refuse the claim
+  std::vector<string> lacks;     // why the claim will be undecided
 };
 
-/// The variants that the claim compares.
-std::array<std::vector<const Variant*>, 2> sides_of(const ClaimSpec& claim,
-                                                    std::span<const Variant> variants) {
+ClaimProblems problems_of(const ClaimSpec& claim, const Scale& scale,
+                          std::span<const Variant> variants, std::size_t seeds) {
   std::array<std::vector<const Variant*>, 2> sides;
   for (const Variant& variant : variants) {
     for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
@@ -532,57 +529,24 @@ std::array<std::vector<const Variant*>, 2> sides_of(const ClaimSpec& claim,
     }
   }
   const bool lacks_one = sides[0].empty() || (sides[1].empty() && !claim.published);
-  return claim.optional && lacks_one ? decltype(sides)() : sides;
-}
-
-/// Why `figures` will refuse the claim.
-std::vector<string> refusals_of(const ClaimSpec& claim, std::span<const Variant> variants) {
-  const auto sides = sides_of(claim, variants);
-  if (claim.optional && sides[0].empty()) return {};
+  if (claim.optional && lacks_one) return {};
   const auto run_of = [](const Variant& variant) {
     return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).id;
   };
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
-  return problems_of_sides(claim, {sides[0].size(), sides[1].size()},
-                           one_each && run_of(*sides[0][0]) == run_of(*sides[1][0]));
-}
-
-/// Why the claim will be undecided.
-std::vector<string> lacks_of(const ClaimSpec& claim, const Planned& planned) {
-  std::vector<string> found;
-  auto sides = sides_of(claim, planned.variants);
-  if (claim.optional && sides[0].empty()) return found;
+  ClaimProblems found = {
+      problems_of_sides(claim, {sides[0].size(), sides[1].size()},
+                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0])),
+      {}};
   sides[0].insert(sides[0].end(), sides[1].begin(), sides[1].end());
   for (const Variant* side : sides[0]) {
-    string lack = lack_of(claim, planned.scale, *side);
+    string lack = lack_of(claim, scale, *side);
     if (lack.empty()) continue;
-    found.push_back(std::move(lack));
+    found.lacks.push_back(std::move(lack));
     break;
   }
-  if (planned.seeds < least_runs) {
-    found.push_back(
-        format("a verdict takes at least {} seeds, not {}.", least_runs, planned.seeds));
-  }
-  return found;
-}
-
-/// Whether another scale can decide the claim. Then nothing is said of a small one, which is for
-/// trying.
-bool is_decided_elsewhere(const ClaimSpec& claim, const Manifest& manifest, const Scale& scale) {
-  return std::ranges::any_of(whole_scales(manifest), [&](const Scale& other) {
-    if (other.name == scale.name) return false;
-    const std::vector<Variant> variants = variants_of(other);
-    return refusals_of(claim, variants).empty() &&
-           lacks_of(claim, {other, variants, other.seeds->values.size()}).empty();
-  });
-}
-
-std::vector<string> problems_of(const ClaimSpec& claim, const Manifest& manifest,
-                                const Planned& planned) {
-  std::vector<string> found = refusals_of(claim, planned.variants);
-  const std::vector<string> lacks = lacks_of(claim, planned);
-  if (!lacks.empty() && !is_decided_elsewhere(claim, manifest, planned.scale)) {
-    found.insert(found.end(), lacks.begin(), lacks.end());
+  if (seeds < least_runs) {
+    found.lacks.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
   }
   return found;
 }
@@ -607,9 +571,18 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale,
                                 kind, own.name, problem));
     }
   };
+  const std::vector<Scale> scales = whole_scales(manifest);
   for (const auto& plot : manifest.plots) warn_of("plot", plot, problems_of(plot, scale, variants));
   for (const auto& claim : manifest.claims) {
-    warn_of("claim", claim, problems_of(claim, manifest, {scale, variants, seeds}));
+    const ClaimProblems here = problems_of(claim, scale, variants, seeds);
+    warn_of("claim", claim, here.refusals);
+    // A small scale is for trying: nothing is said where another one can decide the claim.
+    const bool decided = std::ranges::any_of(scales, [&](const Scale& other) {
+      if (here.lacks.empty() || other.name == scale.name) return false;
+      const auto there = problems_of(claim, other, variants_of(other), other.seeds->values.size());
+      return there.refusals.empty() && there.lacks.empty();
+    });
+    if (!decided) warn_of("claim", claim, here.lacks);
   }
 }
 

@@ -375,7 +375,7 @@ TEST(OwnClaim, ComparesTheCyclesAtWhichALevelIsReached) {
   EXPECT_EQ(verdict.claim,
             "own: the cycle of crystalline_percent >= 5 is later by more than a factor of 1.07 for "
             "fluid=cell than for fluid=still");
-  EXPECT_TRUE(has(verdict.note, "first: median cycle 37 (0 of 4 runs end before theirs)"))
+  EXPECT_TRUE(has(verdict.note, "first: median cycle 37.5 (0 of 4 runs end before theirs)"))
       << verdict.note;
   claim.reaches = 28;  // from cycle 59 to 62
   EXPECT_TRUE(has(verdict_of(claim).note, "(2 of 4 runs end before theirs)"));
@@ -425,7 +425,9 @@ TEST(OwnFigure, SimulatesOnlyTheCyclesOfItsPartsThatNeedIt) {
   claim.cycles = {{1, 15}};
   const PlotSpec plot{.name = "p", .y = "phi", .figure = "f"};
   const auto simulated = [&](const PlotSpec& of) {
-    return own_figures({{of}}, {{claim}}, {}).at(0).simulated;
+    const std::vector<PlotSpec> plots = {of};
+    const std::vector<ClaimSpec> claims = {claim};
+    return own_figures(plots, claims, {}).at(0).simulated;
   };
   EXPECT_EQ(simulated(plot), Cycles({1, 15}));
   EXPECT_EQ(find_figure("B5")->simulated, Cycles({1, 15}));
