@@ -36,8 +36,6 @@ CREATE TABLE leases(
 ) STRICT;
 )sql";
 
-constexpr const char* kSelectLeases = "SELECT * FROM leases ";
-
 // Small corrections of the clock must not end a lease.
 constexpr std::uint64_t kClockSlackMs = 5000;
 
@@ -119,16 +117,10 @@ void create_leases(Database& database) {
   database.execute(kLeaseTable);
 }
 
-std::optional<Lease> query_lease(const Database& database, std::string_view run) {
-  if (!has_table(database)) return std::nullopt;
-  Statement query(database, std::string(kSelectLeases) + "WHERE run = ?", run);
-  if (!query.step()) return std::nullopt;
-  return read_lease(query);
-}
-
-std::vector<Lease> query_leases(const Database& database) {
+std::vector<Lease> query_leases(const Database& database, std::string_view run) {
   if (!has_table(database)) return {};
-  return Statement(database, std::string(kSelectLeases) + "ORDER BY run").all(read_lease);
+  return Statement(database, "SELECT * FROM leases WHERE ?1 IN ('', run) ORDER BY run", run)
+      .all(read_lease);
 }
 
 void put_lease(Database& database, const Lease& lease) {

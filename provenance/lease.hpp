@@ -48,8 +48,8 @@ std::string describe(const Holder& holder);
 
 /// Creates the table. Stores of schema 1 have no table and no leases.
 void create_leases(sqlite::Database& database);
-std::optional<Lease> query_lease(const sqlite::Database& database, std::string_view run);
-std::vector<Lease> query_leases(const sqlite::Database& database);
+/// Of one run, or of all (""), lapsed ones too.
+std::vector<Lease> query_leases(const sqlite::Database& database, std::string_view run = "");
 /// Writes the lease, replacing that of any other holder.
 void put_lease(sqlite::Database& database, const Lease& lease);
 /// Deletes the lease if it still has this token.

@@ -20,7 +20,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// {} are the columns of schema 3.
+// `registered` is the seq of the last registration, and `newest` the manifest that was registered
+// last of those that declared a run at the scale.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -38,7 +39,8 @@ CREATE TABLE runs(
   wall_seconds REAL NOT NULL DEFAULT 0,
   particle_steps REAL NOT NULL DEFAULT 0,
   error TEXT NOT NULL DEFAULT '',
-  updated_at TEXT NOT NULL{}
+  updated_at TEXT NOT NULL,
+  ends TEXT NOT NULL DEFAULT '[]'
 ) STRICT;
 CREATE TABLE memberships(
   run TEXT NOT NULL REFERENCES runs(id),
@@ -50,7 +52,9 @@ CREATE TABLE memberships(
   labels TEXT NOT NULL,
   target_cycles INTEGER NOT NULL,
   checkpoint_every INTEGER NOT NULL,
-  ordinal INTEGER NOT NULL,{}
+  ordinal INTEGER NOT NULL,
+  until TEXT NOT NULL,
+  checkpoint_phases TEXT NOT NULL,
   PRIMARY KEY (run, experiment, scale, variant, seed, manifest)
 ) STRICT;
 CREATE TABLE checkpoints(
@@ -74,11 +78,6 @@ CREATE TABLE figures(
   recorded_at TEXT NOT NULL,
   provenance TEXT NOT NULL
 ) STRICT;
-)sql";
-
-// `registered` is the seq of the last registration, and `newest` the manifest that was registered
-// last of those that declared a run at the scale.
-constexpr const char* kVersionTables = R"sql(
 CREATE TABLE manifests(
   sha256 TEXT PRIMARY KEY,
   registered_at TEXT NOT NULL,
@@ -91,15 +90,6 @@ CREATE TABLE newest(
   PRIMARY KEY (experiment, scale)
 ) STRICT;
 )sql";
-
-constexpr std::array<std::string_view, 6> kTableNames = {"runs",    "memberships", "checkpoints",
-                                                         "figures", "manifests",   "newest"};
-
-std::string newest_tables() {
-  return fmt::format(kTables, ",\n  ends TEXT NOT NULL DEFAULT '[]'",
-                     "\n  until TEXT NOT NULL,\n  checkpoint_phases TEXT NOT NULL,") +
-         kVersionTables;
-}
 
 /// Throws StoreDamaged when a run is to be longer, or its checkpoints further apart, than any run
 /// of this program. Step counts could overflow.
@@ -353,11 +343,7 @@ std::optional<Record> only(std::vector<Record> found) {
 }  // namespace
 
 void create_projections(Database& database) {
-  database.execute(newest_tables());
-}
-
-std::string old_tables() {
-  return fmt::format(kTables, "", "");
+  database.execute(std::string(kTables));
 }
 
 Database empty_projections(const std::string& name) {
@@ -397,21 +383,15 @@ std::string try_apply(Database& database, const Event& event) {
 
 void derive_projections(Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& /*lock*/) {
-  for (auto table = kTableNames.rbegin(); table != kTableNames.rend(); ++table) {
+  for (auto table = projected_tables.rbegin(); table != projected_tables.rend(); ++table) {
     database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
   }
   create_projections(database);
   log.for_each([&database](const Event& event) { apply(database, event); });
 }
 
-void rebuild_projections(Database& database, const EventLog& log) {
-  sqlite::WriteTransaction lock(database);
-  derive_projections(database, log, lock);
-  lock.commit();
-}
-
 void shadow_projections(Database& database, const EventLog& log) {
-  std::string tables = newest_tables();
+  std::string tables(kTables);
   for (std::size_t at = 0; (at = tables.find("CREATE TABLE", at)) != tables.npos; at += 12) {
     tables.replace(at, 12, "CREATE TEMP TABLE");
   }
@@ -422,7 +402,7 @@ void shadow_projections(Database& database, const EventLog& log) {
 
 std::map<std::string, TableRows> projection_rows(const Database& database) {
   std::map<std::string, TableRows> tables;
-  for (const std::string_view table : kTableNames) {
+  for (const std::string_view table : projected_tables) {
     TableRows& rows = tables[std::string(table)];
     Statement query(database, fmt::format("SELECT * FROM {}", table));
     while (query.step()) rows.push_back(query.cells());

@@ -2,6 +2,7 @@
 // Tables derived from the events, for fast queries. They can be dropped and derived again.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,10 +16,12 @@
 
 namespace shearcell {
 
-/// Creates the empty tables runs, memberships, checkpoints, figures, manifests and newest.
+/// Schemas 1 and 2 lack the last two, and columns of the first two.
+inline constexpr std::array<std::string_view, 6> projected_tables = {
+    "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
+
+/// Creates the empty tables.
 void create_projections(sqlite::Database& database);
-/// The statements that created the tables of schemas 1 and 2.
-std::string old_tables();
 /// The same in memory, for the events of a log that may be damaged or forged; errors name it
 /// `name`.
 sqlite::Database empty_projections(const std::string& name);
@@ -29,9 +32,7 @@ void apply(sqlite::Database& database, const Event& event);
 /// The same, and checks the digest of a manifest. Returns why the event cannot be applied, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
-/// Drops the tables and derives them from the whole log in one transaction.
-void rebuild_projections(sqlite::Database& database, const EventLog& log);
-/// The same in a transaction of the caller.
+/// Drops the tables and derives them from the whole log.
 void derive_projections(sqlite::Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& lock);
 /// Derives them in memory, in place of those of an older schema, for a connection that only reads.

@@ -51,33 +51,34 @@ class Graph {
 };
 
 json file_entity(const std::string& path, const std::string& name, const std::string& format,
-                 std::uint64_t size, const std::string& sha256) {
+                 std::uint64_t size, const std::string& sha256, const std::string& made,
+                 const std::string& description) {
   return {{"@id", path},
           {"@type", "File"},
           {"name", name},
           {"encodingFormat", format},
           {"contentSize", std::to_string(size)},  // RO-Crate asks for text, in bytes
-          {"sha256", sha256}};
+          {"sha256", sha256},
+          {"dateCreated", made},
+          {"description", description}};
 }
 
 json add_manifest(Graph& graph, const ManifestText& manifest) {
   // Only the file name: the rest of the path is private.
   const std::string name = fs::path(manifest.path).filename().string();
-  json entity = file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
-                            "application/yaml", manifest.text.size(), manifest.sha256);
-  entity["description"] = "The experiment as it was declared";
-  entity["dateCreated"] = manifest.registered_at;
-  return graph.add(std::move(entity));
+  return graph.add(file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
+                               "application/yaml", manifest.text.size(), manifest.sha256,
+                               manifest.registered_at, "The experiment as it was declared"));
 }
 
 json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   const CheckpointRecord& c = checkpoint.record;
-  json entity = file_entity(crate_path_of_checkpoint(c.sha256),
-                            fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle),
-                            "application/x-hdf5", c.size, c.sha256);
-  entity["description"] = fmt::format(
-      "H5MD 1.1 file with the exact state after {} time steps, {:.9g} s", c.step, c.time_s);
-  entity["dateCreated"] = checkpoint.recorded_at;
+  json entity =
+      file_entity(crate_path_of_checkpoint(c.sha256),
+                  fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle),
+                  "application/x-hdf5", c.size, c.sha256, checkpoint.recorded_at,
+                  fmt::format("H5MD 1.1 file with the exact state after {} time steps, {:.9g} s",
+                              c.step, c.time_s));
   entity["identifier"] = "urn:x-shearcell:state:" + c.state_hash;
   if (!checkpoint.kept()) {
     entity["@id"] = "#checkpoint-" + c.sha256;
@@ -136,26 +137,6 @@ json add_parameters(Graph& graph, const CrateFacts& facts, const Stage& run) {
   return given;
 }
 
-std::string status_of(const Attempt& attempt) {
-  const bool completed = attempt.outcome == AttemptOutcome::completed;
-  const bool running = attempt.outcome == AttemptOutcome::running;
-  return fmt::format("http://schema.org/{}ActionStatus", completed ? "Completed"
-                                                         : running ? "Active"
-                                                                   : "Failed");
-}
-
-std::string error_of(const Attempt& attempt) {
-  if (attempt.outcome != AttemptOutcome::lost) return attempt.why;
-  return "ended without a record (a kill or a power cut); a later attempt continued";
-}
-
-/// The recorded checkpoint from which the attempt started; nullptr without one.
-const CheckpointHistory* initial_state(const CrateFacts& facts, const Attempt& attempt) {
-  const auto stage = std::ranges::find(facts.stages, attempt.from_run,
-                                       [](const RunLineage& each) { return each.run.id; });
-  return stage == facts.stages.end() ? nullptr : stage->find(attempt.from_checkpoint);
-}
-
 /// Inputs of the attempts of a run.
 struct Given {
   std::vector<std::pair<std::string, json>> manifests;  ///< when they were registered
@@ -172,8 +153,11 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
   for (const auto& [registered_at, manifest] : given.manifests) {
     if (end.empty() || registered_at <= end) objects.push_back(manifest);
   }
-  if (const auto* from = initial_state(facts, attempt)) {
-    objects.push_back(add_checkpoint(graph, *from));
+  for (const RunLineage& other : facts.stages) {
+    const CheckpointHistory* from = other.find(attempt.from_checkpoint);
+    if (other.run.id == attempt.from_run && from != nullptr) {
+      objects.push_back(add_checkpoint(graph, *from));
+    }
   }
   objects.insert(objects.end(), given.parameters.begin(), given.parameters.end());
   json results = json::array();
@@ -181,6 +165,13 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
     results.push_back(add_checkpoint(graph, *stage.find(sha256)));
   }
   const Maker maker = maker_of(attempt.host);
+  const bool lost = attempt.outcome == AttemptOutcome::lost;
+  const char* status = attempt.outcome == AttemptOutcome::completed ? "Completed"
+                       : attempt.outcome == AttemptOutcome::running ? "Active"
+                                                                    : "Failed";
+  const std::string error =
+      lost ? "ended without a record (a kill or a power cut); a later attempt continued"
+           : attempt.why;
   json action = {
       {"@id", fmt::format("#attempt-{}-{}", stage.run.id, a + 1)},
       {"@type", "CreateAction"},
@@ -188,11 +179,11 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
       {"instrument", add_software(graph, maker)},
       {"location", add_host(graph, maker)},
       {"startTime", attempt.started_at},
-      {"actionStatus", reference(status_of(attempt))},
+      {"actionStatus", reference(fmt::format("http://schema.org/{}ActionStatus", status))},
       {"object", objects},
       {"result", results}};
   if (!attempt.ended_at.empty()) action["endTime"] = attempt.ended_at;
-  if (const std::string error = error_of(attempt); !error.empty()) action["error"] = error;
+  if (!error.empty()) action["error"] = error;
   return graph.add(std::move(action));
 }
 
@@ -211,20 +202,6 @@ std::string title_of(const Stage& run) {
   const Ask& member = run.asks.front();
   return fmt::format("{} {}, seed {}: {} of {} grains (run {:.12})", member.experiment,
                      member.variant, member.seed, run.kind, run.grains, run.id);
-}
-
-std::string newest_moment(const CrateFacts& facts) {
-  std::string newest;
-  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.run.updated_at);
-  return newest;
-}
-
-json parts_of(const json& entities) {
-  json parts = json::array();
-  for (const json& entity : entities) {
-    if (entity.at("@type") == "File") parts.push_back(reference(entity.at("@id")));
-  }
-  return parts;
 }
 
 }  // namespace
@@ -271,8 +248,12 @@ json ro_crate_metadata(const CrateFacts& facts) {
              {"@type", "CreativeWork"},
              {"name", "Process Run Crate"},
              {"version", "0.5"}});
-  const json& entities = graph.entities();
-
+  json parts = json::array();
+  for (const json& entity : graph.entities()) {
+    if (entity.at("@type") == "File") parts.push_back(reference(entity.at("@id")));
+  }
+  std::string newest;
+  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.run.updated_at);
   const Stage& run = facts.stages.back().run;
   json all = json::array();
   all.push_back({{"@id", kCrateMetadata},
@@ -288,12 +269,12 @@ json ro_crate_metadata(const CrateFacts& facts) {
                     "machines, the manifests and the parameters that made them",
                     run.id)},
        {"identifier", crate_identifier(run.id)},
-       {"datePublished", newest_moment(facts)},
+       {"datePublished", newest},
        {"license", licence},
        {"conformsTo", json::array({reference(kProfile)})},
-       {"hasPart", parts_of(entities)},
+       {"hasPart", parts},
        {"mentions", actions}});
-  all.insert(all.end(), entities.begin(), entities.end());
+  all.insert(all.end(), graph.entities().begin(), graph.entities().end());
   return {{"@context", json::array({kCrateSpecification + std::string("/context"),
                                     "https://w3id.org/ro/terms/workflow-run/context"})},
           {"@graph", all}};

@@ -142,8 +142,7 @@ class Store {
   /// SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);
 
-  /// `type` is "CampaignSubmitted" or "JobQueued". Throws ConcurrencyConflict when the stream does
-  /// not hold exactly `seen` events.
+  /// `type` is "CampaignSubmitted" or "JobQueued"; `seen` as of record().
   void record_submission(const std::string& type, const nlohmann::json& facts,
                          std::optional<std::uint64_t> seen = std::nullopt);
 
@@ -201,8 +200,10 @@ class Store {
  private:
   /// Appends one event and applies it.
   void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
-  /// The same in a transaction of its own.
-  void record(std::string_view stream, const NewEvent& event);
+  /// The same in a transaction of its own. Throws ConcurrencyConflict when the stream does not hold
+  /// exactly `seen` events.
+  void record(std::string_view stream, const NewEvent& event,
+              std::optional<std::uint64_t> seen = std::nullopt);
   /// Appends an event that only the holder may write; with `release`, ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);

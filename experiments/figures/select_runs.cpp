@@ -10,7 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -99,8 +98,7 @@ Ask first_ask(const Stage& run) {
 
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection) {
   Filter experiment(selection.experiments), scale(selection.scales);
-  Filter seed(texts_of(selection.seeds));
-  Filter variant(selection.variants, has_values, keys_of);
+  Filter seed(selection.seeds), variant(selection.variants);
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`

@@ -59,7 +59,7 @@ string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
                                                    : "Use more grains.";
 }
 
-// Checks one variant at one scale. The scale is complete (whole_scale()).
+// Checks one variant at one scale.
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -74,7 +74,7 @@ struct VariantCheck {
     if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
       report("engine", why, "Leave `engine` out, or use a protocol that shears.");
     }
-    if (!scale.checkpoints->phases.empty()) check_phases();
+    if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
   // The value of a parameter and where it is stated; null if it is a default.
@@ -183,14 +183,14 @@ struct VariantCheck {
 
   void check_phases() {
     const auto refuse = [&](string problem, string remedy) {
-      problems.add(scale.checkpoints->at, "checkpoints.phases", std::move(problem), "",
+      problems.add(scale.checkpoints.at, "checkpoints.phases", std::move(problem), "",
                    std::move(remedy));
     };
     const Drive motion = drive(p);
-    const std::vector<double>& phases = scale.checkpoints->phases;
+    const std::vector<double>& phases = scale.checkpoints.phases;
     if (p.protocol == ProtocolKind::stiffen) {
       refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
-    } else if (string why = unfit_for_lammps(p, *scale.checkpoints); !why.empty()) {
+    } else if (string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
       refuse(std::move(why), "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
@@ -275,11 +275,11 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
                          std::span<const Variant> variants, std::vector<string>& warnings) {
   std::map<string, Position> stated;
   for (const auto& [key, setting] : scale.settings) stated[key] = setting.at;
-  for (const auto* axes : {&scale.sweep->grid, &scale.sweep->zip}) {
+  for (const auto* axes : {&scale.sweep.grid, &scale.sweep.zip}) {
     for (const SweepAxis& axis : *axes) stated[axis.key] = axis.at;
   }
-  if (scale.until->until) stated["until"] = scale.until->at;
-  if (scale.checkpoints->every_cycles != 1) stated["checkpoints"] = scale.checkpoints->at;
+  if (scale.until.until) stated["until"] = scale.until.at;
+  if (scale.checkpoints.every_cycles != 1) stated["checkpoints"] = scale.checkpoints.at;
   for (const auto& [key, at] : stated) {
     string why;
     for (const Variant& variant : variants) {
@@ -380,7 +380,7 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 bool has_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t cycle,
                     std::uint64_t back) {
   const bool stiffens = variant.parameters.protocol == ProtocolKind::stiffen;
-  const std::uint64_t every = stiffens ? 1 : scale.checkpoints->every_cycles;
+  const std::uint64_t every = stiffens ? 1 : scale.checkpoints.every_cycles;
   const std::uint64_t last = length_of(variant);
   const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
   return cycle >= back && has(cycle) && has(cycle - back);
@@ -390,7 +390,7 @@ bool has_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t cy
 // checkpoint depends on `back` alone, so the first multiple and the last cycle decide.
 bool has_any_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t first,
                         std::uint64_t end, std::uint64_t back) {
-  const std::uint64_t begin = std::max(first, back), every = scale.checkpoints->every_cycles;
+  const std::uint64_t begin = std::max(first, back), every = scale.checkpoints.every_cycles;
   const std::uint64_t last = length_of(variant);
   for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
     if (begin <= cycle && cycle <= end && has_checkpoint(variant, scale, cycle, back)) return true;
@@ -421,7 +421,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
   } else if (!draws_every_cycle(plot) && !is_of_run(plot)) {
-    if (!plot.cycle && scale.until->until) return "";  // not known where the runs end
+    if (!plot.cycle && scale.until.until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(length_of(shortest)));
     where = format(" at cycle {}", cycles[0]);
   }
@@ -491,7 +491,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
         "it would average over the values of {}. Leave out `by` for a curve of each variant.",
         key));
   }
-  const bool phases = !scale.checkpoints->phases.empty();
+  const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
     found.push_back(format("shear_strain is 0 at whole cycles. State {}.",
                            plot.cycles ? "`phases` of `checkpoints`"
@@ -571,15 +571,14 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale,
                                 kind, own.name, problem));
     }
   };
-  const std::vector<Scale> scales = whole_scales(manifest);
   for (const auto& plot : manifest.plots) warn_of("plot", plot, problems_of(plot, scale, variants));
   for (const auto& claim : manifest.claims) {
     const ClaimProblems here = problems_of(claim, scale, variants, seeds);
     warn_of("claim", claim, here.refusals);
     // A small scale is for trying: nothing is said where another one can decide the claim.
-    const bool decided = std::ranges::any_of(scales, [&](const Scale& other) {
+    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
       if (here.lacks.empty() || other.name == scale.name) return false;
-      const auto there = problems_of(claim, other, variants_of(other), other.seeds->values.size());
+      const auto there = problems_of(claim, other, variants_of(other), other.seeds.values.size());
       return there.refusals.empty() && there.lacks.empty();
     });
     if (!decided) warn_of("claim", claim, here.lacks);
@@ -595,20 +594,21 @@ string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
 }
 
 void check_variants(const Manifest& manifest) {
-  const std::vector<Scale> scales = whole_scales(manifest);
+  const std::vector<Scale> scales = scales_of(manifest);
   ProblemList problems(manifest.file);
   std::uint64_t runs = 0;
-  for (std::size_t s = 0; s < scales.size(); ++s) {
-    const Scale& scale = scales[s];
+  for (const Scale& scale : scales) {
     const string path = scale.name.empty() ? "" : "scales." + scale.name;
     // What the scale itself states; a swept key of `base` is the sweep's default.
-    for (const auto& [key, setting] : path.empty() ? Settings() : manifest.scales[s].settings) {
-      if (find_axis(*scale.sweep, key) == nullptr) continue;
-      problems.add(setting.at, path + "." + key, "has no effect, since the sweep sets this key",
-                   setting.value.dump(), "Give the scale a sweep of its own instead.");
+    for (const string& key : scale.own) {
+      const auto setting = scale.settings.find(key);
+      if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
+      problems.add(setting->second.at, path + "." + key,
+                   "has no effect, since the sweep sets this key", setting->second.value.dump(),
+                   "Give the scale a sweep of its own instead.");
     }
-    const std::uint64_t variants = variant_count(*scale.sweep);
-    const std::uint64_t seeds = scale.seeds->values.size();
+    const std::uint64_t variants = variant_count(scale.sweep);
+    const std::uint64_t seeds = scale.seeds.values.size();
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,
                    format("the manifest expands to more than {} runs", ManifestLimits::runs), "",

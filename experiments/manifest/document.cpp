@@ -142,10 +142,10 @@ class TreeBuilder : public YAML::EventHandler {
                 const std::string& value) override {
     check_tag(mark, tag);
     check_text(mark, value);
-    keep(anchor, add({.kind = Node::Kind::scalar,
-                      .at = position(mark),
-                      .text = value,
-                      .quoted = tag == "!"}));
+    Node node{
+        .kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"};
+    keep(anchor, node);
+    add(std::move(node));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
@@ -215,10 +215,9 @@ class TreeBuilder : public YAML::EventHandler {
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
-    for (const Node& item : node.items) check_size(item, at, depth + 1);
-    for (const auto& [key, value] : node.entries) {
-      count_value(at);
-      check_size(value, at, depth + 1);
+    for (const Node& part : node.parts) {
+      if (node.kind == Node::Kind::map) count_value(at);  // its key
+      check_size(part, at, depth + 1);
     }
   }
 
@@ -239,19 +238,31 @@ class TreeBuilder : public YAML::EventHandler {
     count_value(node.at);
     if (open_.empty()) return root_ = std::move(node);
     auto& [parent, anchor, keys, awaits_value] = open_.back();
-    if (parent.kind == Node::Kind::list) return parent.items.emplace_back(std::move(node));
-    awaits_value = !awaits_value;
-    if (awaits_value) {
+    const bool is_key = parent.kind == Node::Kind::map && !awaits_value;
+    awaits_value = is_key;
+    if (is_key) {
       if (node.kind != Node::Kind::scalar)
         refuse(file_, node.at, "", "a key must be a plain name", "", "");
+      const std::string name = printable(node.text);
       if (!keys.insert(node.text).second) {
-        refuse(file_, node.at, printable(node.text), "appears twice in one map", "",
-               "Keep one of them.");
+        refuse(file_, node.at, name, "appears twice in one map", "", "Keep one of them.");
       }
-      return parent.entries.emplace_back(std::move(node), Node{}).first;
+      return parent.parts.emplace_back(
+          Node{.at = node.at,  // an empty value is reported at its key
+               .key = std::move(node.text),
+               .key_at = node.at,
+               .path = parent.path.empty() ? name : parent.path + '.' + name});
     }
-    auto& [key, value] = parent.entries.back();
-    if (node.kind == Node::Kind::null) node.at = key.at;  // an empty value is reported at its key
+    if (parent.kind == Node::Kind::list) {
+      node.key_at = parent.key_at;
+      node.path = parent.path;
+      return parent.parts.emplace_back(std::move(node));
+    }
+    Node& value = parent.parts.back();
+    if (node.kind == Node::Kind::null) return value;
+    node.key = std::move(value.key);
+    node.key_at = value.key_at;
+    node.path = std::move(value.path);
     return value = std::move(node);
   }
 
@@ -290,6 +301,11 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
 }
 
 }  // namespace
+
+const Node* Node::find(string_view name) const {
+  const auto found = std::ranges::find(parts, name, &Node::key);
+  return found == parts.end() || kind != Kind::map ? nullptr : &*found;
+}
 
 Node read_document(string_view text, string_view file) {
   if (text.size() > ManifestLimits::bytes) {

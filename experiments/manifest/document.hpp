@@ -6,21 +6,29 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
 
 namespace shearcell {
 
+/// A value of the document.
 struct Node {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
   Position at = {};
-  std::string text = {};                            ///< of a scalar
-  bool quoted = false;                              ///< written in quotes or as a block
-  std::vector<Node> items = {};                     ///< of a list
-  std::vector<std::pair<Node, Node>> entries = {};  ///< of a map; keys are different scalars
+  std::string text = {};         ///< of a scalar
+  bool quoted = false;           ///< written in quotes or as a block
+  std::vector<Node> parts = {};  ///< items of a list, or values of a map, whose keys differ
+  std::string key = {};          ///< of a value of a map
+  Position key_at = {};          ///< of this key; of an item, of the key of its list
+  std::string path = {};         ///< to this key, as in "scales.smoke.grains"
+
+  bool is_scalar() const { return kind == Kind::scalar; }
+  /// Whether it is a map with at least one key.
+  bool is_map() const { return kind == Kind::map && !parts.empty(); }
+  /// The value of a key of the map, or nullptr.
+  const Node* find(std::string_view name) const;
 };
 
 /// One YAML document without tags or repeated keys, within ManifestLimits. An alias becomes a copy

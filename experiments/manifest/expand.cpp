@@ -12,7 +12,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
-#include "experiments/manifest/filter.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -31,7 +30,7 @@ Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& w
            "Leave it out.");
   }
   const std::string name = wanted.value_or(std::string(kDefaultScale));
-  if (const Scale* found = find_scale(manifest, name)) return whole_scale(manifest, *found);
+  if (const Scale* found = find_named(manifest.scales, name)) return *found;
   const std::vector<std::string_view> names = names_of(manifest.scales);
   const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
   if (!wanted) {
@@ -42,9 +41,10 @@ Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& w
          known);
 }
 
-// Checks an option that replaces a parameter.
-void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value) {
-  if (const auto wrong = check_value(*find_field(key), value)) {
+// Checks an option that replaces what the manifest states.
+void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value,
+                  const Field& field) {
+  if (const auto wrong = check_value(field, value)) {
     refuse(manifest.file, {}, key, wrong->problem, printable(value_text(value)), wrong->remedy);
   }
 }
@@ -52,11 +52,7 @@ void check_option(const Manifest& manifest, const char* key, const nlohmann::jso
 std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& stated,
                                         const std::optional<std::uint64_t>& wanted) {
   if (!wanted) return stated.values;
-  const std::string got = std::to_string(*wanted);
-  if (*wanted == 0 || *wanted > ManifestLimits::runs) {
-    refuse(manifest.file, {}, "seeds", "is out of range", got,
-           fmt::format("It takes an integer from 1 to {}.", ManifestLimits::runs));
-  }
+  check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
   if (stated.counted) {
     std::vector<std::uint64_t> seeds(*wanted);
     std::iota(seeds.begin(), seeds.end(), 1);
@@ -64,21 +60,21 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   }
   if (*wanted > stated.values.size()) {
     refuse(manifest.file, {}, "seeds",
-           fmt::format("the manifest lists {} seeds only", stated.values.size()), got,
-           "List more, or state a count.");
+           fmt::format("the manifest lists {} seeds only", stated.values.size()),
+           std::to_string(*wanted), "List more, or state a count.");
   }
   return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
 }
 
 // Adds the engine as a swept key, so that figures never average runs of two engines.
 void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
-  check_option(manifest, "engine", engine);
-  if (find_axis(*scale.sweep, "engine") != nullptr) {
+  check_option(manifest, "engine", engine, *find_field("engine"));
+  if (find_axis(scale.sweep, "engine") != nullptr) {
     refuse(manifest.file, {}, "engine", "the manifest sweeps this key itself", engine,
            "Leave the option out.");
   }
   if (value_at(scale, "engine") == engine) return;
-  std::vector<SweepAxis>& grid = scale.sweep->grid;
+  std::vector<SweepAxis>& grid = scale.sweep.grid;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
@@ -94,8 +90,8 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
   run.target_cycles = target_cycles(run.parameters);
   run.prepare = prepare_stage(run.parameters, seed);
   run.last = last_stage(run.parameters, seed, run.prepare);
-  if (run.last.kind == name_of(StageKind::shear) && scale.until->until) {
-    run.until = to_json(*scale.until->until);
+  if (run.last.kind == name_of(StageKind::shear) && scale.until.until) {
+    run.until = to_json(*scale.until.until);
   }
   run.asks = {run};
   return run;
@@ -129,13 +125,13 @@ void name_variants(const Manifest& manifest, Plan& plan) {
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   Scale scale = choose_scale(manifest, options.scale);
   if (options.cycles) {
-    check_option(manifest, "cycles", *options.cycles);
+    check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));
     scale.settings["cycles"] = {*options.cycles, {}};
-    std::erase_if(scale.sweep->zip, [](const SweepAxis& axis) { return is_length(axis.key); });
+    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return is_length(axis.key); });
   }
   if (options.engine) set_engine(manifest, *options.engine, scale);
-  const std::vector<std::uint64_t> seeds = choose_seeds(manifest, *scale.seeds, options.seeds);
-  if (variant_count(*scale.sweep) > ManifestLimits::runs / seeds.size()) {
+  const std::vector<std::uint64_t> seeds = choose_seeds(manifest, scale.seeds, options.seeds);
+  if (variant_count(scale.sweep) > ManifestLimits::runs / seeds.size()) {
     refuse(manifest.file, {}, "seeds",
            fmt::format("the manifest expands to more than {} runs", ManifestLimits::runs), "",
            "Use fewer seeds.");
@@ -147,10 +143,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                       .scale = plan.scale,
                       .variant = {},
                       .manifest = sha256_hex(manifest.text),
-                      .checkpoint_every = scale.checkpoints->every_cycles,
-                      .checkpoint_phases = scale.checkpoints->phases};
+                      .checkpoint_every = scale.checkpoints.every_cycles,
+                      .checkpoint_phases = scale.checkpoints.phases};
   std::map<std::string, std::string> variant_of;  // by the last stage's key
-  Filter wanted(options.variants, has_values, keys_of), seed_filter(texts_of(options.only_seeds));
+  Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds;
   std::ranges::copy_if(seeds, std::back_inserter(chosen_seeds), [&](std::uint64_t seed) {
     return seed_filter.passes(std::to_string(seed));
@@ -163,7 +159,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   for (const Variant& variant : variants) {
     if (!wanted.passes(variant.name())) continue;
     chosen.push_back(variant);
-    if (const std::string why = unfit_for_lammps(variant.parameters, *scale.checkpoints);
+    if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {
       refuse(manifest.file, {}, "engine", why, "lammps",
              "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");

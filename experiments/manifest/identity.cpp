@@ -31,25 +31,29 @@ json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
-Stage stage_of(StageKind stage, const Parameters& given, std::uint64_t seed,
-               const std::string& parent) {
-  const Parameters parameters = without_ineffective(given);
+json record_of(const StageInputs& stage) {
+  const Parameters parameters = without_ineffective(stage.parameters);
   json values = json::object();
   for (const Field& field : schema()) {
     json value = field.identity.recorded_as.empty() ? field.get(parameters)
                                                     : as_json(field, field.identity.recorded_as);
-    if (enters(field.identity, stage, parameters.protocol, value)) {
+    if (enters(field.identity, stage.stage, parameters.protocol, value)) {
       values[std::string(field.name)] = std::move(value);
     }
   }
-  json resolved = {{"stage", name_of(stage)}, {"seed", seed}, {"parameters", std::move(values)}};
-  if (!parent.empty()) resolved["parent"] = parent;
+  json resolved = {
+      {"stage", name_of(stage.stage)}, {"seed", stage.seed}, {"parameters", std::move(values)}};
+  if (!stage.parent.empty()) resolved["parent"] = stage.parent;
+  return resolved;
+}
+
+Stage new_stage(const StageInputs& stage) {
   Stage made;
-  made.id = stage_key(resolved);
-  made.parent = parent;
-  made.kind = name_of(stage);
-  made.resolved = std::move(resolved);
-  made.grains = parameters.grains;
+  made.resolved = record_of(stage);
+  made.id = stage_key(made.resolved);
+  made.parent = stage.parent;
+  made.kind = name_of(stage.stage);
+  made.grains = stage.parameters.grains;
   return made;
 }
 
@@ -80,60 +84,34 @@ UnreadableRecord damaged(std::string_view key, std::string_view problem) {
   return UnreadableRecord(fmt::format("record of a stage: {} {}", key, problem));
 }
 
-const json& member(const json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end()) throw damaged(key, "is missing");
-  return *found;
-}
-
-std::string text_member(const json& object, const char* key) {
-  const json& value = member(object, key);
-  if (!value.is_string()) throw damaged(key, "is not a text");
-  return value.get<std::string>();
-}
-
-std::optional<ProtocolKind> protocol_in(const json& values) {
-  const auto found = values.find("protocol");
-  if (found == values.end() || !found->is_string()) return std::nullopt;
-  return value_of<ProtocolKind>(found->get_ref<const std::string&>());
-}
-
 // A parameter that does not affect the stage keeps its default. One that affects it and is missing
 // from the record has the value at which it is omitted.
-Parameters read_parameters(StageKind stage, const json& values) {
+void read_parameters(const json& values, StageInputs& record) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
-  const auto protocol = protocol_in(values);
-  Parameters parameters;
-  for (const Field& field : schema()) {
+  Parameters& p = record.parameters;
+  for (const Field& field : schema()) {  // `protocol` before what depends on it
     const auto found = values.find(field.name);
-    if (found != values.end() && enters(field.identity, stage, protocol, *found)) {
-      if (const auto wrong = check_value(field, *found)) {
-        throw damaged(field.name, fmt::format("{}. {}", wrong->problem, wrong->remedy));
-      }
-      const std::string_view constant = field.identity.recorded_as;
-      const bool is_constant = !constant.empty() && *found == as_json(field, constant);
-      field.set(parameters, is_constant ? field.get(Parameters{}) : *found);
-    } else if (found == values.end() && enters(field.identity, stage, protocol, nullptr)) {
-      if (field.identity.omitted_at.empty()) throw damaged(field.name, "is missing");
-      field.set(parameters, as_json(field, field.identity.omitted_at));
-    } else if (found != values.end()) {
-      throw damaged(field.name, "does not belong there");
+    const Identity& identity = field.identity;
+    if (found == values.end()) {
+      if (identity.omitted_at.empty() || !enters(identity, record.stage, p.protocol, nullptr))
+        continue;
+      field.set(p, as_json(field, identity.omitted_at));
+    } else if (const auto wrong = check_value(field, *found)) {
+      throw damaged(field.name, fmt::format("{}. {}", wrong->problem, wrong->remedy));
+    } else if (identity.recorded_as.empty() || *found != as_json(field, identity.recorded_as)) {
+      field.set(p, *found);
     }
   }
-  for (const auto& [key, value] : values.items()) {
-    if (find_field(key) == nullptr) throw damaged(key.substr(0, 64), "is unknown");
-  }
-  return parameters;
 }
 
 }  // namespace
 
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  return stage_of(StageKind::prepare, parameters, seed, "");
+  return new_stage({StageKind::prepare, "", seed, parameters});
 }
 
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent) {
-  return stage_of(stage_after_settling(parameters.protocol), parameters, seed, parent.id);
+  return new_stage({stage_after_settling(parameters.protocol), parent.id, seed, parameters});
 }
 
 std::string stage_key(const json& resolved) {
@@ -141,34 +119,33 @@ std::string stage_key(const json& resolved) {
 }
 
 StageInputs read_stage(const json& resolved) {
-  if (!resolved.is_object()) throw UnreadableRecord("record of a stage: not a JSON object");
-  const std::string name = text_member(resolved, "stage");
-  const std::optional<StageKind> stage = value_of<StageKind>(name);
+  const json name = member_of(resolved, "stage"), parent = member_of(resolved, "parent");
+  const json seed = member_of(resolved, "seed"), values = member_of(resolved, "parameters");
+  const auto stage = value_of<StageKind>(name.is_string() ? name.get<std::string>() : "");
   if (!stage) throw damaged("stage", "is not one of prepare, shear, stiffen");
-  StageInputs record;
-  record.stage = *stage;
-  const bool prepares = record.stage == StageKind::prepare;
-  if (!prepares) {
-    record.parent = text_member(resolved, "parent");
+  if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
+  StageInputs record{*stage, "", seed.get<std::uint64_t>(), {}};
+  if (record.stage == StageKind::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
+  if (record.stage != StageKind::prepare) {
+    if (parent.is_string()) record.parent = parent.get<std::string>();
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
   }
-  const json& seed = member(resolved, "seed");
-  if (!seed.is_number_unsigned()) throw damaged("seed", "is not a whole number >= 0");
-  record.seed = seed.get<std::uint64_t>();
-  record.parameters = read_parameters(record.stage, member(resolved, "parameters"));
-  if (record.parameters != without_ineffective(record.parameters)) {
-    throw damaged("pressure_at", "has no effect on such a run, so it cannot be part of its record");
+  read_parameters(values, record);
+  if (record.stage != StageKind::prepare &&
+      stage_after_settling(record.parameters.protocol) != record.stage) {
+    throw damaged("protocol", "is not one that shears");  // this program never writes such a record
   }
-  if (record.stage == StageKind::stiffen) record.parameters.protocol = ProtocolKind::stiffen;
-  // This program never writes such a record.
-  if (record.stage == StageKind::shear &&
-      stage_after_settling(record.parameters.protocol) != StageKind::shear) {
-    throw damaged("protocol", "is not one that shears");
+  json own = record_of(record);
+  for (const Field& field : schema()) {
+    const auto found = values.find(field.name);
+    if (field.identity.recorded_as.empty() || found == values.end()) continue;
+    own["parameters"][std::string(field.name)] = *found;  // older runs have other values
   }
-  for (const auto& [key, value] : resolved.items()) {
-    const bool known =
-        key == "stage" || key == "seed" || key == "parameters" || (key == "parent" && !prepares);
-    if (!known) throw damaged(key.substr(0, 64), "is unknown");
+  for (const json& change : json::diff(own, resolved)) {
+    const std::string key = change.at("path").get<std::string>();
+    throw damaged(
+        key.substr(key.rfind('/') + 1, 64),
+        change.at("op") == "remove" ? "is missing" : "is unknown, or has no effect on such a run");
   }
   return record;
 }
@@ -193,9 +170,8 @@ json effective_parameters(const json& resolved) {
 }
 
 EngineKind engine_of(const json& resolved) {
-  const json::json_pointer engine("/parameters/engine");
-  const bool lammps = resolved.is_object() && resolved.contains(engine) &&
-                      resolved.at(engine) == name_of(EngineKind::lammps);
+  const bool lammps =
+      member_of(member_of(resolved, "parameters"), "engine") == name_of(EngineKind::lammps);
   return lammps ? EngineKind::lammps : EngineKind::shearcell;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/manifest/lines.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -29,6 +31,12 @@ std::string text_of_line(std::string_view text, int line) {
   return printable(trimmed(text.substr(0, text.find('\n'))), longest);
 }
 
+// The scale of that name, or what is stated for all scales.
+const Scale& scale_of(const Manifest& manifest, std::string_view name) {
+  const Scale* found = find_named(manifest.scales, name);
+  return found == nullptr ? manifest.base : *found;
+}
+
 }  // namespace
 
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
@@ -39,36 +47,29 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   const auto add = [&](std::string key, const Position& at) {
     found.push_back({std::move(key), at.line, text_of_line(text, at.line)});
   };
-  const Scale* own = find_scale(*manifest, scale);
-  const Scale whole = own == nullptr ? manifest->base : whole_scale(*manifest, *own);
-  const std::string path = own == nullptr ? "" : "scales." + own->name;
-  const auto key_in = [&](bool of_scale, const std::string& key) {
-    return of_scale ? path + "." + key : key;
+  const Scale& stated = scale_of(*manifest, scale);
+  const auto path_of = [&](const std::string& key) {
+    return stated.own.contains(key) ? fmt::format("scales.{}.{}", stated.name, key) : key;
   };
-
   add("experiment", manifest->experiment_at);
-  if (own != nullptr) add(path, own->at);
+  if (!stated.name.empty()) add("scales." + stated.name, stated.at);
   for (const auto& [kind, axes] :
-       {std::pair("grid.", &whole.sweep->grid), {"zip.", &whole.sweep->zip}}) {
+       {std::pair(".grid.", &stated.sweep.grid), {".zip.", &stated.sweep.zip}}) {
     for (const SweepAxis& axis : *axes) {
       const auto value = swept.find(axis.key);
       if (value == swept.end()) continue;
-      const auto stated = std::ranges::find(axis.values, *value, &Setting::value);
-      add(key_in(own != nullptr && own->sweep, "sweep.") + kind + axis.key,
-          stated == axis.values.end() ? axis.at : stated->at);
+      const auto place = std::ranges::find(axis.values, *value, &Setting::value);
+      add(path_of("sweep") + kind + axis.key, place == axis.values.end() ? axis.at : place->at);
     }
   }
-  if (const auto cycles = whole.settings.find("cycles"); cycles != whole.settings.end()) {
-    const bool of_scale = own != nullptr && own->settings.contains("cycles");
-    add(key_in(of_scale, of_scale ? "cycles" : "base.cycles"), cycles->second.at);
+  if (const auto cycles = stated.settings.find("cycles"); cycles != stated.settings.end()) {
+    add(stated.own.contains("cycles") ? path_of("cycles") : "base.cycles", cycles->second.at);
   }
-  const auto add_stated = [&](const std::string& key, auto Scale::*member) {
-    const bool of_scale = own != nullptr && own->*member;
-    if (of_scale || (whole.*member)->at.line > 0) add(key_in(of_scale, key), (whole.*member)->at);
-  };
-  add_stated("seeds", &Scale::seeds);
-  add_stated("checkpoints", &Scale::checkpoints);
-  add_stated("until", &Scale::until);
+  for (const auto& [key, at] : {std::pair("seeds", stated.seeds.at),
+                                {"checkpoints", stated.checkpoints.at},
+                                {"until", stated.until.at}}) {
+    if (at.line > 0) add(path_of(key), at);
+  }
   for (const VariantLabel& label : manifest->labels) {
     if (selects(label, swept)) add("labels", label.at);
   }
@@ -89,8 +90,7 @@ nlohmann::json overrides(std::string_view text, const Ask& ask) {
   const auto add = [&](const char* key, const nlohmann::json& run, const nlohmann::json& stated) {
     found[key] = {{"run", run}, {"manifest", stated}};
   };
-  const Scale* scale = find_scale(*manifest, ask.scale);
-  const Scale stated = scale == nullptr ? manifest->base : whole_scale(*manifest, *scale);
+  const Scale& stated = scale_of(*manifest, ask.scale);
   const auto selected = [&](const auto& swept) {
     const auto value = ask.swept.find(swept.first);
     return value != ask.swept.end() && *value == swept.second->value;
@@ -103,10 +103,10 @@ nlohmann::json overrides(std::string_view text, const Ask& ask) {
     add("cycles", ask.target_cycles, cycles);
     break;
   }
-  const std::vector<std::uint64_t>& seeds = stated.seeds->values;
+  const std::vector<std::uint64_t>& seeds = stated.seeds.values;
   if (std::ranges::count(seeds, ask.seed) == 0) add("seed", ask.seed, seeds);
   const auto engine = ask.swept.find("engine");
-  if (engine != ask.swept.end() && find_axis(*stated.sweep, "engine") == nullptr) {
+  if (engine != ask.swept.end() && find_axis(stated.sweep, "engine") == nullptr) {
     add("engine", *engine, value_at(stated, "engine"));
   }
   return found;

@@ -31,22 +31,22 @@ std::string join(const std::vector<ManifestProblem>& problems) {
 }
 
 std::string read_file(const std::filesystem::path& path, const std::string& name) {
+  const auto refuse_file = [&](const std::string& why, const char* remedy = "") {
+    refuse(name, {}, "", why, "", remedy);
+  };
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) {
-    refuse(name, {}, "", "there is no such file", "", "");
-  }
-  if (error) refuse(name, {}, "", fmt::format("cannot be read: {}", error.message()), "", "");
-  if (std::filesystem::is_directory(status)) {
-    refuse(name, {}, "", "is a directory", "", "Name a manifest file in it.");
+  const std::filesystem::file_type type = std::filesystem::status(path, error).type();
+  if (type == std::filesystem::file_type::not_found) refuse_file("there is no such file");
+  if (error) refuse_file(fmt::format("cannot be read: {}", error.message()));
+  if (type == std::filesystem::file_type::directory) {
+    refuse_file("is a directory", "Name a manifest file in it.");
   }
   // Reading a pipe or a device might never end.
-  if (!std::filesystem::is_regular_file(status))
-    refuse(name, {}, "", "is not a regular file", "", "");
+  if (type != std::filesystem::file_type::regular) refuse_file("is not a regular file");
   std::ifstream stream(path, std::ios::binary);
   std::string text(ManifestLimits::bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.is_open() || stream.bad()) refuse(name, {}, "", "cannot be read", "", "");
+  if (!stream.is_open() || stream.bad()) refuse_file("cannot be read");
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }

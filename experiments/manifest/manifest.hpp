@@ -160,15 +160,17 @@ struct Placed : Spec {
   Position at;
 };
 
-/// An entry of `scales`, or what the manifest states for all scales.
+/// An entry of `scales` with what it takes from the manifest, or what the manifest states for all
+/// scales.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
   Position at = {};
   Settings settings = {};
-  std::optional<Sweep> sweep = {};
-  std::optional<Seeds> seeds = {};
-  std::optional<Checkpoints> checkpoints = {};
-  std::optional<StatedUntil> until = {};
+  Sweep sweep = {};
+  Seeds seeds = {};
+  Checkpoints checkpoints = {};
+  StatedUntil until = {};
+  std::set<std::string> own = {};  ///< keys that an entry of `scales` states itself
 };
 
 struct Manifest {
@@ -181,10 +183,14 @@ struct Manifest {
   std::vector<VariantLabel> labels;
   std::vector<Placed<PlotSpec>> plots;
   std::vector<Placed<ClaimSpec>> claims;
-  Scale base = {
-      .sweep = Sweep(), .seeds = Seeds(), .checkpoints = Checkpoints(), .until = StatedUntil()};
-  std::vector<Scale> scales;  ///< in the order of the text; whole_scale() completes them
+  Scale base = {};
+  std::vector<Scale> scales;  ///< in the order of the text
 };
+
+/// The scales of the manifest; the base if it has none.
+inline std::vector<Scale> scales_of(const Manifest& manifest) {
+  return manifest.scales.empty() ? std::vector{manifest.base} : manifest.scales;
+}
 
 inline constexpr std::size_t kLongestName = 64;
 

@@ -83,14 +83,6 @@ std::string takes(const Field& field) {
                                     : fmt::format("It takes {}.", expected_values(field));
 }
 
-// The problem with a text that is not an unsigned integer.
-ValueProblem not_an_integer(const Field& field, string_view text) {
-  const std::optional<double> number = parse_real(text);
-  if (number && !field.range.contains(*number)) return {"is out of range", takes(field)};
-  if (!number || *number != std::floor(*number)) return {"is not a whole number", takes(field)};
-  return {"is not written as a plain whole number", fmt::format("Write {:.0f}.", *number)};
-}
-
 std::string range_markdown(const Field& field) {
   if (field.is_choice()) return fmt::format("{}", fmt::join(field.names, ", "));
   return fmt::format("{}{:g} .. {:g}", field.range.min_excluded ? "> " : "", field.range.min,
@@ -264,16 +256,19 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
                         "Write the number alone, without quotes or a unit."};
   } else if (names_no_number(text)) {
     return ValueProblem{"is not finite", takes(field)};
-  } else if (field.whole) {
-    const auto whole = read_number<std::uint64_t>(text);
-    const bool leading_zero = text.size() > 1 && text.front() == '0';
-    if (!whole || leading_zero) return not_an_integer(field, text);
-    value = *whole;
   } else {
     const std::optional<double> real = parse_real(text);
-    if (!real) return ValueProblem{"is not a number", takes(field)};
-    if (std::isinf(*real)) return ValueProblem{"is out of range", takes(field)};
-    value = *real;
+    if (real && !field.range.contains(*real)) return ValueProblem{"is out of range", takes(field)};
+    if (!real || (field.whole && *real != std::floor(*real))) {
+      return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};
+    }
+    const auto whole = read_number<std::uint64_t>(text);
+    const bool is_plain = whole && (text.size() == 1 || text.front() != '0');
+    if (field.whole && !is_plain) {
+      return ValueProblem{"is not written as a plain whole number",
+                          fmt::format("Write {:.0f}.", *real)};
+    }
+    value = field.whole ? json(*whole) : json(*real);
   }
   if (auto wrong = check_value(field, value)) return std::move(*wrong);
   return value;

@@ -58,8 +58,7 @@ struct Field {
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};                  ///< "a map of settings"
   bool required = false;
-  std::size_t longest = 0;  ///< of a free text [bytes]; one line, unless `lines`
-  bool lines = false;
+  std::size_t longest = 0;  ///< of a free text of one line [bytes]
   /// A parameter as JSON, and back from a value that has passed check_value; null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;

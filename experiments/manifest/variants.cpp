@@ -58,8 +58,8 @@ std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
 
 /// "A=0.05 rad", "fluid=cell"; "" for a key that the variant does not have.
 std::string setting_text(const std::string& key, const json& variant, bool brief) {
-  if (!variant.contains(key)) {  // the program adds these two keys to some runs
-    return key == "engine" ? "engine=shearcell" : key == "manifest" ? "newest manifest" : "";
+  if (!variant.contains(key)) {  // --engine adds it to some runs
+    return key == "engine" ? "engine=shearcell" : "";
   }
   const Field* field = find_field(key);
   const json& value = variant.at(key);
@@ -128,27 +128,6 @@ bool is_auto(const Setting& setting) {
   return setting.value == "auto";
 }
 
-const Scale* find_scale(const Manifest& manifest, std::string_view name) {
-  return find_named(manifest.scales, name);
-}
-
-Scale whole_scale(const Manifest& manifest, const Scale& scale) {
-  Scale whole = scale;
-  whole.settings.insert(manifest.base.settings.begin(), manifest.base.settings.end());
-  if (!whole.sweep) whole.sweep = manifest.base.sweep;
-  if (!whole.seeds) whole.seeds = manifest.base.seeds;
-  if (!whole.checkpoints) whole.checkpoints = manifest.base.checkpoints;
-  if (!whole.until) whole.until = manifest.base.until;
-  return whole;
-}
-
-std::vector<Scale> whole_scales(const Manifest& manifest) {
-  if (manifest.scales.empty()) return {manifest.base};
-  std::vector<Scale> scales;
-  for (const Scale& scale : manifest.scales) scales.push_back(whole_scale(manifest, scale));
-  return scales;
-}
-
 json value_at(const Scale& scale, std::string_view key) {
   const auto stated = scale.settings.find(key);
   return stated == scale.settings.end() ? find_field(key)->get(Parameters{}) : stated->second.value;
@@ -167,14 +146,38 @@ json Variant::swept_values() const {
   return values;
 }
 
-bool has_values(const std::string& wanted, const std::string& variant) {
-  return std::ranges::includes(parts_of(variant), parts_of(wanted));
+Filter::Filter(const std::vector<std::string>& wanted) {
+  for (const std::string& text : wanted) {
+    Wanted& one = wanted_.emplace_back(Wanted{text, "", parts_of(text)});
+    for (const std::string& part : one.parts) {
+      if (part.find('=') != part.npos) one.keys += part.substr(0, part.find('=')) + ",";
+    }
+  }
 }
 
-std::string keys_of(const std::string& wanted) {
-  std::string keys;
-  for (const std::string& part : parts_of(wanted)) keys += part.substr(0, part.find('=')) + ",";
-  return keys;
+Filter::Filter(const std::vector<std::uint64_t>& wanted) {
+  for (const std::uint64_t number : wanted) {
+    const std::string text = std::to_string(number);
+    wanted_.push_back({text, "", {text}});
+  }
+}
+
+bool Filter::passes(const std::string& value) {
+  if (wanted_.empty()) return true;
+  if (known_.insert(value).second) seen_.push_back(value);
+  const std::set<std::string> parts = parts_of(value);
+  std::map<std::string_view, bool> fits;  // by keys
+  for (Wanted& one : wanted_) {
+    const bool has = std::ranges::includes(parts, one.parts);
+    one.found |= has;
+    fits[one.keys] |= has;
+  }
+  return std::ranges::all_of(fits, [](const auto& of_keys) { return of_keys.second; });
+}
+
+const std::string* Filter::unfound() const {
+  const auto missing = std::ranges::find(wanted_, false, &Wanted::found);
+  return missing == wanted_.end() ? nullptr : &missing->text;
 }
 
 const SweepAxis* find_axis(const Sweep& sweep, std::string_view key) {
@@ -207,10 +210,10 @@ std::vector<Variant> variants_of(const Scale& scale) {
       apply(key, setting, base);
     }
   }
-  const std::vector<SweepAxis>& grid = scale.sweep->grid;
-  const std::vector<SweepAxis>& zip = scale.sweep->zip;
+  const std::vector<SweepAxis>& grid = scale.sweep.grid;
+  const std::vector<SweepAxis>& zip = scale.sweep.zip;
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
-  std::vector<Variant> variants(variant_count(*scale.sweep), Variant{{}, base});
+  std::vector<Variant> variants(variant_count(scale.sweep), Variant{{}, base});
   for (std::uint64_t index = 0; index < variants.size(); ++index) {
     auto& [swept, parameters] = variants[index];
     // Number of grid points that have equal values on the axes before this one.
@@ -230,7 +233,7 @@ std::vector<Variant> variants_of(const Scale& scale) {
     }
     for (const auto& [key, setting] : swept) apply(key, *setting, parameters);
     for (const std::string& key : autos) {
-      if (find_axis(*scale.sweep, key) == nullptr) resolve_auto(key, parameters);
+      if (find_axis(scale.sweep, key) == nullptr) resolve_auto(key, parameters);
     }
   }
   return variants;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,15 +16,6 @@
 #include "experiments/manifest/parameters.hpp"
 
 namespace shearcell {
-
-/// The scale of that name, or nullptr.
-const Scale* find_scale(const Manifest& manifest, std::string_view name);
-
-/// Completes the scale with what it takes from `base`.
-Scale whole_scale(const Manifest& manifest, const Scale& scale);
-
-/// All scales of the manifest, completed; the base if it has none.
-std::vector<Scale> whole_scales(const Manifest& manifest);
 
 /// The value of a parameter that is not swept, or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
@@ -41,13 +33,30 @@ struct Variant {
   nlohmann::json swept_values() const;  ///< swept keys and values
 };
 
-/// Whether the variant of that name has all values of `wanted`: "fluid=cell" fits
-/// "fluid=cell,amplitude_rad=0.1".
-bool has_values(const std::string& wanted, const std::string& variant);
+/// Selects by values named on the command line. A value fits a wanted one if it has all its parts:
+/// "fluid=cell" fits "fluid=cell,amplitude_rad=0.1", and so does "b=1.28e-3 kg/s".
+class Filter {
+ public:
+  explicit Filter(const std::vector<std::string>& wanted);
+  explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-/// The keys of `wanted`: "amplitude_rad,fluid," for "fluid=cell,amplitude_rad=0.1". Wanted values
-/// of the same keys are alternatives; those of other keys must fit too (Filter).
-std::string keys_of(const std::string& wanted);
+  /// Whether the value fits one of the wanted values of each set of keys; true if none are wanted.
+  bool passes(const std::string& value);
+  /// The first wanted value that no value fitted, or null.
+  const std::string* unfound() const;
+  /// The values that were tried, each once, in order.
+  const std::vector<std::string>& seen() const { return seen_; }
+
+ private:
+  struct Wanted {
+    std::string text, keys;
+    std::set<std::string> parts;
+    bool found = false;
+  };
+  std::vector<Wanted> wanted_;
+  std::vector<std::string> seen_;
+  std::set<std::string> known_;  ///< those of seen_
+};
 
 /// Whether the variant (swept keys and values) has all values of the label.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);

@@ -309,7 +309,7 @@ void tell_apart(std::vector<StageJob>& jobs) {
 // By scale, where it is not the default.
 nlohmann::json overlap_limits(const Manifest& manifest) {
   nlohmann::json limits = nlohmann::json::object();
-  for (const Scale& scale : whole_scales(manifest)) {
+  for (const Scale& scale : scales_of(manifest)) {
     const auto found = scale.settings.find("max_overlap_diameters");
     if (found != scale.settings.end()) limits[scale.name] = found->second.value;
   }
