@@ -23,9 +23,9 @@ class LineageBuilder {
   LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
 
   void operator()(const events::RunStarted& e) {
-    begin(e.host, lineage_.run.parent, e.parent_checkpoint.value_or(""));
+    begin(e.host, lineage_.stage.parent, e.parent_checkpoint.value_or(""));
   }
-  void operator()(const events::RunResumed& e) { begin(e.host, lineage_.run.id, e.from.sha256); }
+  void operator()(const events::RunResumed& e) { begin(e.host, lineage_.stage.id, e.from.sha256); }
   void operator()(const events::RunCompleted&) { end(AttemptOutcome::completed, ""); }
   void operator()(const events::RunInterrupted& e) { end(AttemptOutcome::interrupted, e.why); }
   void operator()(const events::RunFailed& e) { end(AttemptOutcome::failed, e.why); }
@@ -37,7 +37,7 @@ class LineageBuilder {
       throw StoreDamaged(fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256", event_.seq,
                                      event_.type, event_.stream, record.sha256));
     }
-    record.run = lineage_.run.id;
+    record.run = lineage_.stage.id;
     record.file = ObjectStore::file_of(record.sha256);
     record.seq = event_.seq;
     if (!lineage_.attempts.empty()) {
@@ -153,7 +153,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
       // Early events lack it: the attempt began from the newest state of the stage before it.
-      attempt.from_checkpoint = newest_of(build_lineage(stages.back().run, before, attempt.seq));
+      attempt.from_checkpoint = newest_of(build_lineage(stages.back().stage, before, attempt.seq));
       if (!attempt.from_checkpoint.empty()) attempt.from_run = run.parent;
     }
     stages.push_back(std::move(stage));
@@ -165,7 +165,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
 void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages) {
   if (lineages.contains(id)) return;
   for (RunLineage& stage : run_lineage(store, id)) {
-    const std::string stage_id = stage.run.id;
+    const std::string stage_id = stage.stage.id;
     lineages.try_emplace(stage_id, std::move(stage));
   }
 }

@@ -60,7 +60,7 @@ struct CheckpointHistory {
 };
 
 struct RunLineage {
-  Stage run;
+  Stage stage;
   std::vector<Attempt> attempts;               ///< in the order of the log; shown as 1, 2, ...
   std::vector<CheckpointHistory> checkpoints;  ///< in the order in which they were first recorded
 

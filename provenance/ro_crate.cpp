@@ -155,7 +155,7 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
   }
   for (const RunLineage& other : facts.stages) {
     const CheckpointHistory* from = other.find(attempt.from_checkpoint);
-    if (other.run.id == attempt.from_run && from != nullptr) {
+    if (other.stage.id == attempt.from_run && from != nullptr) {
       objects.push_back(add_checkpoint(graph, *from));
     }
   }
@@ -173,9 +173,10 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
       lost ? "ended without a record (a kill or a power cut); a later attempt continued"
            : attempt.why;
   json action = {
-      {"@id", fmt::format("#attempt-{}-{}", stage.run.id, a + 1)},
+      {"@id", fmt::format("#attempt-{}-{}", stage.stage.id, a + 1)},
       {"@type", "CreateAction"},
-      {"name", fmt::format("{} of run {:.12}, attempt {}", stage.run.kind, stage.run.id, a + 1)},
+      {"name",
+       fmt::format("{} of run {:.12}, attempt {}", stage.stage.kind, stage.stage.id, a + 1)},
       {"instrument", add_software(graph, maker)},
       {"location", add_host(graph, maker)},
       {"startTime", attempt.started_at},
@@ -210,7 +211,7 @@ CrateFacts crate_facts(const Store& store, const std::string& run, std::string l
                        std::vector<std::string> left_out) {
   CrateFacts facts{run_lineage(store, run), {}, std::move(licence), std::move(left_out)};
   for (const RunLineage& stage : facts.stages) {
-    for (const Ask& member : stage.run.asks) {
+    for (const Ask& member : stage.stage.asks) {
       if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
       if (auto manifest = find_manifest(store, member.manifest)) {
         facts.manifests.push_back(std::move(*manifest));
@@ -234,11 +235,11 @@ json ro_crate_metadata(const CrateFacts& facts) {
   for (const RunLineage& stage : facts.stages) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
-      if (std::ranges::count(stage.run.asks, manifest.sha256, &Ask::manifest) > 0) {
+      if (std::ranges::count(stage.stage.asks, manifest.sha256, &Ask::manifest) > 0) {
         given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
-    given.parameters = add_parameters(graph, facts, stage.run);
+    given.parameters = add_parameters(graph, facts, stage.stage);
     for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
       actions.push_back(add_attempt(graph, facts, stage, a, given));
     }
@@ -253,8 +254,8 @@ json ro_crate_metadata(const CrateFacts& facts) {
     if (entity.at("@type") == "File") parts.push_back(reference(entity.at("@id")));
   }
   std::string newest;
-  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.run.updated_at);
-  const Stage& run = facts.stages.back().run;
+  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.stage.updated_at);
+  const Stage& run = facts.stages.back().stage;
   json all = json::array();
   all.push_back({{"@id", kCrateMetadata},
                  {"@type", "CreativeWork"},

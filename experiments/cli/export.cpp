@@ -106,7 +106,7 @@ struct WantedRun : Run {
 
 // The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
-  const Stage& run = wanted.run;
+  const Stage& run = wanted.stage;
   if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
   std::vector<CheckpointRecord> all;
   for (const Ask& place : wanted.places) {
@@ -122,7 +122,7 @@ std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& want
 
 std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& selected,
                                      const ExportOptions& options) {
-  const Stage& run = selected.run;
+  const Stage& run = selected.stage;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
@@ -189,16 +189,16 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) {
-    return write_ro_crate(store, run.run.id, out, options.licence, constants_of_records());
+    return write_ro_crate(store, run.stage.id, out, options.licence, constants_of_records());
   }
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';
   if (folder) fs::create_directory(out);
   std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.run.asks : run.places);
-  MeasureSources sources(store, {{run.run.id, every}});
-  sources.read_run(run.run.id);
+  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
+  MeasureSources sources(store, {{run.stage.id, every}});
+  sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
     for (const FrameWriter& write : writers) write(frame);
@@ -232,7 +232,7 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
   std::vector<WantedRun> runs;
   std::map<std::string, std::size_t> known;  // index in `runs`, by id
   const auto add = [&](const Run& run) -> WantedRun& {
-    const auto [at, fresh] = known.try_emplace(run.run.id, runs.size());
+    const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
     if (fresh) runs.push_back({run});
     return runs[at->second];
   };
@@ -251,8 +251,9 @@ std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const Run& selected, const ExportFormat& format) {
   const Ask& m = selected.ask;
-  std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
-                                 m.variant.substr(0, 100), m.seed, selected.run.id, format.ending);
+  std::string name =
+      fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64), m.variant.substr(0, 100),
+                  m.seed, selected.stage.id, format.ending);
   std::ranges::replace_if(
       name,
       [](unsigned char c) {
@@ -280,7 +281,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
   const fs::path out = given.has_filename() ? given : given.parent_path();
   if (single && format.writer == nullptr) {  // a crate may replace an earlier one of the run
     return {
-        {runs.front().run.id, options.out, write_run(store, runs.front(), format, options, out)}};
+        {runs.front().stage.id, options.out, write_run(store, runs.front(), format, options, out)}};
   }
   const bool folder = !single || *format.ending == '\0';
   require_new(out, folder);
@@ -293,7 +294,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
     const std::string name = single ? "" : entry_name(run, format);
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
-      done.push_back({run.run.id, single ? fs::path(options.out) : out / name, std::move(files)});
+      done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());

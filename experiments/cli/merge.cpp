@@ -31,10 +31,10 @@ ShownAt shown_of(const Store& store) {
   const auto at = [&](const Run& one) -> Shown& {
     return shown[{one.ask.experiment, one.ask.scale}];
   };
-  for (const Run& one : all) at(one).left_out.insert(one.run.id);
+  for (const Run& one : all) at(one).left_out.insert(one.stage.id);
   for (const Run& one : newest_runs(all).runs) {
-    at(one).left_out.erase(one.run.id);
-    at(one).versions[one.ask.manifest].insert(one.run.id);
+    at(one).left_out.erase(one.stage.id);
+    at(one).versions[one.ask.manifest].insert(one.stage.id);
   }
   return shown;
 }

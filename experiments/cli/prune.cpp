@@ -41,7 +41,7 @@ std::vector<std::string> selected_ids(const Store& store, RunSelection selection
   selection.packings = true;
   std::vector<std::string> ids;
   for (const Run& one : select_runs(store, selection)) {
-    if (std::ranges::count(ids, one.run.id) == 0) ids.push_back(one.run.id);
+    if (std::ranges::count(ids, one.stage.id) == 0) ids.push_back(one.stage.id);
   }
   return ids;
 }

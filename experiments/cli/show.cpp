@@ -314,8 +314,8 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
   print_text("\nrun       {}\n", input.run);
   print_text("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
-                                       input.experiment, input.variant, input.seed, run.run.grains,
-                                       input.manifest, lines),
+                                       input.experiment, input.variant, input.seed,
+                                       run.stage.grains, input.manifest, lines),
                            2));
   if (input.overrides.is_object()) {
     for (const auto& [key, values] : input.overrides.items()) {
@@ -333,8 +333,8 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
 }
 
 void print_stage_before(const RunLineage& stage, bool list, Makers& makers) {
-  print_text("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.run.id, cut(stage.run.kind, 50),
-             text_at(stage.run.resolved, "seed"), stage.run.grains);
+  print_text("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.stage.id,
+             cut(stage.stage.kind, 50), text_at(stage.stage.resolved, "seed"), stage.stage.grains);
   print_attempts(stage, makers);
   if (!list) return;
   std::vector<std::string> checkpoints;

@@ -44,13 +44,13 @@ struct View {
         names(store) {
     for (const Run& found : select_runs(store, selection)) {
       // The places of a run follow each other.
-      if (runs.empty() || runs.back().run.id != found.run.id) runs.push_back({found});
+      if (runs.empty() || runs.back().stage.id != found.stage.id) runs.push_back({found});
       runs.back().places.push_back(found);
     }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
 
-  std::string called(const Run& selected) const { return names.of(selected.run, selected.ask); }
+  std::string called(const Run& selected) const { return names.of(selected.stage, selected.ask); }
 
   const QueuedRun* queued(const Stage& run) const {
     const auto found = queue.runs.find(run.id);
@@ -91,7 +91,7 @@ nlohmann::json place_facts(const Run& selected, const View& view) {
 }
 
 nlohmann::json facts(const ListedRun& listed, const View& view) {
-  const Stage& run = listed.run;
+  const Stage& run = listed.stage;
   const auto held = view.holders.find(run.id);
   const QueuedRun* queued = view.queued(run);
   const auto place = [&](const Run& one) {
@@ -158,7 +158,7 @@ std::optional<Estimate> estimate(const View& view) {
   std::size_t running = 0;
   Estimate made;
   for (const Run& selected : view.runs) {
-    const Stage& stage = selected.run;
+    const Stage& stage = selected.stage;
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
@@ -206,7 +206,7 @@ void print_tables(const View& view) {
   std::map<std::string, std::vector<Row>> tables;
   std::map<StageState, std::size_t> count;
   for (const ListedRun& listed : view.runs) {
-    const Stage& run = listed.run;
+    const Stage& run = listed.stage;
     const Shown shown{run, view.queued(run)};
     ++count[shown.state()];
     for (const Run& selected : listed.places) {
@@ -243,7 +243,7 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   const auto waiting = std::ranges::count_if(
-      view.runs, [&](const Run& one) { return view.waiting.contains(one.run.id); });
+      view.runs, [&](const Run& one) { return view.waiting.contains(one.stage.id); });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
@@ -257,7 +257,7 @@ void print(const View& view) {
   }
   if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
   for (const ListedRun& listed : view.runs) {
-    const Stage& run = listed.run;
+    const Stage& run = listed.stage;
     if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
     if (const nlohmann::json ended = end_of(run); !ended.is_null()) {
       print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,

@@ -67,7 +67,7 @@ void add_wall_grains(const Checkpoint& c, const WallPose& pose, const Measures& 
 void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
                Frame& frame) {
   const Ask& m = selected.ask;
-  frame.run = {{"run", selected.run.id},
+  frame.run = {{"run", selected.stage.id},
                {"experiment", m.experiment},
                {"scale", m.scale},
                {"variant", m.variant},
@@ -78,7 +78,7 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }
-  const nlohmann::json parameters = effective_parameters(selected.run.resolved);
+  const nlohmann::json parameters = effective_parameters(selected.stage.resolved);
   for (const auto& [key, value] : parameters.items()) {
     if (find_field(key) == nullptr) continue;  // a forged store may hold it
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
@@ -94,7 +94,7 @@ std::string frame_name(const Frame& frame) {
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
                const MeasureSources* sources) {
-  const MeasureSources alone(record.run, run.run);
+  const MeasureSources alone(record.run, run.stage);
   const Measures measures =
       (sources == nullptr ? alone : *sources)
           .measures_of(record, checkpoint, analyse_stored(record, checkpoint), enters_frames);

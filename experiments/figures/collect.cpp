@@ -49,7 +49,7 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
                                              const CollectedRun& run) {
   const Ask ask = ask_for(figure, run);
   std::vector<CheckpointRecord> found =
-      checkpoints_for(store, run.run, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
+      checkpoints_for(store, run.stage, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
   if (figure.form == FigureForm::table && !found.empty()) {
     found.erase(found.begin(), --found.end());
   }
@@ -59,12 +59,12 @@ std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& f
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
 /// missing.
 std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const CollectedRun& run) {
-  const std::optional<Drive> motion = shear_drive(run.run);
+  const std::optional<Drive> motion = shear_drive(run.stage);
   if (!motion) return 0;
   Ask ask = ask_for(figure, run);
   ask.until = nullptr;
   ask.target_cycles = static_cast<std::uint64_t>(last_cycle(figure, run));
-  const Outlook look = outlook(run.run, {&ask, 1}, seen_checkpoints(store, run.run.id));
+  const Outlook look = outlook(run.stage, {&ask, 1}, seen_checkpoints(store, run.stage.id));
   const double first = first_cycle(figure) * static_cast<double>(cycle_steps(*motion));
   const auto taken = [first](std::uint64_t step) { return static_cast<double>(step) >= first; };
   return std::ranges::count_if(look.missing, taken) + std::ranges::count_if(look.lost, taken);
@@ -81,9 +81,9 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
   for (const CollectedRun& run : collected.runs) {
     const std::ptrdiff_t missing = missing_for(store, figure, run);
     if (missing == 0) continue;
-    Lack& lack = lacks[engine_of(run.run.resolved) == EngineKind::lammps];
+    Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
     lack.checkpoints += static_cast<std::size_t>(missing);
-    lack.runs.insert(run.run.id.substr(0, 8));
+    lack.runs.insert(run.stage.id.substr(0, 8));
   }
   for (const auto& [of_lammps, lack] : lacks) {
     collected.notes.push_back(fmt::format(
@@ -99,10 +99,10 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
 /// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
 /// or can still be made.
 bool asks_for_one(const Figure& figure, const CollectedRun& run) {
-  if (!figure.within || run.run.kind != name_of(StageKind::shear)) return true;
+  if (!figure.within || run.stage.kind != name_of(StageKind::shear)) return true;
   double last = last_cycle(figure, run);
-  if (run.run.state == StageState::completed) last = std::min(last, run.run.cycle);
-  return !asked_steps(run.run, ask_for(figure, run), first_cycle(figure), last).empty();
+  if (run.stage.state == StageState::completed) last = std::min(last, run.stage.cycle);
+  return !asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last).empty();
 }
 
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
@@ -112,7 +112,7 @@ void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
     const std::string name = fmt::format("{} seed {}", run.name, run.ask.seed);
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
-    } else if (run.run.state != StageState::completed &&
+    } else if (run.stage.state != StageState::completed &&
                run.checkpoints.back().cycle < last_cycle(figure, run)) {
       going_on.insert(name);
     }
@@ -205,17 +205,17 @@ void share_needs(std::vector<WantedFigure>& figures) {
 }  // namespace
 
 FigureRun unmeasured(const CollectedRun& input) {
-  const nlohmann::json& resolved = input.run.resolved;
+  const nlohmann::json& resolved = input.stage.resolved;
   if (!resolved.is_object() ||
       !resolved.value("parameters", nlohmann::json::object()).is_object()) {
     throw StoreDamaged(fmt::format(
         "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
-        input.run.id));
+        input.stage.id));
   }
   nlohmann::json parameters = effective_parameters(resolved);
   parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
-  return {input.run.id,
-          input.run.parent,
+  return {input.stage.id,
+          input.stage.parent,
           input.ask.experiment,
           input.ask.variant,
           input.name,
@@ -224,7 +224,7 @@ FigureRun unmeasured(const CollectedRun& input) {
           std::move(parameters),
           input.ask.seed,
           {},
-          std::min(input.end, input.run.cycle)};
+          std::min(input.end, input.stage.cycle)};
 }
 
 std::string WantedFigure::path() const {
@@ -317,11 +317,11 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   } else {
     std::set<std::pair<std::string, std::string>> known;
     std::erase_if(collected.runs, [&](const CollectedRun& run) {
-      return !known.emplace(run.ask.experiment, run.run.id).second;
+      return !known.emplace(run.ask.experiment, run.stage.id).second;
     });
   }
   for (CollectedRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.run, run.ask, measuring)
+    run.end = measured ? end_for(store, run.stage, run.ask, measuring)
                        : static_cast<double>(run.ask.target_cycles);
     run.checkpoints = checkpoints_of(store, wanted.figure, run);
   }

@@ -31,7 +31,7 @@ std::vector<FigureRun> figure_runs(const Store& store, const Figure& figure,
   std::vector<CheckpointRecord> records;  // of one run after the other
   for (const CollectedRun& input : inputs) {
     records.insert(records.end(), input.checkpoints.begin(), input.checkpoints.end());
-    options.cadence[input.run.id] = input.ask.checkpoint_every;
+    options.cadence[input.stage.id] = input.ask.checkpoint_every;
   }
   std::vector<std::string> names;  // none of a table, which is not measured
   if (figure.form != FigureForm::table) {
@@ -79,8 +79,8 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const CollectedRun& input = inputs[r];
     const States states = states_of(used_checkpoints(store, result, runs[r]));
-    list.push_back({{"run", input.run.id},
-                    {"parent", input.run.parent},
+    list.push_back({{"run", input.stage.id},
+                    {"parent", input.stage.parent},
                     {"experiment", input.ask.experiment},
                     {"manifest", input.ask.manifest},
                     {"variant", input.ask.variant},
@@ -88,7 +88,7 @@ nlohmann::json lineage_of(const Store& store, const FigureSummary& result,
                     {"cycles", states.cycles},
                     {"state_hash", states.state_hash},
                     {"states_sha256", states.sha256}});
-    if (auto given = overrides_of(store, input.run, input.ask); !given.is_null()) {
+    if (auto given = overrides_of(store, input.stage, input.ask); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }
   }

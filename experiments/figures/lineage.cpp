@@ -140,9 +140,12 @@ json stage_json(const RunLineage& stage) {
   for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
     attempts.push_back(attempt_json(stage.attempts[a], a + 1));
   }
-  return {
-      {"run", stage.run.id},        {"kind", stage.run.kind},         {"parent", stage.run.parent},
-      {"grains", stage.run.grains}, {"resolved", stage.run.resolved}, {"attempts", attempts}};
+  return {{"run", stage.stage.id},
+          {"kind", stage.stage.kind},
+          {"parent", stage.stage.parent},
+          {"grains", stage.stage.grains},
+          {"resolved", stage.stage.resolved},
+          {"attempts", attempts}};
 }
 
 // File name -> SHA-256, from JSON that is not trusted.
@@ -236,8 +239,8 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
       const RunLineage& run = lineage.runs.at(input.run);
       find_states(entry, run, input);
       if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
-        input.lines = manifest_lines(manifest->text, lineage.scale, swept_values_of(run.run, input),
-                                     figure_name(record));
+        input.lines = manifest_lines(manifest->text, lineage.scale,
+                                     swept_values_of(run.stage, input), figure_name(record));
       }
       lineage.inputs.push_back(std::move(input));
     }

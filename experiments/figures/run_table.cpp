@@ -62,7 +62,7 @@ std::vector<Column> names(const VariantNames& variants) {
              [](const Run& s) { return scale_name(s.ask.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
              [variants](const Run& s) { return variants.of(s.ask); }),
-      of_run("run", "id of the run", [](const Run& s) { return s.run.id; }),
+      of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
       of_run("seed", "seed of the random numbers", [](const Run& s) { return s.ask.seed; }),
   };
 }
@@ -118,15 +118,15 @@ std::vector<Column> ends() {
   columns.insert(
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
-              [](const Run& s) { return name_of(s.run.state); }),
+              [](const Run& s) { return name_of(s.stage.state); }),
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
               [](const Run& s) { return s.ask.target_cycles; }),
        of_run("wall_time_s", "time that the run took to compute, over all attempts",
-              [](const Run& s) { return number(s.run.wall_seconds); }),
+              [](const Run& s) { return number(s.stage.wall_seconds); }),
        of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
-              [](const Run& s) { return number(s.run.particle_steps / s.run.wall_seconds); })});
+              [](const Run& s) { return number(s.stage.particle_steps / s.stage.wall_seconds); })});
   return columns;
 }
 
@@ -135,7 +135,7 @@ std::vector<Column> ends() {
 json swept_value(const Field& field, const Run& selected) try {
   const auto value = selected.ask.swept.find(field.name);
   if (value != selected.ask.swept.end()) return *value;
-  const StageInputs record = read_stage(selected.run.resolved);
+  const StageInputs record = read_stage(selected.stage.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? field.get(record.parameters) : json();
 } catch (const UnreadableRecord&) {
@@ -174,7 +174,7 @@ std::vector<MeasuredRun> select(const Store& store, const RunSelection& selectio
   std::vector<MeasuredRun> runs;
   for (Run& selected : newest.runs) {
     MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
-    run.records = checkpoints_for(store, run.run, run.ask, options);
+    run.records = checkpoints_for(store, run.stage, run.ask, options);
     run.measures.resize(run.records.size());
   }
   return runs;
@@ -194,7 +194,7 @@ void measure_where(const Store& store, std::span<const std::string> names,
     std::vector<Measures*> measures;
     MeasureOptions with_cadence = options;
     for (MeasuredRun* run : group) {
-      with_cadence.cadence[run->run.id] = every;
+      with_cadence.cadence[run->stage.id] = every;
       for (std::size_t k = 0; k < run->records.size(); ++k) {
         if (!wanted(*run, k)) continue;
         records.push_back(run->records[k]);
@@ -211,9 +211,9 @@ void measure_where(const Store& store, std::span<const std::string> names,
 
 FigureRun history_of(const Run& selected, std::span<const Row> rows) {
   FigureRun history;
-  history.run_id = selected.run.id;
+  history.run_id = selected.stage.id;
   history.swept = selected.ask.swept;
-  history.parameters = effective_parameters(selected.run.resolved);
+  history.parameters = effective_parameters(selected.stage.resolved);
   for (const Row& row : rows) {
     if (!row.measures.numbers.contains("phi") ||
         row.checkpoint->cycle != std::floor(row.checkpoint->cycle))
@@ -273,7 +273,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     }
     const FigureRun& history = table.histories.emplace_back(history_of(run, rows));
     Row last = rows.empty() ? Row{&run} : rows.back();
-    if (run.run.kind == name_of(StageKind::shear)) last.history = &history;
+    if (run.stage.kind == name_of(StageKind::shear)) last.history = &history;
     add(last);
   }
   return table;

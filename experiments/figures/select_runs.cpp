@@ -132,7 +132,7 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
 }
 
 NewestRuns newest_runs(std::vector<Run> selected) {
-  std::erase_if(selected, [](const Run& s) { return s.run.kind == name_of(StageKind::prepare); });
+  std::erase_if(selected, [](const Run& s) { return s.stage.kind == name_of(StageKind::prepare); });
   const auto older = std::stable_partition(selected.begin(), selected.end(),
                                            [](const Run& s) { return s.ask.newest; });
   NewestRuns chosen;
@@ -151,7 +151,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
       chosen.notes.push_back(fmt::format(
           "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
           "with run {:.8} in its place",
-          m.experiment, one.run.id, m.variant, m.seed, instead->run.id));
+          m.experiment, one.stage.id, m.variant, m.seed, instead->stage.id));
     }
   }
   for (const auto& [where, variants] : left) {

@@ -23,7 +23,7 @@ struct RunSelection {
 
 /// A run in one of its places: a run of two experiments is selected once for each.
 struct Run {
-  Stage run;
+  Stage stage;
   /// `newest` is false also where the manifest was later declared with another run in this place.
   Ask ask;
 };

@@ -915,7 +915,7 @@ struct Reader {
 
   // Replaces the values of `by` in the keys of `series`.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
-    for (std::size_t k = 0; k < in.parts.size(); ++k) {
+    for (std::size_t k = 0; k < plot.series.size(); ++k) {
       json& where = plot.series[k].where;
       if (!where.contains("")) continue;
       const Node& part = in.parts[k];

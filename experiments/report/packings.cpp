@@ -51,7 +51,7 @@ std::byte byte_of(const GrainField& field, double value) {
 constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
 struct ChosenRun {
-  Stage run;
+  Stage stage;
   Ask ask;
   std::vector<CheckpointRecord> checkpoints;  // fit() reduces them to those to show
   std::size_t bytes = 0;                      // of one checkpoint in the page
@@ -101,7 +101,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   const std::vector<Run> runs = newest_runs(select_runs(store, selection)).runs;
   for (const std::string& experiment : experiments) {
     for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
-      if (known.insert(run.run.id).second) chosen.push_back(std::move(run));
+      if (known.insert(run.stage.id).second) chosen.push_back(std::move(run));
     }
   }
   return chosen;
@@ -145,7 +145,8 @@ std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
 void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
   std::vector<std::string> left_out;
   while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
-    left_out.push_back(fmt::format("{:.8} of {}", runs.back().run.id, runs.back().ask.experiment));
+    left_out.push_back(
+        fmt::format("{:.8} of {}", runs.back().stage.id, runs.back().ask.experiment));
     runs.pop_back();
   }
   if (!left_out.empty()) {
@@ -343,9 +344,9 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
     packings.frames += list.size();
     if (list.empty()) continue;
-    packings.runs.push_back({{"id", run.run.id},
+    packings.runs.push_back({{"id", run.stage.id},
                              {"label", fmt::format("{}, seed {}, N = {}", names.of(run.ask),
-                                                   run.ask.seed, run.run.grains)},
+                                                   run.ask.seed, run.stage.grains)},
                              {"experiment", run.ask.experiment},
                              {"grains", run.grains},
                              {"wall_grains", run.wall_grains},

@@ -163,7 +163,7 @@ json lineage_json(const ReportFigure& figure) {
 
 /// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
-  const Stage& run = stage.run;
+  const Stage& run = stage.stage;
   json members = json::array(), attempts = json::array();
   for (const Ask& member : run.asks) {
     members.push_back(

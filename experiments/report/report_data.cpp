@@ -176,7 +176,7 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
     const std::vector<json>& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
     run["id"] = row[runs.place("run")];
-    run["kind"] = lineages.at(run["id"].get<std::string>()).run.kind;
+    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
   }
   return all;
 }

@@ -70,7 +70,7 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   CollectedRuns newest = collect_runs(store_, kS2, {});
   EXPECT_EQ(distinct_runs(newest).size(), 4U);
   for (const CollectedRun& run : newest.runs) {
-    EXPECT_EQ(run.run.resolved.at("parameters").at("pressure_Pa"), 700);
+    EXPECT_EQ(run.stage.resolved.at("parameters").at("pressure_Pa"), 700);
   }
   ASSERT_EQ(newest.notes.size(), 1U);
   std::printf("%s\n", newest.notes[0].c_str());

@@ -174,7 +174,7 @@ std::vector<Case> odd_files() {
                "hard link"),
       reported("hard_linked_measures", "figures S2", 0,
                at("derived.sqlite",
-                  [](const fs::path& file) {
+                  [linked_as_snap](const fs::path& file) {
                     sqlite::Database(file, Access::write).execute("DELETE FROM derived");
                     linked_as_snap(file);
                   }),

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -144,6 +145,50 @@ TEST(BadText, ReportsTwentyProblemsAndCountsTheRest) {
   const std::string message = message_for_text(text);
   EXPECT_EQ(std::ranges::count(message, '\n'), 20);
   EXPECT_TRUE(message.ends_with("and 10 more problems"));
+}
+
+// A list where a map belongs, a map where a number belongs, and so on.
+TEST(BadText, AnyKeyWithAnyKindOfValueIsReadOrRefused) {
+  std::vector<std::string> texts = {"seeds: {}",
+                                    "sweep: {grid: {}}",
+                                    "sweep: {zip: {}}",
+                                    "sweep: {grid: {fluid: {}}}",
+                                    "base: {}",
+                                    "base: {grains: {}}",
+                                    "until: {phi: {}}",
+                                    "checkpoints: {phases: {}}",
+                                    "labels: {fluid: {}}",
+                                    "labels: {\"fluid=still\": {}}",
+                                    "scales: {a: {}}"};
+  std::istringstream tables(manifest_markdown());
+  std::string before, after;  // in the top level, a plot, a claim
+  for (std::string line; std::getline(tables, line);) {
+    if (line == "Of a plot:") before = "plots: [{name: p, y: phi, by: fluid, ", after = "}]";
+    if (line == "Of a claim:") before = "claims: [{name: c, compare: phi, at_cycle: 1, ";
+    if (!line.starts_with("| `")) continue;
+    const std::string key = line.substr(3, line.find('`', 3) - 3);
+    texts.push_back(before + key + ": {}" + after);
+    for (const char* inner : {"{still: {}}", "[{}]", "[{label: {}}]", "[{}, {}]"}) {
+      texts.push_back(before + key + ": " + inner + after);
+    }
+  }
+  std::size_t read = 0, refused = 0;
+  for (const std::string& text : texts) {
+    const std::size_t place = text.rfind("{}");
+    if (place == std::string::npos) continue;
+    for (const char* value :
+         {"", "3", "a", "''", "[]", "[1, 2]", "[[1], [2]]", "{}", "{a: 1}", "{fluid: still}",
+          "[{a: 1}, {fluid: still}]", "{a: [1], b: {c: 2}}"}) {
+      std::string whole = text;
+      whole.replace(place, 2, value);
+      SCOPED_TRACE(whole);
+      const bool stated = whole.starts_with("experiment:");
+      message_for_text((stated ? "" : "experiment: a\n") + whole).empty() ? ++read : ++refused;
+    }
+  }
+  std::printf("%zu read, %zu refused\n", read, refused);
+  EXPECT_GT(read, 20U);
+  EXPECT_GT(refused, 1000U);
 }
 
 // The smallest number of steps that the message names is accepted, and one less is not.

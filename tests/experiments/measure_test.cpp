@@ -25,7 +25,7 @@ class Measure : public DrawingTest {
  protected:
   void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
 
-  FigureSummary make(const std::string& name) { return draw(name, kS2, {}); }
+  FigureSummary make(const std::string& name) { return draw(name, kS2); }
   std::string csv(const std::string& name) const {
     const std::filesystem::path folder = folder_.path() / name / "tiny/base";
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
@@ -213,7 +213,7 @@ TEST_F(Measure, VerifyNamesCachedValuesThatDiffer) {
   EXPECT_NE(csv("wrong"), csv("first"));
   const std::vector<Finding> found = findings();
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_TRUE(has(found[0].problem, victim.sha256.substr(0, 12))) << found[0].problem;
+  EXPECT_TRUE(has(found[0].message, victim.sha256.substr(0, 12))) << found[0].message;
   std::filesystem::remove(cache());
   EXPECT_EQ(make("again").measured, 6U);
   EXPECT_EQ(csv("again"), csv("first"));
@@ -283,7 +283,7 @@ TEST_F(Measure, AnotherKeptRestIsNamed) {
   kept.put(std::span(&object, 1));
   const std::vector<Finding> found = findings();
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_TRUE(has(found[0].problem, "phi_at_rest")) << found[0].problem;
+  EXPECT_TRUE(has(found[0].message, "phi_at_rest")) << found[0].message;
 }
 
 // What was measured before is all that is left of it.

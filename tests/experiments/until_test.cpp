@@ -258,7 +258,7 @@ TEST_F(UntilTest, FiguresEndAtTheNumberOfCyclesWhereUntilIsNotReached) {
   compute(store_, tiny_manifest("  cycles: 3\n", "until: {phi: 0.99}\n"));
   compute(store_, renamed(manifest(""), "twin"));
   const CollectedRuns collected = collect_runs(store_, {*find_figure("S2"), "tiny"}, {});
-  EXPECT_EQ(collected.runs.at(0).run.cycle, 6);
+  EXPECT_EQ(collected.runs.at(0).stage.cycle, 6);
   EXPECT_EQ(collected.runs.at(0).end, 3);
   EXPECT_EQ(collected.runs.at(0).checkpoints.back().cycle, 3);
 }

@@ -60,14 +60,14 @@ nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
 /// As a store would name it.
 Run about() {
   Run run;
-  run.run.id = std::string(64, 'a');
-  run.run.resolved = {{"parameters",
-                       {{"stiffness_N_per_m", 654.0},
-                        {"mass_kg", 2e-5},
-                        {"diameter_m", 3e-3},
-                        {"gravity_m_per_s2", 9.81},
-                        {"fluid", "still"},
-                        {"steps_per_cycle", 45600}}}};
+  run.stage.id = std::string(64, 'a');
+  run.stage.resolved = {{"parameters",
+                         {{"stiffness_N_per_m", 654.0},
+                          {"mass_kg", 2e-5},
+                          {"diameter_m", 3e-3},
+                          {"gravity_m_per_s2", 9.81},
+                          {"fluid", "still"},
+                          {"steps_per_cycle", 45600}}}};
   run.ask.experiment = "drag";
   run.ask.scale = "smoke";
   run.ask.variant = "fluid=still,amplitude_rad=0.0833";
@@ -129,7 +129,7 @@ nlohmann::json truth(const Checkpoint& c) {
   for (auto* numbers : {&phi_local, &q6, &overlap, &pressure}) numbers->resize(type.size(), 0.0);
   for (auto* numbers : {&structure, &crystallite}) numbers->resize(type.size(), -1);
   Measures numbers_of_all;
-  const RunFacts run{.parameters = about().run.resolved.at("parameters")};
+  const RunFacts run{.parameters = about().stage.resolved.at("parameters")};
   for (const char* name : {"scalars", "mechanics", "lattices", "core"}) {
     provider(name).read(provider(name).compute({&measured, &c, {}, nullptr, &run}), numbers_of_all);
   }
@@ -168,7 +168,7 @@ nlohmann::json truth(const Checkpoint& c) {
   contacts.resize(type.size(), 0);
   const Mechanics m = mechanics(c, measured.grains.cell_volume, inner).packing;
   const double k_per_d = 654.0 / 3e-3;
-  nlohmann::json facts = about().run.resolved.at("parameters");
+  nlohmann::json facts = about().stage.resolved.at("parameters");
   facts.update({{"run", std::string(64, 'a')},
                 {"experiment", "drag"},
                 {"scale", "smoke"},
@@ -275,9 +275,9 @@ TEST(Export, OtherProgramsReadEveryNumber) {
 
 TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
   const Parameters parameters;
-  Run run = about();
-  run.run.kind = name_of(StageKind::shear);
-  run.run.resolved = last_stage(parameters, 1, prepare_stage(parameters, 1)).resolved;
+  shearcell::Run run = about();
+  run.stage.kind = name_of(StageKind::shear);
+  run.stage.resolved = last_stage(parameters, 1, prepare_stage(parameters, 1)).resolved;
   const Checkpoint checkpoint = checkpoints().front();  // upright, at the largest shear rate
   CheckpointRecord record = record_of(checkpoint);
   record.step = checkpoint.state.step;
@@ -329,7 +329,7 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
 
 TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   const TemporaryFolder folder;
-  Run run = about();
+  shearcell::Run run = about();
   run.ask.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
@@ -339,8 +339,8 @@ TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
 }
 
 TEST(Export, HasOnlyKeysOfAManifest) {
-  Run run = about();
-  run.run.resolved["parameters"]["forged=1\n99\n"] = 1;
+  shearcell::Run run = about();
+  run.stage.resolved["parameters"]["forged=1\n99\n"] = 1;
   for (const auto& [key, value] : frame_of(checkpoints().back(), {}, run).parameters) {
     EXPECT_FALSE(has(key, "forged"));
   }

@@ -21,8 +21,8 @@ class Lineage : public testing::Test {
 TEST_F(Lineage, AttemptsAreListedFromTheirStartToTheirEnd) {
   const std::vector<RunLineage> stages = run_lineage(store_, history_.sheared);
   ASSERT_EQ(stages.size(), 2U);
-  EXPECT_EQ(stages[0].run.id, history_.packing);
-  EXPECT_EQ(stages[1].run.id, history_.sheared);
+  EXPECT_EQ(stages[0].stage.id, history_.packing);
+  EXPECT_EQ(stages[1].stage.id, history_.sheared);
   const std::vector<Attempt>& attempts = stages[1].attempts;
   ASSERT_EQ(attempts.size(), 4U);
   EXPECT_EQ(attempts[0].outcome, AttemptOutcome::interrupted);
