@@ -140,7 +140,7 @@ std::vector<Case> forged_limits() {
 /// In the place of the files beside a database, and links to it.
 std::vector<Case> odd_files() {
   const Damage journal_is_pipe = at("store.sqlite-journal", pipe_instead);
-  static const auto linked_as_snap = [](const fs::path& file) {
+  const auto linked_as_snap = [](const fs::path& file) {
     fs::create_hard_link(file, file.parent_path().parent_path() / "snap.sqlite");
   };
   const Damage hard_link = at("store.sqlite", linked_as_snap);
