@@ -119,11 +119,10 @@ void require_one(const char* what, std::string_view prefix,
 /// Checkpoints that are initial states of other stages.
 std::set<std::string> initial_states(const EventLog& log) {
   std::set<std::string> found;
-  log.for_each([&found](const Event& event) {
-    if (event.type != events::RunStarted::kType) return;
+  for (const Event& event : log.events("", events::RunStarted::kType)) {
     const auto started = std::get<events::RunStarted>(events::decode(event));
     if (started.parent_checkpoint) found.insert(*started.parent_checkpoint);
-  });
+  }
   return found;
 }
 

@@ -2,8 +2,6 @@
 // `bench`: measurements of the program itself.
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
 
@@ -33,11 +31,22 @@ Facts facts(const bench::SpeedResult& r) {
           {"state_hash", r.state_hash}};
 }
 
+void speed(bench::SpeedOptions& options, Context& context) {
+  options.report = [](const std::string& what) { print_stderr("{}\n", what); };
+  print_list("sizes", rows_of(bench::measure_speed(options), facts), context);
+  if (context.json) return;
+  fmt::print(
+      "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
+      "never idle.\nShares of one thread's time; search: building the outer neighbour list, "
+      "prune: the inner one.\n",
+      options.repeats);
+}
+
 void add_speed(CLI::App& bench, Context& context) {
-  auto options = std::make_shared<bench::SpeedOptions>();
-  CLI::App* command = bench.add_subcommand(
-      "speed",
-      "Measure particle-steps per second in the sheared rough cell, and the share of each part");
+  const auto [command, options] = add_command(
+      bench, context, "speed",
+      "Measure particle-steps per second in the sheared rough cell, and the share of each part",
+      speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
   add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024)
@@ -53,16 +62,6 @@ void add_speed(CLI::App& bench, Context& context) {
       "Checks that all kernels of this machine give the same state, then times each.\n"
       "Examples:\n  shearcell bench speed --size 600 5200\n"
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
-  command->callback([options, &context] {
-    options->report = [](const std::string& what) { print_stderr("{}\n", what); };
-    print_list("sizes", rows_of(bench::measure_speed(*options), facts), context);
-    if (context.json) return;
-    fmt::print(
-        "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
-        "never idle.\nShares of one thread's time; search: building the outer neighbour list, "
-        "prune: the inner one.\n",
-        options->repeats);
-  });
 }
 
 }  // namespace

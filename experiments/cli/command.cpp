@@ -12,10 +12,10 @@
 #include <system_error>
 #include <utility>
 
-#include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -60,13 +60,14 @@ void add_json_option(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print JSON for programs");
 }
 
-void add_common_options(CLI::App& command, Context& context) {
+void add_common_options(CLI::App& command, Context& context, const std::string& footer) {
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->default_str(
           Context{}.store)  // not the variable's, so that the manual is the same everywhere
       ->check(unnamed)
       ->type_name("DIR");
   add_json_option(command, context);
+  command.footer(footer);
 }
 
 namespace {
@@ -151,6 +152,17 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
       ->check(one_of<StageState>());
 }
 
+std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
+  std::vector<PlacedRun> runs;
+  std::map<std::string, std::size_t> known;  // index in `runs`, by id
+  for (const auto& [run, place] : selected) {
+    const auto [at, fresh] = known.try_emplace(run.id, runs.size());
+    if (fresh) runs.push_back({run, {}});
+    runs[at->second].places.push_back(place);
+  }
+  return runs;
+}
+
 void warn(Context& context, const std::string& warning) {
   print_stderr("warning: {}\n", warning);
   context.warnings.push_back(warning);
@@ -170,50 +182,36 @@ void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& contex
   }
 }
 
-// What the store has, for warnings.
-struct Known {
-  std::vector<Stage> runs;
-  std::vector<RegisteredManifest> manifests;  // in the order of registration
-};
-
-Known known_to(const Context& context) {
+// Of the store, for warnings.
+std::vector<Stage> known_runs(const Context& context) {
   try {
-    if (const auto store = open_if_there(context.store)) {
-      return {store->stages(), registered_manifests(*store)};
-    }
+    if (const auto store = open_if_there(context.store)) return store->stages();
   } catch (const std::exception&) {
     // The command opens the store next, or creates it, and reports what is wrong.
   }
   return {};
 }
 
-// Figures show the version that was registered last, of those that have runs at the scale.
-void warn_of_other_version(const Manifest& manifest, const Plan& plan, const Known& known,
-                           Context& context) {
+// Figures show the newest version of those that have runs at the scale.
+void warn_of_other_version(const Manifest& manifest, const Plan& plan,
+                           const std::vector<Stage>& known, Context& context) {
   std::set<std::string> planned;
   for (const PlannedRun& run : plan.runs) planned.insert(run.last.id);
-  for (auto version = known.manifests.rbegin(); version != known.manifests.rend(); ++version) {
-    if (version->experiment != plan.experiment) continue;
-    std::size_t runs = 0, left_out = 0;
-    for (const Stage& run : known.runs) {
-      const bool has = std::ranges::any_of(run.asks, [&](const Ask& m) {
-        return m.experiment == plan.experiment && m.scale == plan.scale &&
-               m.manifest == version->sha256;
-      });
-      if (!has || run.kind == name_of(StageKind::prepare)) continue;
-      ++runs;
-      left_out += planned.contains(run.id) ? 0 : 1;
-    }
-    if (runs == 0) continue;
-    if (left_out == 0 || version->text == manifest.text) return;
-    return warn(
-        context,
-        fmt::format(
-            "{}: the store's newest manifest of experiment {} is another text, with {} that "
-            "this plan does not have. Once this manifest is run, figures show its version alone; "
-            "to show all, run one manifest that states the runs of both: it computes nothing new.",
-            manifest.file, plan.experiment, counted(left_out, "run")));
-  }
+  const std::string own = sha256_hex(manifest.text);
+  const auto left_out = std::ranges::count_if(known, [&](const Stage& run) {
+    if (run.kind == name_of(StageKind::prepare) || planned.contains(run.id)) return false;
+    return std::ranges::any_of(run.asks, [&](const Ask& m) {
+      return m.newest && m.manifest != own && m.experiment == plan.experiment &&
+             m.scale == plan.scale;
+    });
+  });
+  if (left_out == 0) return;
+  warn(context,
+       fmt::format(
+           "{}: the store's newest manifest of experiment {} is another text, with {} that this "
+           "plan does not have. Once this manifest is run, figures show its version alone; to show "
+           "all, run one manifest that states the runs of both: it computes nothing new.",
+           manifest.file, plan.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 
 }  // namespace
@@ -226,9 +224,9 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
     if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
   }
   warn_of_equal_names(loaded.manifests, context);
-  const Known known = known_to(context);
+  const std::vector<Stage> known = known_runs(context);
   ExpandOptions with_known = options;
-  with_known.known = known.runs;
+  with_known.known = known;
   for (const Manifest& manifest : loaded.manifests) {
     const Plan& plan = loaded.plans.emplace_back(expand(manifest, with_known));
     for (const std::string& warning : plan.warnings) warn(context, warning);

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "experiments/figures/select_runs.hpp"
@@ -66,8 +68,18 @@ std::string unnamed(const std::string& path);
 /// --json.
 void add_json_option(CLI::App& command, Context& context);
 
-/// --store DIR and --json.
-void add_common_options(CLI::App& command, Context& context);
+/// Adds a subcommand that calls run(options, context). Its options live as long as the parser.
+template <class Options>
+auto add_command(CLI::App& app, Context& context, const char* name, const char* about,
+                 void (*run)(Options&, Context&)) {
+  const auto options = std::make_shared<std::remove_const_t<Options>>();
+  CLI::App* command = app.add_subcommand(name, about);
+  command->callback([options, run, &context] { run(*options, context); });
+  return std::pair(command, options.get());
+}
+
+/// --store DIR and --json, and the text below all options.
+void add_common_options(CLI::App& command, Context& context, const std::string& footer);
 
 /// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
@@ -84,6 +96,15 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
+
+/// A run with those of its places that are selected.
+struct PlacedRun {
+  Stage stage;
+  std::vector<Ask> places;
+};
+
+/// Each run once, in the order of its first place.
+std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// An error message if the text is not a decimal number from `low` to `high`; else "". A double may
 /// have a fraction and an exponent; a std::uint64_t must not have leading zeros.
@@ -128,35 +149,29 @@ nlohmann::json json_list(const auto& items, const auto& facts) {
   return list;
 }
 
-using Row = std::vector<std::string>;
-
-/// Prints rows under a header, each column as wide as its longest cell; numbers are right-aligned.
-/// On a terminal, long words are cut with ~ at the end so that the table fits, and states have
-/// colours.
-void print_table(const Row& header, const std::vector<Row>& rows);
-
-/// The same with row(item) for each item.
-void print_table(const Row& header, const auto& items, const auto& row) {
-  std::vector<Row> rows;
-  for (const auto& item : items) rows.push_back(row(item));
-  print_table(header, rows);
-}
-
-/// One value of a result: a key of its JSON and, with a heading, a cell of its table.
+/// One value of a result: a key of its JSON and, with a heading, a cell of its table or a line.
 struct Fact {
-  const char* key;  ///< "" for a cell alone
+  std::string key;  ///< "" for text alone
   nlohmann::json value;
-  const char* heading = nullptr;         ///< of the column; null for JSON alone
-  std::optional<std::string> text = {};  ///< of the cell; none: the value itself
+  std::optional<std::string> heading = {};  ///< of the column or line; none for JSON alone
+  std::optional<std::string> text = {};     ///< in the table or line; none: the value itself
+
+  bool operator==(const Fact&) const = default;
 };
-using Facts = std::vector<Fact>;  ///< of one row
+using Facts = std::vector<Fact>;  ///< of one row, or of one thing
 
 /// The facts as one JSON object.
 nlohmann::json to_json(const Facts& facts);
 nlohmann::json to_json(const std::vector<Facts>& rows);
 
-/// Prints a row for each; all have the same headings.
+/// Prints rows under their headings, which all of them have; each column as wide as its longest
+/// cell, numbers right-aligned. On a terminal, long words are cut with ~ at the end so that the
+/// table fits, and states have colours.
 void print_table(const std::vector<Facts>& rows);
+
+/// Prints "HEADING  text" for each fact that has a heading. Further lines of the text stand below
+/// the first one; an empty text has no line.
+void print_lines(const Facts& facts);
 
 /// facts(item) for each item.
 std::vector<Facts> rows_of(const auto& items, const auto& facts) {

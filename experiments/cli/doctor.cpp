@@ -9,15 +9,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <system_error>
 
 #include "core/machine.hpp"
 #include "experiments/bench/speed.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/runner/cost.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
 
@@ -138,8 +137,12 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   return found;
 }
 
-void doctor(Context& context, bool with_speed) {
-  const std::vector<Check> findings = examine(context.store, with_speed);
+struct DoctorOptions {
+  bool no_speed = false;
+};
+
+void doctor(const DoctorOptions& options, Context& context) {
+  const std::vector<Check> findings = examine(context.store, !options.no_speed);
   const auto no_store = [](const Check& f) { return f.what == "writing" && f.state == "missing"; };
   if (std::ranges::any_of(findings, no_store)) fail(context, kOtherError);
   const auto facts = [](const Check& f) -> Facts {
@@ -159,14 +162,13 @@ void doctor(Context& context, bool with_speed) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("doctor", "Check this machine and measure its speed");
-  add_common_options(*command, context);
-  auto no_speed = std::make_shared<bool>(false);
-  command->add_flag("--no-speed", *no_speed, "Do not measure (about five seconds)");
-  command->footer(
+  const auto [command, options] =
+      add_command(app, context, "doctor", "Check this machine and measure its speed", doctor);
+  command->add_flag("--no-speed", options->no_speed, "Do not measure (about five seconds)");
+  add_common_options(
+      *command, context,
       "The exit code is 1 if no store can be written in the folder of --store.\n"
       "Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
-  command->callback([no_speed, &context] { doctor(context, !*no_speed); });
 }
 
 }  // namespace shearcell::cli

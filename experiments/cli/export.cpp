@@ -6,11 +6,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <memory>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +16,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
@@ -46,25 +43,19 @@ struct ExportFormat {
   const char* title;
   const char* ending;  ///< of the file's name; "" for a folder
   /// Makes a writer of so many frames to `out`; null for a crate, which has no frames.
-  FrameWriter (*writer)(const ExportOptions&, const fs::path& out, std::size_t frames);
+  FrameWriter (*writer)(const fs::path& out, std::size_t frames, Lengths lengths);
 };
 
 // A new format is one entry here.
 const std::array kFormats = {
     ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
-                 [](const auto&, const fs::path& out, std::size_t frames) {
-                   return h5md_writer(out, frames);
-                 }},
+                 [](const auto& out, auto frames, auto) { return h5md_writer(out, frames); }},
     ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
-                 [](const ExportOptions& options, const fs::path& out, std::size_t) {
-                   return extxyz_writer(out, options.metres ? Lengths::metres : Lengths::diameters);
-                 }},
+                 [](const auto& out, auto, auto lengths) { return extxyz_writer(out, lengths); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
-                 [](const auto&, const fs::path& out, std::size_t frames) {
-                   return vtk_writer(out, frames);
-                 }},
+                 [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
     ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
-                 [](const auto&, const fs::path& out, std::size_t) { return lammps_writer(out); }},
+                 [](const auto& out, auto, auto) { return lammps_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
 
@@ -100,29 +91,25 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-struct WantedRun : Run {
-  std::vector<Ask> places = {};  // those selected; empty if the run was named by its id
-};
-
-// The checkpoints that the selected experiments ask for; of a named run, those that any asks for.
-std::vector<CheckpointRecord> asked_of(const Store& store, const WantedRun& wanted) {
+// The checkpoints that the selected experiments ask for; of a run without places, which was named
+// by its id, those that any experiment asks for.
+std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
   const Stage& run = wanted.stage;
   if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
-  std::vector<CheckpointRecord> all;
+  std::map<std::uint64_t, CheckpointRecord> all;  // by step
   for (const Ask& place : wanted.places) {
-    std::ranges::move(checkpoints_for(store, run, place, {}), std::back_inserter(all));
+    for (CheckpointRecord& record : checkpoints_for(store, run, place, {})) {
+      all.try_emplace(record.step, std::move(record));
+    }
   }
-  std::ranges::sort(all, {}, &CheckpointRecord::step);
-  const auto same_step = [](const CheckpointRecord& a, const CheckpointRecord& b) {
-    return a.step == b.step;
-  };
-  all.erase(std::unique(all.begin(), all.end(), same_step), all.end());
-  return all;
+  std::vector<CheckpointRecord> records;
+  for (auto& [step, record] : all) records.push_back(std::move(record));
+  return records;
 }
 
-std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& selected,
+std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
                                      const ExportOptions& options) {
-  const Stage& run = selected.stage;
+  const Stage& run = wanted.stage;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(run);
@@ -132,7 +119,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const WantedRun& select
   // A single cycle may also be a checkpoint that an interruption left.
   const bool by_name = range.first == range.last;
   const std::vector<CheckpointRecord> all =
-      by_name ? store.checkpoints(run.id, Listed::and_pruned) : asked_of(store, selected);
+      by_name ? store.checkpoints(run.id, Listed::and_pruned) : asked_of(store, wanted);
   for (const CheckpointRecord& record : all) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
@@ -183,9 +170,14 @@ std::vector<std::string> constants_of_records() {
   return names;
 }
 
+/// The place that names the run.
+Ask shown_place(const PlacedRun& run) {
+  return run.places.empty() ? first_ask(run.stage) : run.places.front();
+}
+
 /// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
 /// std::invalid_argument if the run cannot be exported.
-std::vector<std::string> write_run(const Store& store, const WantedRun& run,
+std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) {
@@ -194,13 +186,15 @@ std::vector<std::string> write_run(const Store& store, const WantedRun& run,
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';
   if (folder) fs::create_directory(out);
-  std::vector<FrameWriter> writers = {format.writer(options, out, records.size())};
+  const Lengths lengths = options.metres ? Lengths::metres : Lengths::diameters;
+  std::vector<FrameWriter> writers = {format.writer(out, records.size(), lengths)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
   const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
   MeasureSources sources(store, {{run.stage.id, every}});
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
-    const Frame frame = frame_of(store.load_checkpoint(record), record, run, &sources);
+    const Frame frame =
+        frame_of(store.load_checkpoint(record), record, {run.stage, shown_place(run)}, &sources);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files
@@ -227,33 +221,27 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
 }
 
 /// The named runs, or else the selected newest_runs(), each once.
-std::vector<WantedRun> wanted(const Store& store, const ExportOptions& options) {
+std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // throws here once, not for each run
-  std::vector<WantedRun> runs;
-  std::map<std::string, std::size_t> known;  // index in `runs`, by id
-  const auto add = [&](const Run& run) -> WantedRun& {
-    const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
-    if (fresh) runs.push_back({run});
-    return runs[at->second];
-  };
+  std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
-    const Stage run = store.find_stage(prefix);
-    add({run, first_ask(run)});
+    Stage run = store.find_stage(prefix);
+    const auto is_it = [&](const PlacedRun& other) { return other.stage.id == run.id; };
+    if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(run), {}});
   }
   if (!runs.empty()) return runs;
   const NewestRuns newest = newest_runs(select_runs(store, options.selection));
   for (const std::string& note : newest.notes) print_stderr("{}\n", note);
-  for (const Run& one : newest.runs) add(one).places.push_back(one.ask);
+  runs = by_run(newest.runs);
   if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
   return runs;
 }
 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
-std::string entry_name(const Run& selected, const ExportFormat& format) {
-  const Ask& m = selected.ask;
-  std::string name =
-      fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64), m.variant.substr(0, 100),
-                  m.seed, selected.stage.id, format.ending);
+std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
+  const Ask m = shown_place(run);
+  std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
+                                 m.variant.substr(0, 100), m.seed, run.stage.id, format.ending);
   std::ranges::replace_if(
       name,
       [](unsigned char c) {
@@ -273,7 +261,7 @@ struct Exported {
 /// Writes a `single` run to `out`, several runs into the folder `out`. Writes into a temporary
 /// folder beside `out` and renames it when complete, so an export that is killed or meets a full
 /// disk leaves no `out`.
-std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>& runs,
+std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single) {
   // "frames/" has an empty file name.
@@ -290,7 +278,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<WantedRun>
   const fs::path staged = stage.path() / out.filename();
   std::vector<Exported> done;
   if (!single) fs::create_directory(staged);
-  for (const WantedRun& run : runs) {
+  for (const PlacedRun& run : runs) {
     const std::string name = single ? "" : entry_name(run, format);
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name);
@@ -312,7 +300,7 @@ void export_runs(const ExportOptions& options, Context& context) {
   std::vector<Exported> done;
   bool single = false;
   try {
-    const std::vector<WantedRun> runs = wanted(store, options);
+    const std::vector<PlacedRun> runs = wanted_runs(store, options);
     single = !options.runs.empty() && runs.size() == 1;
     done = write_all(store, runs, format, options, single);
   } catch (const std::invalid_argument& problem) {
@@ -336,8 +324,8 @@ void export_runs(const ExportOptions& options, Context& context) {
 }  // namespace
 
 void add_export(CLI::App& app, Context& context) {
-  auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write runs in the formats of other programs");
+  const auto [command, options] = add_command(
+      app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
       "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
   add_selection_options(*command, options->selection);
@@ -364,10 +352,10 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       formats +
-      R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
+          R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
 each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
 lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
 wall grains and the tilted cell. Writes a single RUN to PATH; several runs, or those that options
@@ -378,7 +366,6 @@ Examples:
   shearcell export 3f9a --to vtk --out frames
   shearcell export --experiment drag --variant fluid=cell --to extxyz --out packings
   shearcell export 3f9a --to ro-crate --out crate)");
-  command->callback([options, &context] { export_runs(*options, context); });
 }
 
 }  // namespace shearcell::cli

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
 #include <set>
 
 #include "analysis/error.hpp"
@@ -24,6 +23,10 @@ struct FigureArguments {
   FigureOptions how;
 };
 
+std::string path_of(const FigureSummary& result) {
+  return result.experiment.empty() ? result.name : result.experiment + "/" + result.name;
+}
+
 void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
   for (const std::string& note : result.notes) {
     if (told.insert(note).second) print_stderr("{}\n", note);
@@ -34,13 +37,11 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   std::erase_if(problems.pruned, is_told);
   print_problems(problems, "left out", context);
   if (!result.empty.empty()) {
-    print_stderr("warning: figure {}{}{}: its runs have no values to draw in {}\n",
-                 result.experiment, result.experiment.empty() ? "" : "/", result.name,
+    print_stderr("warning: figure {}: its runs have no values to draw in {}\n", path_of(result),
                  fmt::join(result.empty, ", "));
   }
   for (const std::string& why : result.undrawn) {
-    print_stderr("no plot: {}{}{}: {}\n", result.experiment, result.experiment.empty() ? "" : "/",
-                 result.name, why);
+    print_stderr("no plot: {}: {}\n", path_of(result), why);
   }
 }
 
@@ -75,10 +76,9 @@ void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
   if (!result.undrawn.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
-  print_text("{}{}{} ({} scale): {}, {}, {} of them newly measured\n", result.experiment,
-             result.experiment.empty() ? "" : "/", result.name, scale_name(result.scale),
-             counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
-             result.measured);
+  print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path_of(result),
+             scale_name(result.scale), counted(result.runs, "run"),
+             counted(result.checkpoints, "checkpoint"), result.measured);
   for (const auto& file : result.files) print_text("  {}\n", file.string());
   print_verdicts(result);
 }
@@ -137,10 +137,10 @@ std::string list_of_figures() {
 }  // namespace
 
 void add_figures(CLI::App& app, Context& context) {
-  auto options = std::make_shared<FigureArguments>();
+  const auto [command, options] =
+      add_command(app, context, "figures", "Draw figures from stored checkpoints", figures);
   FigureOptions& how = options->how;
   how.folder = "shearcell-figures";
-  CLI::App* command = app.add_subcommand("figures", "Draw figures from stored checkpoints");
   command->add_option("figure", options->names, "Figures, as S2 (default: all)");
   command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
@@ -154,12 +154,12 @@ void add_figures(CLI::App& app, Context& context) {
       "Scale of the runs (default: for each experiment, that of its run added last)");
   command
       ->add_option_function<std::string>(
-          "--width", [options](const std::string& width) { options->how.wide = width == "double"; },
+          "--width", [&how](const std::string& width) { how.wide = width == "double"; },
           "Width of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
 manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
 NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
@@ -170,9 +170,8 @@ in the store's derived.sqlite. If you delete that file, they are measured again,
 pruned checkpoints (see `regenerate`).
 Figures and the keys that they compare (some have a curve for each value of other keys too):
 )" + list_of_figures() +
-      "Examples:\n  shearcell figures S2 --out figures\n"
-      "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
-  command->callback([options, &context] { figures(*options, context); });
+          "Examples:\n  shearcell figures S2 --out figures\n"
+          "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
 }
 
 }  // namespace shearcell::cli

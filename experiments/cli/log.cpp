@@ -2,7 +2,6 @@
 // `log`: the events, of the whole store or of one run, oldest first.
 #include <fmt/format.h>
 
-#include <memory>
 #include <utility>
 
 #include "experiments/cli/command.hpp"
@@ -39,12 +38,10 @@ void print_log(const std::string& run, Context& context) {
 }  // namespace
 
 void add_log(CLI::App& app, Context& context) {
-  auto run = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("log", "List the events of the store or of one run");
+  const auto [command, run] =
+      add_command(app, context, "log", "List the events of the store or of one run", print_log);
   command->add_option("run", *run, "Run id, or a unique beginning of it");
-  add_common_options(*command, context);
-  command->footer("Examples:\n  shearcell log\n  shearcell log 3f9a --json");
-  command->callback([run, &context] { print_log(*run, context); });
+  add_common_options(*command, context, "Examples:\n  shearcell log\n  shearcell log 3f9a --json");
 }
 
 }  // namespace shearcell::cli

@@ -20,10 +20,7 @@ constexpr std::size_t kLongestChoice = 60;
 
 /// "--jobs, -j J"; for a positional "manifest".
 std::string usage(const CLI::Option& option) {
-  std::vector<std::string> words;
-  for (const std::string& name : option.get_snames()) words.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) words.push_back("--" + name);
-  const std::string names = fmt::format("{}", fmt::join(words, ", "));
+  const std::string names = CLI::detail::find_and_replace(option.get_name(false, true), ",", ", ");
   if (option.get_items_expected_max() == 0) return names;
   if (option.get_positional()) return option.get_single_name();
   std::string value = option.get_type_name();

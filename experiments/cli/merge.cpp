@@ -2,10 +2,9 @@
 // `merge`: merges other stores into this one.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
-#include <memory>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "experiments/cli/command.hpp"
@@ -15,69 +14,49 @@
 namespace shearcell::cli {
 namespace {
 
-using Runs = std::set<std::string>;  // ids
+using Runs = std::set<std::string>;                                 // ids
+using Version = std::tuple<std::string, std::string, std::string>;  // experiment, scale, manifest
 
-/// The runs of one experiment at one scale.
+/// What figures and tables show of a store, and what not: runs of older versions of a manifest.
 struct Shown {
-  std::map<std::string, Runs> versions;  // of the manifest, with the runs that figures show
-  Runs left_out;
+  std::map<Version, Runs> shown;
+  std::map<std::pair<std::string, std::string>, Runs> left_out;  // by experiment and scale
 };
-using ShownAt = std::map<std::pair<std::string, std::string>, Shown>;  // by experiment and scale
 
-/// What figures and tables show of a store.
-ShownAt shown_of(const Store& store) {
-  ShownAt shown;
-  const std::vector<Run> all = select_runs(store, {});
-  const auto at = [&](const Run& one) -> Shown& {
-    return shown[{one.ask.experiment, one.ask.scale}];
-  };
-  for (const Run& one : all) at(one).left_out.insert(one.stage.id);
-  for (const Run& one : newest_runs(all).runs) {
-    at(one).left_out.erase(one.stage.id);
-    at(one).versions[one.ask.manifest].insert(one.stage.id);
-  }
-  return shown;
-}
-
-ShownAt shown_of_source(const std::string& source) {
-  try {
-    return shown_of(Store(source, Access::read));
-  } catch (const std::exception&) {
-    return {};  // the merge reports what is wrong
+void add_shown(const Store& store, Shown& all) {
+  for (const auto& [run, place] : select_runs(store, {})) {
+    Runs& runs = place.newest ? all.shown[{place.experiment, place.scale, place.manifest}]
+                              : all.left_out[{place.experiment, place.scale}];
+    runs.insert(run.id);
   }
 }
 
 /// Warns of runs that figures showed before the merge, of this store or of a source, and do not
-/// show after it, since another version of the manifest was registered later.
-void warn_of_left_out(const ShownAt& own, const std::vector<ShownAt>& sources,
-                      const ShownAt& merged, Context& context) {
-  for (const auto& [where, now] : merged) {
-    Runs old;  // that this store left out before
-    std::map<std::string, Runs> versions;
-    const auto take = [&, &where = where](const ShownAt& store) {
-      const auto here = store.find(where);
-      if (here == store.end()) return;
-      for (const auto& [version, runs] : here->second.versions) {
-        versions[version].insert(runs.begin(), runs.end());
-      }
-    };
-    take(own);
-    for (const ShownAt& source : sources) take(source);
-    if (const auto here = own.find(where); here != own.end()) old = here->second.left_out;
-    for (const auto& [version, runs] : versions) {
-      const auto lost = std::ranges::count_if(runs, [&, &now = now](const std::string& run) {
-        return now.left_out.contains(run) && !old.contains(run);
-      });
-      if (lost == 0 || now.versions.empty()) continue;
-      const auto& [newest, shown] = *now.versions.begin();
-      warn(context,
-           fmt::format("experiment {} at scale {}: the merged stores have two versions of its "
-                       "manifest. Figures now show the version registered last, {:.8}, with {}, "
-                       "and leave out {} of the {} of version {:.8}. To show all, `shearcell run` "
-                       "one manifest that states the runs of both: it computes nothing new.",
-                       where.first, scale_name(where.second), newest, counted(shown.size(), "run"),
-                       lost, counted(runs.size(), "run"), version));
+/// show after it, since another version of the manifest was registered later. `own`: of this store
+/// before the merge, `before`: also of the sources.
+void warn_of_left_out(const Shown& own, const Shown& before, const Shown& now, Context& context) {
+  for (const auto& [version, runs] : before.shown) {
+    const auto& [experiment, scale, manifest] = version;
+    // The version that is shown now.
+    const auto newest = now.shown.lower_bound({experiment, scale, ""});
+    if (newest == now.shown.end() || now.shown.contains(version)) continue;
+    const auto& [its_experiment, its_scale, its_manifest] = newest->first;
+    if (its_experiment != experiment || its_scale != scale) continue;
+    const auto told = own.left_out.find({experiment, scale});
+    std::size_t lost = 0;
+    for (const std::string& run : runs) {
+      const bool known = told != own.left_out.end() && told->second.contains(run);
+      lost += newest->second.contains(run) || known ? 0 : 1;
     }
+    if (lost == 0) continue;
+    warn(context,
+         fmt::format("experiment {} at scale {}: the merged stores have two versions of its "
+                     "manifest. Figures now show the version registered last, {:.8}, with {}, "
+                     "and leave out {} of the {} of version {:.8}. To show all, `shearcell run` "
+                     "one manifest that states the runs of both: it computes nothing new.",
+                     experiment, scale_name(scale), its_manifest,
+                     counted(newest->second.size(), "run"), lost, counted(runs.size(), "run"),
+                     manifest));
   }
 }
 
@@ -88,15 +67,23 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': there is no store here to merge", source));
   }
   Store store(context.store, Access::create);
-  const ShownAt before = shown_of(store);
-  std::vector<ShownAt> shown;
-  for (const std::string& source : sources) shown.push_back(shown_of_source(source));
+  Shown own;
+  add_shown(store, own);
+  Shown before = own, now;
+  for (const std::string& source : sources) {
+    try {
+      add_shown(Store(source, Access::read), before);
+    } catch (const std::exception&) {
+      // The merge reports what is wrong.
+    }
+  }
   std::vector<Finding> refused;
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
   for (const Finding& finding : refused) {
     print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
   }
-  warn_of_left_out(before, shown, shown_of(store), context);
+  add_shown(store, now);
+  warn_of_left_out(own, before, now, context);
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {
       return {{"source", report.source},
@@ -117,13 +104,13 @@ void merge(const std::vector<std::string>& sources, Context& context) {
 }  // namespace
 
 void add_merge(CLI::App& app, Context& context) {
-  auto sources = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("merge", "Merge other stores into this one");
+  const auto [command, sources] =
+      add_command(app, context, "merge", "Merge other stores into this one", merge);
   command->add_option("source", *sources, "Folders of the stores to merge")
       ->required()
       ->type_name("STORE");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Checks the chain of each source and every file to copy before anything changes. Refuses two
 stores that record different states of one run at one step. The sources stay unchanged, and
 merging twice changes nothing. If the stores have different versions of a manifest, figures show
@@ -132,7 +119,6 @@ manifest that states the runs of both: it computes nothing new. Cached measures 
 recomputed ones are right.
 Examples:
   shearcell merge task-1 task-2 --store all)");
-  command->callback([sources, &context] { merge(*sources, context); });
 }
 
 }  // namespace shearcell::cli

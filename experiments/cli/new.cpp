@@ -2,10 +2,8 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <memory>
 #include <sstream>
 #include <system_error>
 
@@ -102,27 +100,17 @@ scales:
 )";
 }
 
-/// Links a complete temporary file, so the file is complete and replaces no other.
-void write_new(const std::filesystem::path& file, const std::string& text) {
+/// Replaces no other file, and leaves nothing of a file that cannot be written.
+void write_new(const std::filesystem::path& file, const std::string& text) try {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
-  std::error_code failed, ignored;
-  try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
-    std::filesystem::remove(whole, ignored);
-    // The file exists, which NewFile refuses, or the file system has no hard links.
-    if (failed) NewFile(file).add(text);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) {
-      throw std::system_error(error.code(), file.string() + ": cannot write");
-    }
-    throw UsageError(file.string() +
-                     ": the file exists already. Choose another name, or remove it.");
-  }
+  NewFile(file).add(text);
+} catch (const std::system_error& error) {
+  if (error.code() != std::errc::file_exists) throw;
+  throw UsageError(file.string() + ": the file exists already. Choose another name, or remove it.");
 }
 
-void make(std::filesystem::path file) {
+void make(const std::string& name, Context&) {
+  std::filesystem::path file = name;
   const bool whole = file.extension() == ".yaml" || file.extension() == ".yml";
   const std::string experiment = (whole ? file.stem() : file.filename()).string();
   if (!whole) file += ".yaml";
@@ -141,9 +129,8 @@ void make(std::filesystem::path file) {
 
 }  // namespace
 
-void add_new(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("new", "Write a commented manifest");
-  auto name = std::make_shared<std::string>();
+void add_new(CLI::App& app, Context& context) {
+  const auto [command, name] = add_command(app, context, "new", "Write a commented manifest", make);
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
       R"(Writes every parameter with its meaning and default, a sweep of `fluid`, and three scales.
@@ -151,7 +138,6 @@ Refuses to overwrite a file.
 Examples:
   shearcell new softer
   shearcell new studies/softer.yaml)");
-  command->callback([name] { make(*name); });
 }
 
 }  // namespace shearcell::cli

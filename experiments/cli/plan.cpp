@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -15,10 +14,8 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/cost.hpp"
-#include "experiments/runner/engine.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -50,12 +47,6 @@ std::vector<std::string> shared_with(const Line& line) {
   return others;
 }
 
-// "also in twin".
-std::string remark(const Line& line) {
-  const std::vector<std::string> others = shared_with(line);
-  return others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "));
-}
-
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = line.run->parameters;
@@ -73,29 +64,33 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 
 // Time steps and overlap of every kind of stage, each once.
 void print_numerics(const std::vector<Line>& lines) {
-  std::vector<Row> rows;
+  std::vector<Facts> rows;
   for (const Line& line : lines) {
     const Parameters& p = line.run->parameters;
     const std::string& kind = line.stage.kind;
-    Row row = {kind,
-               kind == name_of(StageKind::prepare) ? "" : line.run->name,
-               kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
-               "",
-               "",
-               "",
-               fmt::format("{:.2g}", expected_overlap(p))};
-    if (const auto step = time_step_of(line)) {
-      row[3] = fmt::format("{:.4g}", step->seconds);
-      row[4] = fmt::format("{:.3f}", step->over_contact_time);
-      row[5] = fmt::format("{:.3f}", step->over_stability_limit);
-    }
+    const auto step = time_step_of(line);
+    Facts row = {
+        {"", kind, "stage"},
+        {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
+        {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
+         "steps/cycle"},
+        {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
+        {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
+        {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
+        {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // mean, as expected
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
-  // The mean overlap that is to be expected.
-  print_table(
-      {"stage", "variant", "steps/cycle", "dt [s]", "dt/contact", "dt/limit", "overlap [d]"}, rows);
+  print_table(rows);
 }
+
+// What our own simulation has and LAMMPS lacks or has only approximately.
+const std::vector<std::string> kLammpsCaveats = {
+    "LAMMPS computes the shear alone; packings are placed and settled by this program, and shared.",
+    "Results equal ours up to rounding; the bits differ, also between numbers of processes.",
+    "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
+    "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
+    "wall's plane ends a run."};
 
 // Notes on runs that this machine cannot hold, and on runs by another engine.
 std::vector<std::string> notes_of(const Plan& plan) {
@@ -109,7 +104,7 @@ std::vector<std::string> notes_of(const Plan& plan) {
                                 format_bytes(most), format_bytes(machine_memory())));
   }
   if (!asks_for_lammps(plan)) return notes;
-  std::ranges::move(lammps_caveats(), std::back_inserter(notes));
+  notes.insert(notes.end(), kLammpsCaveats.begin(), kLammpsCaveats.end());
   try {
     notes.push_back("LAMMPS here: " + find_lammps().version);
   } catch (const ProgramError& missing) {
@@ -158,76 +153,52 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   }
 }
 
-struct Left {
-  Work work;
-  double bytes = 0;
-  double rate = 0;  ///< mean particle-steps/s of one core
-};
-
-Left left_of(const std::vector<Line>& lines, const std::vector<Stage>& known) {
-  Left left;
-  const Rates rates(known);
-  for (const Line& line : lines) {
-    left.work.add(line.stage, line.look.particle_steps, rates);
-    left.bytes += line.look.bytes;
-    // Where nothing is left to do.
-    if (left.rate == 0) left.rate = rates.of(line.stage).particle_steps_per_second;
-  }
-  const Work& work = left.work;
-  if (work.core_seconds > 0) left.rate = work.particle_steps / work.core_seconds;
-  return left;
-}
-
 nlohmann::json experiment_facts(const Plan& plan) {
   return {{"experiment", plan.experiment}, {"scale", plan.scale}, {"runs", plan.runs.size()}};
 }
 
-nlohmann::json facts(const Line& line) {
-  return {{"id", line.stage.id},
-          {"experiment", line.run->experiment},
-          {"parent", line.stage.parent},
-          {"stage", line.stage.kind},
-          {"variant", line.run->variant},
-          {"parameters", effective_parameters(line.stage.resolved)},
-          {"seed", line.run->seed},
-          {"N", line.run->parameters.grains},
-          {"cycles", static_cast<std::uint64_t>(cycles_of(line))},
-          {"state", state_of(line)},
-          {"shared_with", shared_with(line)},
-          {"time_step", facts(time_step_of(line))},
-          {"expected_overlap_d", expected_overlap(line.run->parameters)},
-          {"particle_steps_left", line.look.particle_steps},
-          {"checkpoints_left", line.look.checkpoints},
-          {"bytes_left", line.look.bytes},
-          {"memory_bytes", run_bytes(geometry(line.run->parameters))}};
+Facts facts(const Line& line, bool of_several_experiments) {
+  const PlannedRun& run = *line.run;
+  const bool prepare = line.stage.kind == name_of(StageKind::prepare);
+  const double cycles = cycles_of(line);
+  const std::vector<std::string> others = shared_with(line);
+  Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
+               {"stage", line.stage.kind, "stage"},
+               {"experiment", run.experiment},
+               {"variant", run.variant, "variant", prepare ? "" : run.name},
+               {"seed", run.seed, "seed"},
+               {"N", run.parameters.grains, "N"},
+               {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
+                prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
+               {"state", state_of(line), "state"},
+               {"shared_with", others, "",
+                others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "))},
+               {"parent", line.stage.parent},
+               {"parameters", effective_parameters(line.stage.resolved)},
+               {"time_step", facts(time_step_of(line))},
+               {"expected_overlap_d", expected_overlap(run.parameters)},
+               {"particle_steps_left", line.look.particle_steps},
+               {"checkpoints_left", line.look.checkpoints},
+               {"bytes_left", line.look.bytes},
+               {"memory_bytes", run_bytes(geometry(run.parameters))}};
+  if (of_several_experiments) all[2].heading = "experiment";
+  return all;
 }
 
-void print_stages(const std::vector<Line>& lines, bool of_several_experiments) {
-  Row header = {"run", "stage", "variant", "seed", "N", "cycle", "state", ""};
-  if (of_several_experiments) header.insert(header.begin() + 2, "experiment");
-  print_table(header, lines, [&](const Line& line) {
-    const bool prepare = line.stage.kind == name_of(StageKind::prepare);
-    Row row = {line.stage.id.substr(0, 8),
-               line.stage.kind,
-               prepare ? "" : line.run->name,
-               std::to_string(line.run->seed),
-               std::to_string(line.run->parameters.grains),
-               prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles_of(line)),
-               state_of(line),
-               remark(line)};
-    if (of_several_experiments) row.insert(row.begin() + 2, line.run->experiment);
-    return row;
-  });
-}
+struct PlanOptions {
+  std::vector<std::string> manifests;
+  ExpandOptions expand;
+};
 
-void plan(const std::vector<std::string>& manifests, const ExpandOptions& options,
-          Context& context) {
-  const std::vector<Plan> plans = load_manifests(manifests, options, context).plans;
+void plan(const PlanOptions& options, Context& context) {
+  const std::vector<Plan> plans = load_manifests(options.manifests, options.expand, context).plans;
   const Plan expanded = joined(plans);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->stages() : std::vector<Stage>{};
   const std::vector<Line> lines = look_at(expanded, store ? &*store : nullptr);
-  const Left left = left_of(lines, runs);
+  const Rates rates(runs);
+  Work left;
+  for (const Line& line : lines) left.add(line.stage, line.look, rates);
   const nlohmann::json with_until = left_until(lines, runs);
   std::set<const PlannedRun*> left_runs;  // each is computed by one core
   std::size_t longer = 0;
@@ -236,7 +207,7 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
     longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
-  const double seconds = left.work.seconds(cores);
+  const double seconds = left.seconds(cores);
   std::vector<std::string> notes = notes_of(expanded);
   const std::filesystem::path place = existing_folder(context.store);
   const auto free = static_cast<double>(std::filesystem::space(place).available);
@@ -249,6 +220,8 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
         "`run` also continues {} to the number of cycles that an earlier command asked for",
         counted(longer, "run")));
   }
+  const std::vector<Facts> stages =
+      rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
                        {"scale", expanded.scale},
@@ -256,18 +229,18 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
                        {"notes", notes},
                        {"warnings", context.warnings},
                        {"runs", expanded.runs.size()},
-                       {"stages", json_list(lines, [](const Line& line) { return facts(line); })},
-                       {"particle_steps_left", left.work.particle_steps},
+                       {"stages", to_json(stages)},
+                       {"particle_steps_left", left.particle_steps},
                        {"particle_steps_left_with_until", with_until},
                        {"bytes_left", left.bytes},
                        {"seconds_left", seconds},
                        {"cores", cores},
                        {"particle_steps_per_second_and_core", left.rate},
-                       {"rate_measured", left.work.measured}});
+                       {"rate_measured", left.measured}});
   }
   fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
              counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
-  print_stages(lines, manifests.size() > 1);
+  print_table(stages);
   print_numerics(lines);
   if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {
     fmt::print("\nleft: nothing\n");
@@ -275,11 +248,10 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
     fmt::print(
         "\nleft: {:.3g} particle-steps, about {} on {} at {:.0f} M particle-steps/s each "
         "({}),\n      about {} on disk\n",
-        left.work.particle_steps, format_duration(seconds), counted(cores, "core"),
-        left.rate * 1e-6,
-        left.work.measured ? "measured in this store" : "assumed until a run has been measured",
+        left.particle_steps, format_duration(seconds), counted(cores, "core"), left.rate * 1e-6,
+        left.measured ? "measured in this store" : "assumed until a run has been measured",
         format_bytes(left.bytes));
-    print_until(lines, with_until, left.work.particle_steps);
+    print_until(lines, with_until, left.particle_steps);
   }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }
@@ -287,20 +259,17 @@ void plan(const std::vector<std::string>& manifests, const ExpandOptions& option
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  auto manifests = std::make_shared<std::vector<std::string>>();
-  auto options = std::make_shared<ExpandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "plan", "Show the runs of manifests, what is done, and the cost of the rest");
-  command->add_option("manifest", *manifests, "YAML manifests")->required();
-  add_expand_options(*command, *options);
-  add_engine_option(*command, *options);
-  add_common_options(*command, context);
-  command->footer(
-      "Runs that several of the manifests share are counted once.\n"
-      "Examples:\n"
-      "  shearcell plan experiments/drag.yaml --scale paper\n"
-      "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
-  command->callback([manifests, options, &context] { plan(*manifests, *options, context); });
+  const auto [command, options] =
+      add_command(app, context, "plan",
+                  "Show the runs of manifests, what is done, and the cost of the rest", plan);
+  command->add_option("manifest", options->manifests, "YAML manifests")->required();
+  add_expand_options(*command, options->expand);
+  add_engine_option(*command, options->expand);
+  add_common_options(*command, context,
+                     "Runs that several of the manifests share are counted once.\n"
+                     "Examples:\n"
+                     "  shearcell plan experiments/drag.yaml --scale paper\n"
+                     "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
 }
 
 }  // namespace shearcell::cli

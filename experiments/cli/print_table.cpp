@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <sstream>
+#include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell::cli {
 namespace {
+
+using Row = std::vector<std::string>;  // cells
 
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kNarrowest = 6;  // of a column that is cut
@@ -25,13 +29,13 @@ bool is_number(const std::string& cell) {
   return cell.empty() || cell.find_first_not_of("0123456789.-+e:%/") == std::string::npos;
 }
 
-std::vector<Column> measure(const Row& header, const std::vector<Row>& rows) {
-  std::vector<Column> columns(header.size());
-  for (std::size_t c = 0; c < header.size(); ++c) {
-    columns[c].width = characters(header[c]);
-    for (const auto& row : rows) {
+/// Of rows, the first of which is the header.
+std::vector<Column> measure(const std::vector<Row>& rows) {
+  std::vector<Column> columns(rows.front().size());
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
       columns[c].width = std::max(columns[c].width, characters(row[c]));
-      columns[c].right = columns[c].right && is_number(row[c]);
+      columns[c].right = columns[c].right && (&row == &rows.front() || is_number(row[c]));
     }
   }
   return columns;
@@ -74,37 +78,16 @@ std::string painted(const std::string& word, const std::string& text) {
   return found == colours.end() ? text : fmt::format(fmt::fg(found->second), "{}", text);
 }
 
-}  // namespace
-
-void print_table(const Row& header, const std::vector<Row>& given) {
-  std::vector<Row> rows = given;
-  for (auto& row : rows) {
-    for (std::string& cell : row) cell = for_terminal(cell);
-  }
-  std::vector<Column> columns = measure(header, rows);
-  if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
-  const bool colours = shows_colours(stdout);
-  const auto print_row = [&](const Row& row, bool is_header) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c > 0) line.append(kGap, ' ');
-      std::string text = fitted(row[c], columns[c]);
-      if (c + 1 == row.size()) text.erase(text.find_last_not_of(' ') + 1);
-      if (colours)
-        text = is_header ? fmt::format(fmt::emphasis::bold, "{}", text) : painted(row[c], text);
-      line += text;
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", line);
-  };
-  print_row(header, true);
-  for (const auto& row : rows) print_row(row, false);
+std::string text_of(const Fact& fact) {
+  return fact.text ? *fact.text : short_text(fact.value);
 }
+
+}  // namespace
 
 nlohmann::json to_json(const Facts& facts) {
   nlohmann::json all = nlohmann::json::object();
   for (const Fact& fact : facts) {
-    if (*fact.key != '\0') all[fact.key] = fact.value;
+    if (!fact.key.empty()) all[fact.key] = fact.value;
   }
   return all;
 }
@@ -113,19 +96,48 @@ nlohmann::json to_json(const std::vector<Facts>& rows) {
   return json_list(rows, [](const Facts& row) { return to_json(row); });
 }
 
-void print_table(const std::vector<Facts>& rows) {
-  Row header;
-  std::vector<Row> cells;
-  for (const Facts& row : rows) {
-    header.clear();
-    cells.emplace_back();
-    for (const Fact& fact : row) {
-      if (fact.heading == nullptr) continue;
-      header.emplace_back(fact.heading);
-      cells.back().push_back(fact.text ? *fact.text : short_text(fact.value));
+void print_table(const std::vector<Facts>& all) {
+  if (all.empty()) return;
+  std::vector<Row> rows(1);  // the header
+  for (const Facts& facts : all) {
+    Row cells;
+    rows.front().clear();
+    for (const Fact& fact : facts) {
+      if (!fact.heading) continue;
+      rows.front().push_back(*fact.heading);
+      cells.push_back(for_terminal(text_of(fact)));
+    }
+    rows.push_back(std::move(cells));
+  }
+  std::vector<Column> columns = measure(rows);
+  if (const auto limit = terminal_columns(stdout)) narrow(columns, *limit);
+  const bool colours = shows_colours(stdout);
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) line.append(kGap, ' ');
+      std::string text = fitted(row[c], columns[c]);
+      if (c + 1 == row.size()) text.erase(text.find_last_not_of(' ') + 1);
+      if (colours && &row == &rows.front()) text = fmt::format(fmt::emphasis::bold, "{}", text);
+      if (colours && &row != &rows.front()) text = painted(row[c], text);
+      line += text;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
+  }
+}
+
+void print_lines(const Facts& facts) {
+  std::size_t widest = 0;
+  for (const Fact& fact : facts) widest = std::max(widest, fact.heading.value_or("").size());
+  for (const Fact& fact : facts) {
+    if (!fact.heading) continue;
+    std::string heading = *fact.heading;
+    std::istringstream lines(text_of(fact));
+    for (std::string line; std::getline(lines, line);) {
+      print_text("{:<{}}  {}\n", std::exchange(heading, ""), widest, line);
     }
   }
-  print_table(header, cells);
 }
 
 void print_list(const char* name, const std::vector<Facts>& rows, const Context& context) {

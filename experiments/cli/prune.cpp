@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -16,7 +15,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/keep_measures.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/words.hpp"
@@ -40,9 +39,7 @@ bool selects(const RunSelection& s) {
 std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
   std::vector<std::string> ids;
-  for (const Run& one : select_runs(store, selection)) {
-    if (std::ranges::count(ids, one.stage.id) == 0) ids.push_back(one.stage.id);
-  }
+  for (const PlacedRun& one : by_run(select_runs(store, selection))) ids.push_back(one.stage.id);
   return ids;
 }
 
@@ -74,25 +71,21 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 }
 
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
-  std::map<std::string, std::vector<CheckpointRecord>> by_run;
-  for (const CheckpointRecord& record : records) by_run[record.run].push_back(record);
-  // All experiments that have the run: they lose its files too.
-  const auto experiments_of = [](const Stage& run) {
-    std::set<std::string> names;
-    for (const Ask& m : run.asks) names.insert(m.experiment);
-    return fmt::format("{}", fmt::join(names, ", "));
-  };
-  const Row header = {"run", "experiment", "state", "to free", "of", "bytes"};
-  print_table(header, by_run, [&](const auto& freed) -> Row {
+  std::map<std::string, std::vector<CheckpointRecord>> freed_by_run;
+  for (const CheckpointRecord& record : records) freed_by_run[record.run].push_back(record);
+  print_table(rows_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage run = store.stage(id);
-    return {id.substr(0, 8),
-            experiments_of(run),
-            std::string(name_of(run.state)),
-            std::to_string(of_run.size()),
-            std::to_string(store.checkpoints(id).size()),
-            format_bytes(bytes_of(of_run))};
-  });
+    // All experiments that have the run: they lose its files too.
+    std::set<std::string> experiments;
+    for (const Ask& m : run.asks) experiments.insert(m.experiment);
+    return {{"", id.substr(0, 8), "run"},
+            {"", fmt::format("{}", fmt::join(experiments, ", ")), "experiment"},
+            {"", name_of(run.state), "state"},
+            {"", of_run.size(), "to free"},
+            {"", store.checkpoints(id).size(), "of"},
+            {"", format_bytes(bytes_of(of_run)), "bytes"}};
+  }));
 }
 
 bool agreed() {
@@ -264,17 +257,17 @@ void regenerate(const RegenerateOptions& options, Context& context) {
 }  // namespace
 
 void add_prune(CLI::App& app, Context& context) {
-  auto options = std::make_shared<PruneOptions>();
-  CLI::App* command = app.add_subcommand(
-      "prune", "Delete checkpoint files that can be recomputed; records and measures stay");
+  const auto [command, options] = add_command(
+      app, context, "prune",
+      "Delete checkpoint files that can be recomputed; records and measures stay", prune);
   command->add_option("run", options->choice.runs,
                       "Only these runs: ids, or unique beginnings of them");
   add_selection_options(*command, options->selection, true);
   add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
              1'000'000'000);
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
 deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those that
 other stages started from, or those of LAMMPS.
@@ -287,27 +280,25 @@ Examples:
   shearcell prune --keep-every 10
   shearcell prune --experiment drag --scale smoke --keep-every 10
   shearcell prune --state failed --yes)");
-  command->callback([options, &context] { prune(*options, context); });
 }
 
 void add_regenerate(CLI::App& app, Context& context) {
-  auto options = std::make_shared<RegenerateOptions>();
-  CLI::App* command =
-      app.add_subcommand("regenerate", "Recompute the files of pruned or damaged checkpoints");
+  const auto [command, options] =
+      add_command(app, context, "regenerate",
+                  "Recompute the files of pruned or damaged checkpoints", regenerate);
   command->add_option("checkpoint", options->checkpoints,
                       "SHA-256 of checkpoints, or beginnings of them");
   add_selection_options(*command, options->selection, true);
   command->add_flag("--all", options->all, "All checkpoints of the store without an intact file");
   add_threads_option(*command, options->threads, "Threads, for large cells");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
 hash, writes nothing, records ReplayDiverged and ends with code 4.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk
   shearcell regenerate --all)");
-  command->callback([options, &context] { regenerate(*options, context); });
 }
 
 }  // namespace shearcell::cli

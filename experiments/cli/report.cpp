@@ -2,8 +2,6 @@
 // `report`: the whole store in one HTML file.
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/report/page.hpp"
@@ -36,9 +34,8 @@ void report(ReportCommand& command, Context& context) {
   options.workers = usable_cores();
   options.measured = terminal_counter("measuring checkpoint");
   options.encoded = terminal_counter("reading checkpoint");
-  const ReportData made = collect_report(store, options);
-  const std::string html = report_page(made);
-  write_output(command.out, html);
+  const Report made = make_report(store, options);
+  write_output(command.out, made.html);
   if (!made.damage.empty()) fail(context, kStoreDamaged);
   if (!made.undrawn.empty()) fail(context, kOtherError);
   for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
@@ -49,26 +46,25 @@ void report(ReportCommand& command, Context& context) {
         "Figures are drawings and there are no packings: this program was built without "
         "Node.\n");
   }
-  const std::size_t packings = made.packings.runs.size();
   if (context.json) {
     return print_json({{"file", command.out},
-                       {"bytes", html.size()},
+                       {"bytes", made.html.size()},
                        {"interactive", made.interactive},
-                       {"experiments", made.experiments.size()},
-                       {"figures", made.figures.size()},
-                       {"stages", made.runs.size()},
-                       {"packings", packings},
-                       {"checkpoints", made.packings.frames},
+                       {"experiments", made.experiments},
+                       {"figures", made.figures},
+                       {"stages", made.stages},
+                       {"packings", made.packings},
+                       {"checkpoints", made.checkpoints},
                        {"damage", made.damage},
                        {"undrawn", made.undrawn},
                        {"notes", made.notes}});
   }
-  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(html.size())),
-             counted(made.experiments.size(), "experiment"), counted(made.figures.size(), "figure"),
-             counted(made.runs.size(), "stage"));
+  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),
+             counted(made.experiments, "experiment"), counted(made.figures, "figure"),
+             counted(made.stages, "stage"));
   if (made.interactive) {
-    fmt::print(", {} of {} in 3D", counted(made.packings.frames, "checkpoint"),
-               counted(packings, "run"));
+    fmt::print(", {} of {} in 3D", counted(made.checkpoints, "checkpoint"),
+               counted(made.packings, "run"));
   }
   fmt::print("\n");
 }
@@ -76,14 +72,15 @@ void report(ReportCommand& command, Context& context) {
 }  // namespace
 
 void add_report(CLI::App& app, Context& context) {
-  auto command = std::make_shared<ReportCommand>();
-  PackingChoice& packings = command->report.packings;
-  CLI::App* sub = app.add_subcommand("report", "Write the whole store as one HTML file");
+  const auto [sub, command] =
+      add_command(app, context, "report", "Write the whole store as one HTML file", report);
+  ReportOptions& options = command->report;
+  PackingChoice& packings = options.packings;
   sub->add_option("--out", command->out, "File to write")
       ->capture_default_str()
       ->check(unnamed)
       ->type_name("FILE");
-  add_selection_options(*sub, command->report.runs);
+  add_selection_options(*sub, options.runs);
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,
@@ -97,11 +94,11 @@ void add_report(CLI::App& app, Context& context) {
              "MB", 0, 1000)
       ->capture_default_str();
   sub->add_flag_callback(
-         "--drawings", [command] { command->report.interactive = false; },
+         "--drawings", [&options] { options.interactive = false; },
          "Static figures drawn by gnuplot; no JavaScript, no packings")
       ->excludes("--run");
-  add_common_options(*sub, context);
-  sub->footer(
+  add_common_options(
+      *sub, context,
       R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and
 packings in 3D with their positions rounded to 16 bits an axis. Only the cached measures in the
 store change.
@@ -109,7 +106,6 @@ Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html
   shearcell report --experiment drag --scale desk --out desk.html)");
-  sub->callback([command, &context] { report(*command, context); });
 }
 
 }  // namespace shearcell::cli

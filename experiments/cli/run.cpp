@@ -7,7 +7,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -59,8 +58,7 @@ std::size_t workers(const RunOptions& options) {
 
 CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options) {
   if (!options.task) catch_stop_signals();
-  Progress progress(jobs.size(), options.quiet);
-  return run_campaign(store, jobs, workers(options), progress, options.parallel);
+  return run_campaign(store, jobs, workers(options), options.parallel, options.quiet);
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -100,13 +98,6 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, bool& faile
   };
   require_lammps_for_ranks(options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
   return compute(store, jobs, options);
-}
-
-void resume_runs(const RunOptions& options, Context& context) {
-  Store store(context.store, Access::write);
-  bool failed_before = false;
-  print_result(compute_rest(store, options, failed_before), context);
-  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
 // For Repeated: an action that prints its error instead of throwing. It is repeated next time.
@@ -175,6 +166,14 @@ void resume_task(const RunOptions& options, Context& context) {
   if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
+void resume_runs(const RunOptions& options, Context& context) {
+  if (options.task) return resume_task(options, context);
+  Store store(context.store, Access::write);
+  bool failed_before = false;
+  print_result(compute_rest(store, options, failed_before), context);
+  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
+}
+
 void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(command, "--jobs,-j", options.jobs, "Runs at a time (default: one per core)", "J", 1,
              1024);
@@ -226,15 +225,13 @@ void print_result(const CampaignResult& result, Context& context) {
 }
 
 void add_run(CLI::App& app, Context& context) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Compute the runs of manifests");
+  const auto [command, options] =
+      add_command(app, context, "run", "Compute the runs of manifests", run);
   command->add_option("manifest", options->inputs, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_worker_options(*command, *options);
-  add_common_options(*command, context);
-  command->footer(
-      R"(Examples:
+  add_common_options(*command, context, R"(Examples:
   shearcell run experiments/drag.yaml --scale smoke
   shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend
   shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1
@@ -245,10 +242,9 @@ Computes only what the store does not hold. Press Ctrl-C to write checkpoints an
 code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one
 machine and one store to share the work. On several machines, give each its --variant or --seed
 and merge their stores.)");
-  command->callback([options, &context] { run(*options, context); });
 
-  auto resume_options = std::make_shared<RunOptions>();
-  CLI::App* resume = app.add_subcommand("resume", "Continue unfinished runs");
+  const auto [resume, resume_options] =
+      add_command(app, context, "resume", "Continue unfinished runs", resume_runs);
   resume->add_option("run", resume_options->inputs,
                      "Run ids, or unique beginnings of them (default: all)");
   add_worker_options(*resume, *resume_options);
@@ -262,17 +258,14 @@ and merge their stores.)");
                    "${NAME} are variables of the node")
       ->needs(task)
       ->type_name("DIR");
-  add_common_options(*resume, context);
-  resume->footer(
+  add_common_options(
+      *resume, context,
       R"(A task reports its progress to `status`. On SIGTERM or SIGUSR1 it writes checkpoints and ends with
 code 85; started again, it continues bit for bit. With --scratch it copies the store back every
 five minutes and at the end.
 Examples:
   shearcell resume
   shearcell resume 3f9a)");
-  resume->callback([resume_options, &context] {
-    (resume_options->task ? resume_task : resume_runs)(*resume_options, context);
-  });
 }
 
 }  // namespace shearcell::cli

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -20,8 +19,8 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/shipped.hpp"
-#include "experiments/runner/look.hpp"
 #include "experiments/runner/measure_sources.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
@@ -29,7 +28,7 @@
 namespace shearcell::cli {
 namespace {
 
-Facts checkpoint_facts(const CheckpointRecord& c) {
+Facts facts_of(const CheckpointRecord& c) {
   return {{"run", c.run},
           {"cycle", c.cycle, "cycle", fmt::format("{:g}", c.cycle)},
           {"step", c.step, "step"},
@@ -43,8 +42,8 @@ Facts checkpoint_facts(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// `asked_by`: indices of the memberships whose figures and tables have the checkpoint; empty if
-/// only an interruption or another experiment's cadence left it.
+/// With the places of the memberships whose figures and tables have the checkpoint: none if only an
+/// interruption or another experiment's cadence left it.
 std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -54,13 +53,45 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
     }
   }
   return rows_of(checkpoints, [&](const CheckpointRecord& c) {
-    Facts facts = checkpoint_facts(c);
+    Facts facts = facts_of(c);
     facts.push_back({"asked_by", asked_by[c.step]});
     return facts;
   });
 }
 
-// The engine that the latest attempt recorded; null for our own.
+/// The values of `table`; measured now if they are not cached.
+Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
+  Measures measures;
+  try {
+    const auto found = measure_checkpoints(store, {&record, 1}, table_providers(), {});
+    print_problems(found, "not measured", context);
+    measures = found.measures.front();
+  } catch (const AnalysisError& problem) {  // a failed run may leave such a state
+    print_stderr("not measured: {}\n", problem.what());
+    MeasureSources sources(store);
+    sources.read_run(record.run);
+    sources.add_recorded(record, measures);
+  }
+  Facts facts;
+  for (const auto& [column, value] : facts_of(record, measures)) {
+    Fact& fact = facts.emplace_back(Fact{column.name, value});
+    if (!value.is_number()) continue;
+    fact.heading = column.name;
+    fact.text = fmt::format("{:<12.6g} {}", value.get<double>(), column.meaning);
+  }
+  return facts;
+}
+
+/// Of the newest checkpoint that was not rejected.
+Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints,
+                      Context& context) {
+  for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
+    if (c->state != CheckpointState::rejected) return measures_at(store, *c, context);
+  }
+  return {};
+}
+
+/// The engine that the latest attempt recorded; null for our own.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   const RunLineage stage = run_lineage(store, run).back();
@@ -70,165 +101,131 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   return engine;
 }
 
-using CheckpointFacts = std::vector<std::pair<TableColumn, nlohmann::json>>;
-
-/// The same values as in `table`; measured now if they are not cached.
-CheckpointFacts facts_at(const Store& store, const CheckpointRecord& record, Context& context) {
-  MeasuredCheckpoints found;
-  try {
-    found = measure_checkpoints(store, {&record, 1}, table_providers(), {});
-  } catch (const AnalysisError& problem) {  // a failed run may leave such a state
-    print_stderr("not measured: {}\n", problem.what());
-    MeasureSources sources(store);
-    sources.read_run(record.run);
-    Measures recorded;
-    sources.add_recorded(record, recorded);
-    return facts_of(record, recorded);
+/// A line for each value that the command line gave.
+std::vector<std::string> describe(const nlohmann::json& overrides) {
+  std::vector<std::string> lines;
+  for (const auto& [key, values] : overrides.items()) {
+    lines.push_back(fmt::format("given at the command line: {} {} (manifest: {})", key,
+                                text_at(values, "run"), text_at(values, "manifest")));
   }
-  print_problems(found, "not measured", context);
-  return facts_of(record, found.measures.front());
+  return lines;
 }
 
-CheckpointFacts newest_measures(const Store& store,
-                                const std::vector<CheckpointRecord>& checkpoints,
-                                Context& context) {
-  for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
-    if (c->state != CheckpointState::rejected) return facts_at(store, *c, context);
-  }
-  return {};
-}
-
-nlohmann::json as_json(const CheckpointFacts& facts) {
-  nlohmann::json all = nlohmann::json::object();
-  for (const auto& [column, value] : facts) all[column.name] = value;
-  return all;
-}
-
-void print(const CheckpointFacts& facts) {
-  for (const auto& [column, value] : facts) {
-    if (value.is_null() || value.is_string()) continue;
-    print_text("{:<37} {:<12.6g} {}\n", column.name, value.get<double>(), column.meaning);
-  }
-}
-
-nlohmann::json run_facts(const Store& store, const Stage& run,
-                         const std::vector<CheckpointRecord>& checkpoints, Context& context) {
-  const auto member = [&](const Ask& m) -> nlohmann::json {
-    return {{"experiment", m.experiment},
-            {"scale", m.scale},
-            {"variant", m.variant},
-            {"seed", m.seed},
-            {"target_cycles", m.target_cycles},
-            {"manifest", m.manifest},
-            {"overrides", overrides_of(store, run, m)}};
-  };
-  return {{"id", run.id},
-          {"parent", run.parent},
-          {"kind", run.kind},
-          {"state", name_of(run.state)},
-          {"resolved", run.resolved},
-          {"parameters", effective_parameters(run.resolved)},
-          {"attempts", run.attempts},
-          {"engine", engine_of_run(store, run.id)},
-          {"memberships", json_list(run.asks, member)},
-          {"checkpoints", to_json(facts_of_all(store, run, checkpoints))},
-          {"measures", as_json(newest_measures(store, checkpoints, context))},
-          {"error", run.error},
-          {"ended", end_of(run)}};
-}
-
-void print_run(const Store& store, const Stage& run) {
-  const nlohmann::json engine = engine_of_run(store, run.id);
-  print_text("run      {}\nkind     {}\nparent   {}\nstate    {}, cycle {:g} of {}, {}\n", run.id,
-             run.kind, run.parent.empty() ? "-" : run.parent, name_of(run.state), run.cycle,
-             run.target_cycles, counted(run.attempts, "attempt"));
-  if (engine.is_object()) {
-    print_text("engine   {} {}, {} processes\n", engine.value("name", ""),
-               engine.value("version", ""), engine.value("processes", 1));
-  }
-  if (!run.error.empty()) print_text("error    {}\n", run.error);
-  if (const std::string why = describe_end(end_of(run)); !why.empty()) {
-    print_text("ended    {}\n", why);
-  }
+Facts facts_of(const Store& store, const Stage& run) {
+  const nlohmann::json engine = engine_of_run(store, run.id), ended = end_of(run);
+  nlohmann::json places = nlohmann::json::array();
+  std::string places_text;
   for (const Ask& m : run.asks) {
-    print_text("part of  {} ({}) {} seed {}, manifest {:.8}\n", m.experiment, scale_name(m.scale),
-               m.variant, m.seed, m.manifest);
-    const nlohmann::json given = overrides_of(store, run, m);
-    for (const auto& [key, values] : given.items()) {
-      print_text("         given at the command line: {} {} (manifest: {})\n", key,
-                 values.at("run").dump(), values.at("manifest").dump());
-    }
+    const nlohmann::json overrides = overrides_of(store, run, m);
+    places.push_back({{"experiment", m.experiment},
+                      {"scale", m.scale},
+                      {"variant", m.variant},
+                      {"seed", m.seed},
+                      {"target_cycles", m.target_cycles},
+                      {"manifest", m.manifest},
+                      {"overrides", overrides}});
+    places_text += fmt::format("{} ({}) {} seed {}, manifest {:.8}\n", m.experiment,
+                               scale_name(m.scale), m.variant, m.seed, m.manifest);
+    for (const std::string& line : describe(overrides)) places_text += line + "\n";
   }
+  return {
+      {"id", run.id, "run"},
+      {"kind", run.kind, "kind"},
+      {"parent", run.parent, "parent", run.parent.empty() ? "-" : run.parent},
+      {"state", name_of(run.state), "state",
+       fmt::format("{}, cycle {:g} of {}, {}", name_of(run.state), run.cycle, run.target_cycles,
+                   counted(run.attempts, "attempt"))},
+      {"engine", engine, "engine",
+       engine.is_object() ? fmt::format("{} {}, {} processes", text_at(engine, "name"),
+                                        text_at(engine, "version"), text_at(engine, "processes"))
+                          : ""},
+      {"error", run.error, "error"},
+      {"ended", ended, "ended", describe_end(ended)},
+      {"memberships", places, "part of", places_text},
+      {"attempts", run.attempts},
+      {"resolved", run.resolved},
+      {"parameters", effective_parameters(run.resolved)}};
 }
 
-void print_resolved(const nlohmann::json& resolved) {
-  for (const auto& [key, value] : resolved.items()) {
-    if (key != "parameters") print_text("{:<32} {}\n", key, value.dump());
+/// What the run's id is the hash of, but with the parameters that affect the run.
+Facts facts_of_id(const Stage& run) {
+  Facts facts;
+  for (const auto& [key, value] : run.resolved.items()) {
+    if (key != "parameters") facts.push_back({"", value, key, value.dump()});
   }
-  const nlohmann::json parameters = effective_parameters(resolved);
-  for (const auto& [name, value] : parameters.items()) {
-    print_text("{:<32} {}\n", name, value.dump());
+  const nlohmann::json parameters = effective_parameters(run.resolved);
+  for (const auto& [key, value] : parameters.items()) {
+    facts.push_back({"", value, key, value.dump()});
   }
+  return facts;
 }
 
 void show_run(const Store& store, const Stage& run, Context& context) {
   const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
-  if (context.json) return print_json(run_facts(store, run, checkpoints, context));
-  print_run(store, run);
-  print_text("\n");
-  print_resolved(run.resolved);
-  print_text("\n");
-  print_table(rows_of(checkpoints, checkpoint_facts));
-  if (const CheckpointFacts facts = newest_measures(store, checkpoints, context); !facts.empty()) {
-    print_text("\nnewest checkpoint:\n");
-    print(facts);
-  }
-}
-
-/// `file`: a description of its file.
-void print_head(const CheckpointRecord& record, const std::string& file) {
-  print_text("checkpoint  {}\nstate       {}\nrun         {}\n", record.sha256, record.state_hash,
-             record.run);
-  print_text("file        {}\n", file);
-  print_text("time        cycle {:g}, step {}, {:.6g} s\n", record.cycle, record.step,
-             record.time_s);
-}
-
-// Prints the record of a checkpoint whose file was deleted.
-void show_pruned(const CheckpointRecord& record, Context& context) {
-  if (context.json) return print_json(to_json(checkpoint_facts(record)));
-  print_head(record,
-             fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256));
-  for (const auto& [name, value] : record.observables) print_text("{:<42} {:.6g}\n", name, value);
-}
-
-void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
-  if (record.state == CheckpointState::pruned) return show_pruned(record, context);
-  const Checkpoint checkpoint = store.load_checkpoint(record);
-  const Eigen::Index grains = checkpoint.state.position.cols();
-  const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
+  const Facts facts = facts_of(store, run);
   if (context.json) {
-    nlohmann::json all = to_json(checkpoint_facts(record));
-    all["grains"] = grains;
-    all["wall_grains"] = wall_grains;
-    all["measures"] = as_json(facts_at(store, record, context));
+    nlohmann::json all = to_json(facts);
+    all["checkpoints"] = to_json(facts_of_all(store, run, checkpoints));
+    all["measures"] = to_json(newest_measures(store, checkpoints, context));
     return print_json(all);
   }
-  print_head(record, fmt::format("{} ({}, hash verified)", record.file,
-                                 format_bytes(static_cast<double>(record.size))));
-  print_text("grains      {} and {} wall grains\n", grains, wall_grains);
-  print(facts_at(store, record, context));
+  print_lines(facts);
+  print_text("\n");
+  print_lines(facts_of_id(run));
+  print_text("\n");
+  print_table(rows_of(checkpoints, [](const CheckpointRecord& c) { return facts_of(c); }));
+  if (const Facts measures = newest_measures(store, checkpoints, context); !measures.empty()) {
+    print_text("\nnewest checkpoint:\n");
+    print_lines(measures);
+  }
+}
+
+/// With measures, or of a pruned file the recorded observables.
+void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
+  const bool pruned = record.state == CheckpointState::pruned;
+  Facts more, measures;
+  if (pruned) {
+    for (const auto& [name, value] : record.observables) {
+      measures.push_back({"", value, name, fmt::format("{:.6g}", value)});
+    }
+  } else {
+    const Checkpoint checkpoint = store.load_checkpoint(record);
+    const Eigen::Index grains = checkpoint.state.position.cols();
+    const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
+    more = {{"grains", grains, "grains", fmt::format("{} and {} wall grains", grains, wall_grains)},
+            {"wall_grains", wall_grains}};
+    measures = measures_at(store, record, context);
+  }
+  if (context.json) {
+    nlohmann::json all = to_json(facts_of(record));
+    all.update(to_json(more));
+    if (!pruned) all["measures"] = to_json(measures);
+    return print_json(all);
+  }
+  const std::string file =
+      pruned ? fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256)
+             : fmt::format("{} ({}, hash verified)", record.file,
+                           format_bytes(static_cast<double>(record.size)));
+  Facts head = {
+      {"", record.sha256, "checkpoint"},
+      {"", record.state_hash, "state"},
+      {"", record.run, "run"},
+      {"", file, "file"},
+      {"", fmt::format("cycle {:g}, step {}, {:.6g} s", record.cycle, record.step, record.time_s),
+       "time"}};
+  head.insert(head.end(), more.begin(), more.end());
+  print_lines(head);
+  print_lines(measures);
 }
 
 // --- Figures and their files ---
 
-// Escapes a recorded text and cuts it to the rest of the terminal's line; in a pipe it stays whole.
-std::string cut(const std::string& text, std::size_t used) {
-  const std::string shown = without_controls(text);
-  const std::size_t width = terminal_columns(stdout).value_or(std::string::npos);
-  const std::size_t left = width > used + 3 ? width - used : 4;
-  if (characters(shown) <= left) return shown;
-  return std::string(first_characters(shown, left - 3)) + "...";
+/// A line of recorded texts under a heading.
+template <typename... Arguments>
+void say(std::string_view heading, fmt::format_string<Arguments...> format,
+         Arguments&&... arguments) {
+  const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
+  print_text("{}\n", without_controls(fmt::format("{:<12} {}", heading, text)));
 }
 
 // "2026-11-20T21:40:51.123Z" as "2026-11-20 21:40:51".
@@ -240,14 +237,15 @@ std::string moment(const std::string& utc) {
 
 // Numbers builds and hosts, so that the lines of attempts stay short.
 class Makers {
+  using Lines = std::vector<std::string>;
+
  public:
   /// "build 1, host 1".
   std::string number(const nlohmann::json& host) {
     const Maker maker = maker_of(host);
-    Row build = {maker.program, maker.flags};
-    if (!maker.libraries.empty())
-      build.push_back(fmt::format("{}", fmt::join(maker.libraries, ", ")));
-    return fmt::format("build {}, host {}", number(builds_, build),
+    return fmt::format("build {}, host {}",
+                       number(builds_, {maker.program, maker.flags,
+                                        fmt::format("{}", fmt::join(maker.libraries, ", "))}),
                        number(hosts_, {maker.host + ", " + maker.system, maker.machine}));
   }
   void print() const {
@@ -255,52 +253,50 @@ class Makers {
       for (std::size_t k = 0; k < all->size(); ++k) {
         std::string name = fmt::format("{} {}", what, k + 1);
         for (const std::string& line : all->at(k)) {
-          print_text("{:<9} {}\n", std::exchange(name, ""), cut(line, 10));
+          if (!line.empty()) say(std::exchange(name, ""), "{}", line);
         }
       }
     }
   }
 
  private:
-  static std::size_t number(std::vector<Row>& known, const Row& lines) {
+  static std::size_t number(std::vector<Lines>& known, const Lines& lines) {
     const auto found = std::ranges::find(known, lines);
     const auto place = static_cast<std::size_t>(found - known.begin());
     if (found == known.end()) known.push_back(lines);
     return place + 1;
   }
-  std::vector<Row> builds_, hosts_;  // lines to print
+  std::vector<Lines> builds_, hosts_;  // lines to print
 };
 
 void print_manifests(const FigureLineage& lineage) {
   for (const ManifestText& manifest : lineage.manifests) {
-    print_text("\nmanifest  {}\n  sha256  {}\n", cut(manifest.path, 10), manifest.sha256);
+    print_text("\n");
+    say("manifest", "{}", manifest.path);
+    say("  sha256", "{}", manifest.sha256);
     std::map<int, std::string> lines;
     for (const FigureInput& input : lineage.inputs) {
       if (input.manifest != manifest.sha256) continue;
       for (const ManifestLine& line : input.lines) lines.emplace(line.line, line.text);
     }
-    for (const auto& [number, text] : lines) {
-      print_text("  line {:>4}  {}\n", number, cut(text, 13));
-    }
+    for (const auto& [number, text] : lines) say(fmt::format("  line {:>4}", number), "{}", text);
   }
 }
 
-void print_attempts(const RunLineage& stage, Makers& makers) {
-  for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
-    const Attempt& attempt = stage.attempts[a];
-    print_text("  attempt {:<3} {}  {}, {}\n", a + 1, moment(attempt.started_at),
-               name_of(attempt.outcome), makers.number(attempt.host));
-    if (!attempt.why.empty()) print_text("              {}\n", cut(attempt.why, 14));
-    if (!attempt.from_checkpoint.empty()) {
-      print_text("  from        {}\n", attempt.from_checkpoint);
-    }
+/// The stage's attempts and, if `list`, these checkpoints.
+void print_stage(const RunLineage& stage, const std::vector<std::string>& checkpoints, bool list,
+                 Makers& makers) {
+  std::size_t number = 0;
+  for (const Attempt& attempt : stage.attempts) {
+    say(fmt::format("  attempt {}", ++number), "{}  {}, {}", moment(attempt.started_at),
+        name_of(attempt.outcome), makers.number(attempt.host));
+    if (!attempt.why.empty()) say("", "{}", attempt.why);
+    if (!attempt.from_checkpoint.empty()) say("  from", "{}", attempt.from_checkpoint);
   }
-}
-
-void print_checkpoints(const std::vector<std::string>& checkpoints, const RunLineage& run) {
+  if (!list) return;
   print_text("  {:>6}  {:>2}  checkpoint\n", "cycle", "at");
   for (const std::string& sha256 : checkpoints) {
-    const CheckpointHistory* known = run.find(sha256);
+    const CheckpointHistory* known = stage.find(sha256);
     const bool has_attempt = known != nullptr && known->attempt;
     print_text("  {:>6}  {:>2}  {}\n",
                known != nullptr ? fmt::format("{:g}", known->record.cycle) : "?",
@@ -312,106 +308,45 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   std::set<int> numbers;
   for (const ManifestLine& line : input.lines) numbers.insert(line.line);
   const std::string lines = numbers.empty() ? "?" : fmt::format("{}", fmt::join(numbers, ", "));
-  print_text("\nrun       {}\n", input.run);
-  print_text("  {}\n", cut(fmt::format("{} {}, seed {}, {} grains; manifest {:.8}, lines {}",
-                                       input.experiment, input.variant, input.seed,
-                                       run.stage.grains, input.manifest, lines),
-                           2));
-  if (input.overrides.is_object()) {
-    for (const auto& [key, values] : input.overrides.items()) {
-      print_text("  {}\n", cut(fmt::format("given at the command line: {} {} (manifest: {})", key,
-                                           text_at(values, "run"), text_at(values, "manifest")),
-                               2));
-    }
-  }
-  print_attempts(run, makers);
-  print_text("  cycles      {}: {}, {}\n", cut(to_text(input.states.cycles), 40),
-             counted(input.checkpoints.size(), "checkpoint"),
-             input.fault.empty() ? "with the states that the figure names" : input.fault);
-  print_text("  last state  {}\n", cut(input.states.state_hash, 14));
-  if (list) print_checkpoints(input.checkpoints, run);
-}
-
-void print_stage_before(const RunLineage& stage, bool list, Makers& makers) {
-  print_text("\nbefore    {}\n  {}, seed {}, {} grains\n", stage.stage.id,
-             cut(stage.stage.kind, 50), text_at(stage.stage.resolved, "seed"), stage.stage.grains);
-  print_attempts(stage, makers);
-  if (!list) return;
-  std::vector<std::string> checkpoints;
-  for (const CheckpointHistory& c : stage.checkpoints) {
-    if (c.record.state != CheckpointState::rejected) checkpoints.push_back(c.record.sha256);
-  }
-  print_checkpoints(checkpoints, stage);
+  print_text("\n");
+  say("run", "{}", input.run);
+  say("  of", "{} {}, seed {}, {} grains; manifest {:.8}, lines {}", input.experiment,
+      input.variant, input.seed, run.stage.grains, input.manifest, lines);
+  for (const std::string& given : describe(input.overrides)) say("", "{}", given);
+  say("  cycles", "{}: {}, {}", to_text(input.states.cycles),
+      counted(input.checkpoints.size(), "checkpoint"),
+      input.fault.empty() ? "with the states that the figure names" : input.fault);
+  say("  last state", "{}", input.states.state_hash);
+  print_stage(run, input.checkpoints, list, makers);
 }
 
 // `list`: every checkpoint.
 void print(const FigureLineage& lineage, bool list) {
   Makers makers;
-  print_text(
-      "figure    {}, {} scale, analysis version {}\n", cut(lineage.record.name, 40),
-      cut(scale_name(lineage.scale), 50),
-      cut(lineage.analysis_version.is_null() ? "unknown" : short_text(lineage.analysis_version),
-          70));
-  print_text("made      {} UTC, event {}{}\n", moment(lineage.record.recorded_at),
-             lineage.record.seq,
-             lineage.made.is_object() ? ", " + makers.number(lineage.made) : "");
-  std::size_t widest = 0;
-  for (const auto& [name, sha256] : lineage.outputs) {
-    widest = std::max(widest, cut(name, 66).size());
-  }
-  for (const auto& [name, sha256] : lineage.outputs) {
-    print_text("  {:<{}}  {}\n", cut(name, 66), widest, sha256);
-  }
+  const nlohmann::json& version = lineage.analysis_version;
+  say("figure", "{}, {} scale, analysis version {}", lineage.record.name, scale_name(lineage.scale),
+      version.is_null() ? "unknown" : short_text(version));
+  say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
+      lineage.made.is_object() ? ", " + makers.number(lineage.made) : "");
+  for (const auto& [name, sha256] : lineage.outputs) say("  file", "{}  {}", sha256, name);
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {
     print_input(input, lineage.runs.at(input.run), list, makers);
   }
   for (const auto& [id, stage] : lineage.runs) {
-    if (std::ranges::count(lineage.inputs, id, &FigureInput::run) == 0) {
-      print_stage_before(stage, list, makers);
+    if (std::ranges::count(lineage.inputs, id, &FigureInput::run) > 0) continue;
+    print_text("\n");
+    say("before", "{}", id);
+    say("  of", "{}, seed {}, {} grains", stage.stage.kind, text_at(stage.stage.resolved, "seed"),
+        stage.stage.grains);
+    std::vector<std::string> checkpoints;
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (c.record.state != CheckpointState::rejected) checkpoints.push_back(c.record.sha256);
     }
+    print_stage(stage, checkpoints, list, makers);
   }
   print_text("\n");
   makers.print();
-}
-
-nlohmann::json check_json(const std::filesystem::path& file, const PublishedFile& found,
-                          const std::vector<InputFault>& faults, std::size_t inputs) {
-  const auto fault_facts = [](const InputFault& fault) -> nlohmann::json {
-    return {{"run", fault.run}, {"checkpoint", fault.checkpoint}, {"what", fault.what}};
-  };
-  return {{"file", file.string()},
-          {"sha256", found.sha256},
-          {"recorded_sha256", found.recorded},
-          {"verdict", found.matches() ? "matches" : "changed"},
-          {"inputs", inputs},
-          {"input_faults", json_list(faults, fault_facts)}};
-}
-
-void print_check(const std::filesystem::path& file, const PublishedFile& found,
-                 const std::vector<InputFault>& faults, std::size_t inputs) {
-  print_text("file      {}\n", cut(file.string(), 10));
-  if (found.matches()) {
-    print_text("verdict   matches what event {} recorded\n", found.record.seq);
-  } else {
-    print_text("verdict   WAS CHANGED since event {}, or another store made it\n",
-               found.record.seq);
-    print_text("  is      {}\n  was     {}\n", found.sha256, found.recorded);
-  }
-  if (faults.empty()) {
-    print_text("inputs    {}, all present and right\n\n", counted(inputs, "checkpoint"));
-    return;
-  }
-  const auto pruned = std::ranges::count(faults, "pruned", &InputFault::what);
-  const auto changed = std::ssize(faults) - pruned;
-  print_text("inputs    {}: {} present and right{}{}\n", counted(inputs, "checkpoint"),
-             inputs - faults.size(), pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
-             changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
-  for (const InputFault& fault : faults) {
-    print_text("  {}\n  {}\n", fault.checkpoint.empty() ? "run " + fault.run : fault.checkpoint,
-               fault.what);
-  }
-  print_text("\n");
 }
 
 void show_figure(const Store& store, const FigureRecord& record, bool list, Context& context) {
@@ -420,6 +355,34 @@ void show_figure(const Store& store, const FigureRecord& record, bool list, Cont
   if (!std::ranges::all_of(lineage.inputs, is_right)) fail(context, kStoreDamaged);
   if (context.json) return print_json(to_json(lineage));
   print(lineage, list);
+}
+
+Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
+               const std::vector<InputFault>& faults, std::size_t inputs) {
+  const auto pruned =
+      static_cast<std::size_t>(std::ranges::count(faults, "pruned", &InputFault::what));
+  const std::size_t changed = faults.size() - pruned;
+  nlohmann::json list = nlohmann::json::array();
+  std::string text =
+      faults.empty()
+          ? fmt::format("{}, all present and right", counted(inputs, "checkpoint"))
+          : fmt::format("{}: {} present and right{}{}", counted(inputs, "checkpoint"),
+                        inputs - faults.size(),
+                        pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
+                        changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
+  for (const auto& [run, checkpoint, what] : faults) {
+    list.push_back({{"run", run}, {"checkpoint", checkpoint}, {"what", what}});
+    text += fmt::format("\n{}\n{}", checkpoint.empty() ? "run " + run : checkpoint, what);
+  }
+  const bool matches = found.matches();
+  return {{"file", file.string(), "file"},
+          {"verdict", matches ? "matches" : "changed", "verdict",
+           fmt::format("{} event {}{}", matches ? "matches what" : "WAS CHANGED since",
+                       found.record.seq, matches ? " recorded" : ", or another store made it")},
+          {"sha256", found.sha256, "is", matches ? "" : found.sha256},
+          {"recorded_sha256", found.recorded, "was", matches ? "" : found.recorded},
+          {"inputs", inputs, "inputs", text},
+          {"input_faults", list}};
 }
 
 // Compares a figure's file and its inputs with the store's records.
@@ -440,12 +403,14 @@ void show_published(const Store& store, const std::filesystem::path& file, bool 
   if (damaged || !found->matches()) fail(context, kStoreDamaged);
   std::size_t inputs = 0;
   for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();
+  const Facts check = facts_of(file, *found, faults, inputs);
   if (context.json) {
     nlohmann::json all = to_json(lineage);
-    all["check"] = check_json(file, *found, faults, inputs);
+    all["check"] = to_json(check);
     return print_json(all);
   }
-  print_check(file, *found, faults, inputs);
+  print_lines(check);
+  print_text("\n");
   print(lineage, list);
 }
 
@@ -476,7 +441,13 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-void show(const std::string& name, bool list, Context& context) {
+struct ShowOptions {
+  std::string name;
+  bool list = false;  ///< every checkpoint behind a figure
+};
+
+void show(const ShowOptions& options, Context& context) {
+  const auto& [name, list] = options;
   const Store store(context.store, Access::read);
   if (const auto figure = find_record(store, name))
     return show_figure(store, *figure, list, context);
@@ -502,17 +473,15 @@ void show(const std::string& name, bool list, Context& context) {
 }  // namespace
 
 void add_show(CLI::App& app, Context& context) {
-  auto name = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("show", "Show one run, checkpoint, figure or figure's file");
+  const auto [command, options] =
+      add_command(app, context, "show", "Show one run, checkpoint, figure or figure's file", show);
   command
-      ->add_option("name", *name,
+      ->add_option("name", options->name,
                    "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
       ->required();
-  auto list = std::make_shared<bool>(false);
-  command->add_flag("--checkpoints", *list, "List every checkpoint behind a figure");
-  add_common_options(*command, context);
-  command->footer(
+  command->add_flag("--checkpoints", options->list, "List every checkpoint behind a figure");
+  add_common_options(
+      *command, context,
       R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and
 cycles, and checks that the log has the states of which it was made; exit code 4 if not.
 For a file (CSV, SVG or lineage): checks that it is what the store recorded and that every
@@ -524,7 +493,6 @@ Examples:
   shearcell show 3f9a
   shearcell show drag/smoke/S2
   shearcell show figures/drag/smoke/S2a.csv)");
-  command->callback([name, list, &context] { show(*name, *list, context); });
 }
 
 }  // namespace shearcell::cli

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -14,8 +13,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
 #include "experiments/manifest/parameters.hpp"
-#include "experiments/runner/cost.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/words.hpp"
@@ -23,15 +21,10 @@
 namespace shearcell::cli {
 namespace {
 
-/// A run in its first place.
-struct ListedRun : Run {
-  std::vector<Run> places = {};  // one for each experiment, scale and variant
-};
-
 /// The selected runs, with their holders and their places in the queue.
 struct View {
   Store store;
-  std::vector<ListedRun> runs;
+  std::vector<PlacedRun> runs;
   std::map<std::string, Lease> holders;  // by run
   std::set<std::string> waiting;         // waiting_for_failed()
   QueueView queue;
@@ -39,28 +32,18 @@ struct View {
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read),
+        runs(by_run(select_runs(store, selection))),
         waiting(waiting_for_failed(store.stages())),
         queue(view_queue(store)),
         names(store) {
-    for (const Run& found : select_runs(store, selection)) {
-      // The places of a run follow each other.
-      if (runs.empty() || runs.back().stage.id != found.stage.id) runs.push_back({found});
-      runs.back().places.push_back(found);
-    }
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
-
-  std::string called(const Run& selected) const { return names.of(selected.stage, selected.ask); }
 
   const QueuedRun* queued(const Stage& run) const {
     const auto found = queue.runs.find(run.id);
     return found == queue.runs.end() ? nullptr : &found->second;
   }
 };
-
-double rate(const Stage& run) {
-  return run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
-}
 
 nlohmann::json facts(const Lease& lease) {
   return {{"host", lease.holder.host},
@@ -80,66 +63,65 @@ nlohmann::json facts(const QueuedRun& run) {
           {"reported_cycle", reported ? nlohmann::json(reported->cycle) : nullptr}};
 }
 
-/// The place of a run in an experiment.
-nlohmann::json place_facts(const Run& selected, const View& view) {
-  const Ask& m = selected.ask;
-  return {{"experiment", m.experiment},
-          {"scale", m.scale},
-          {"variant", m.variant},
-          {"name", view.called(selected)},
-          {"seed", m.seed}};
+std::string describe(const QueuedTask& task) {
+  const std::string& more = task.state == "pending" ? task.reason : task.node;
+  return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-nlohmann::json facts(const ListedRun& listed, const View& view) {
+/// State and cycle of the run: as its task reports them if that is ahead, else as the store has.
+std::pair<StageState, double> progress_of(const Stage& run, const QueuedRun* queued) {
+  const bool reported = queued != nullptr && queued->reported && run.state != StageState::completed;
+  if (!reported || queued->reported->cycle < run.cycle) return {run.state, run.cycle};
+  return {queued->reported->state, queued->reported->cycle};
+}
+
+/// A run in one of its places. The table shows what its task reports, JSON what the store has.
+Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
   const Stage& run = listed.stage;
   const auto held = view.holders.find(run.id);
+  const bool is_held = held != view.holders.end();
   const QueuedRun* queued = view.queued(run);
-  const auto place = [&](const Run& one) {
-    nlohmann::json all = place_facts(one, view);
-    all.update({{"newest", one.ask.newest}, {"manifest", one.ask.manifest}});
-    return all;
+  const bool in_queue = queued != nullptr && run.state != StageState::completed;
+  const auto [state, cycle] = progress_of(run, queued);
+  const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
+  const std::string name = view.names.of(run, place);
+  const auto place_facts = [&](const Ask& m) -> nlohmann::json {
+    return {{"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
+            {"name", view.names.of(run, m)}, {"seed", m.seed},   {"newest", m.newest},
+            {"manifest", m.manifest}};
   };
-  nlohmann::json all = place_facts(listed, view);
-  all.update({{"id", run.id},
-              {"kind", run.kind},
-              {"parent", run.parent},
-              {"places", json_list(listed.places, place)},
-              {"state", name_of(run.state)},
-              {"cycle", run.cycle},
-              {"target_cycles", run.target_cycles},
-              {"N", run.grains},
-              {"step", run.step},
-              {"attempts", run.attempts},
-              {"wall_seconds", run.wall_seconds},
-              {"particle_steps_per_second", rate(run)},
-              {"state_hash", run.state_hash},
-              {"error", run.error},
-              {"updated_at", run.updated_at},
-              {"ended", end_of(run)},
-              {"holder", held == view.holders.end() ? nlohmann::json() : facts(held->second)},
-              {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)}});
+  Facts all = {{"id", run.id, "run", run.id.substr(0, 8)},
+               {"name", name, "variant", name + (place.newest ? "" : " (older version)")},
+               {"seed", place.seed, "seed"},
+               {"N", run.grains, "N"},
+               {"state", name_of(run.state), "state",
+                fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
+               {"cycle", run.cycle, "cycle",
+                run.kind == name_of(StageKind::prepare)
+                    ? ""
+                    : fmt::format("{:.4g}/{}", cycle, run.target_cycles)},
+               {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
+               {"wall_seconds", run.wall_seconds, "time", format_duration(run.wall_seconds)},
+               {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
+               {"experiment", place.experiment},
+               {"scale", place.scale},
+               {"variant", place.variant},
+               {"kind", run.kind},
+               {"parent", run.parent},
+               {"places", json_list(listed.places, place_facts)},
+               {"target_cycles", run.target_cycles},
+               {"step", run.step},
+               {"attempts", run.attempts},
+               {"state_hash", run.state_hash},
+               {"error", run.error},
+               {"updated_at", run.updated_at},
+               {"ended", end_of(run)},
+               {"holder", is_held ? facts(held->second) : nlohmann::json()}};
+  if (!view.queue.runs.empty()) {
+    all.push_back({"", nullptr, "queue", in_queue ? describe(queued->task) : ""});
+  }
   return all;
 }
-
-/// State and progress of a run: as the store has them, or as its task reports them if that is
-/// ahead.
-struct Shown {
-  const Stage& run;
-  const QueuedRun* queued;
-
-  bool ahead() const {
-    return queued != nullptr && queued->reported && run.state != StageState::completed &&
-           queued->reported->cycle >= run.cycle;
-  }
-  StageState state() const { return ahead() ? queued->reported->state : run.state; }
-  double cycle() const { return ahead() ? queued->reported->cycle : run.cycle; }
-  std::string queue() const {
-    if (queued == nullptr || run.state == StageState::completed) return "";
-    const QueuedTask& task = queued->task;
-    const std::string& more = task.state == "pending" ? task.reason : task.node;
-    return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
-  }
-};
 
 /// The work that is left, and the time that it takes at the present speed.
 struct Estimate {
@@ -157,8 +139,7 @@ std::optional<Estimate> estimate(const View& view) {
   const Rates rates(view.store.stages());
   std::size_t running = 0;
   Estimate made;
-  for (const Run& selected : view.runs) {
-    const Stage& stage = selected.stage;
+  for (const auto& [stage, places] : view.runs) {
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
@@ -167,7 +148,7 @@ std::optional<Estimate> estimate(const View& view) {
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
     made.at_most = made.at_most || std::ranges::any_of(stage.asks, has_until);
-    made.work.add(stage, look.particle_steps, rates);
+    made.work.add(stage, look, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
   made.running = running > 0;
@@ -201,34 +182,20 @@ void print(const Estimate& left) {
 
 /// Prints a table for each experiment, and a line with the number of stages in each state.
 void print_tables(const View& view) {
-  const bool queued = !view.queue.runs.empty();
   std::vector<std::string> experiments;
-  std::map<std::string, std::vector<Row>> tables;
+  std::map<std::string, std::vector<Facts>> tables;
   std::map<StageState, std::size_t> count;
-  for (const ListedRun& listed : view.runs) {
-    const Stage& run = listed.stage;
-    const Shown shown{run, view.queued(run)};
-    ++count[shown.state()];
-    for (const Run& selected : listed.places) {
-      const Ask& place = selected.ask;
+  for (const PlacedRun& listed : view.runs) {
+    ++count[progress_of(listed.stage, view.queued(listed.stage)).first];
+    for (const Ask& place : listed.places) {
       const std::string name = place.experiment + " at scale " + scale_name(place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
-      Row& row = tables[name].emplace_back(Row{
-          run.id.substr(0, 8), view.called(selected) + (place.newest ? "" : " (older version)"),
-          std::to_string(place.seed), std::to_string(run.grains),
-          fmt::format("{}{}", name_of(shown.state()), view.holders.contains(run.id) ? " *" : ""),
-          run.kind == name_of(StageKind::prepare)
-              ? ""
-              : fmt::format("{:.4g}/{}", shown.cycle(), run.target_cycles),
-          fmt::format("{:.1f}", rate(run) * 1e-6), format_duration(run.wall_seconds)});
-      if (queued) row.push_back(shown.queue());
+      tables[name].push_back(facts(listed, place, view));
     }
   }
-  Row header = {"run", "variant", "seed", "N", "state", "cycle", "M/s", "time"};
-  if (queued) header.emplace_back("queue");
   for (const std::string& name : experiments) {
     print_text("{}\n", name);
-    print_table(header, tables[name]);
+    print_table(tables[name]);
     print_text("\n");
   }
   std::string all;
@@ -243,7 +210,7 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   const auto waiting = std::ranges::count_if(
-      view.runs, [&](const Run& one) { return view.waiting.contains(one.stage.id); });
+      view.runs, [&](const PlacedRun& one) { return view.waiting.contains(one.stage.id); });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
@@ -256,40 +223,43 @@ void print(const View& view) {
     if (problem.empty()) print_text("{}\n", describe(submission));
   }
   if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
-  for (const ListedRun& listed : view.runs) {
-    const Stage& run = listed.stage;
+  for (const auto& [run, places] : view.runs) {
     if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
-    if (const nlohmann::json ended = end_of(run); !ended.is_null()) {
-      print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle,
-                 describe_end(ended));
+    if (const std::string why = describe_end(end_of(run)); !why.empty()) {
+      print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle, why);
     }
   }
 }
 
-void print_facts(const View& view) {
+void status(const RunSelection& selection, Context& context) {
+  const View view(selection, context);
+  if (!context.json) return print(view);
   const std::string& problem = view.queue.problem;
-  print_json(
-      {{"runs", json_list(view.runs, [&](const ListedRun& run) { return facts(run, view); })},
-       {"estimate", facts(estimate(view))},
-       {"submissions", json_list(view.queue.submissions,
-                                 [](const Submission& open) -> nlohmann::json {
-                                   return {{"id", open.id},
-                                           {"job", open.job},
-                                           {"fold_job", open.merge_job},
-                                           {"tasks", open.tasks.size()},
-                                           {"in_queue", open.queue.size()}};
+  print_json({{"runs", json_list(view.runs,
+                                 [&](const PlacedRun& run) {
+                                   return to_json(facts(run, run.places.front(), view));
                                  })},
-       {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
+              {"estimate", facts(estimate(view))},
+              {"submissions", json_list(view.queue.submissions,
+                                        [](const Submission& open) -> nlohmann::json {
+                                          return {{"id", open.id},
+                                                  {"job", open.job},
+                                                  {"fold_job", open.merge_job},
+                                                  {"tasks", open.tasks.size()},
+                                                  {"in_queue", open.queue.size()}};
+                                        })},
+              {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
 }
 
 }  // namespace
 
 void add_status(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("status", "List the runs of the store");
-  add_common_options(*command, context);
-  auto selection = std::make_shared<RunSelection>(RunSelection{.packings = true});
+  const auto [command, selection] =
+      add_command(app, context, "status", "List the runs of the store", status);
+  selection->packings = true;
   add_selection_options(*command, *selection, true);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(M/s is million particle-steps per second over all recorded work. A run that is `running` but
 that no program holds was killed; `resume` continues it. Runs on a cluster show their place in its
 queue and the progress of their tasks. The time left is estimated from the speed so far.
@@ -298,10 +268,6 @@ Examples:
   watch -n 10 shearcell status
   shearcell status --json
   shearcell status --experiment drag --state failed)");
-  command->callback([selection, &context] {
-    const View view(*selection, context);
-    context.json ? print_facts(view) : print(view);
-  });
 }
 
 }  // namespace shearcell::cli

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -158,7 +157,25 @@ void prepare(Store& store, const std::vector<Submission>& open, const LoadedMani
   }
 }
 
+void check_time(const JobOptions& job) {
+  if (job.time.empty()) return;
+  const double needed = static_cast<double>(job.warn_seconds) + kWarningResolution;
+  const auto limit = slurm_seconds(job.time);
+  if (!limit) {
+    throw CLI::ValidationError("--time", "'" + job.time +
+                                             "' is not a time limit of Slurm: write MINUTES, "
+                                             "HH:MM:SS or DAYS-HH:MM:SS");
+  }
+  if (*limit <= needed) {
+    throw CLI::ValidationError(
+        "--time", fmt::format("{} s leave no time to compute: the warning comes up to {} s before "
+                              "the end; ask for more, or a smaller --warn",
+                              *limit, needed));
+  }
+}
+
 void submit(const SubmitOptions& options, Context& context) {
+  check_time(options.job);
   const LoadedManifests loaded = load_manifests(options.manifests, options.expand, context);
   const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
   if (const std::string why = unfit_path(folder); !why.empty()) throw std::runtime_error(why);
@@ -198,23 +215,6 @@ std::string check_sbatch(const std::string& text) {
   return unfit_value(text);
 }
 
-void check_time(const JobOptions& job) {
-  if (job.time.empty()) return;
-  const double needed = static_cast<double>(job.warn_seconds) + kWarningResolution;
-  const auto limit = slurm_seconds(job.time);
-  if (!limit) {
-    throw CLI::ValidationError("--time", "'" + job.time +
-                                             "' is not a time limit of Slurm: write MINUTES, "
-                                             "HH:MM:SS or DAYS-HH:MM:SS");
-  }
-  if (*limit <= needed) {
-    throw CLI::ValidationError(
-        "--time", fmt::format("{} s leave no time to compute: the warning comes up to {} s before "
-                              "the end; ask for more, or a smaller --warn",
-                              *limit, needed));
-  }
-}
-
 void add_job_options(CLI::App& command, SubmitOptions& options) {
   JobOptions& job = options.job;
   command.add_option("--partition,-p", job.partition, "Partition")->check(unfit_value);
@@ -252,14 +252,13 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
 }  // namespace
 
 void add_submit(CLI::App& app, Context& context) {
-  auto options = std::make_shared<SubmitOptions>();
-  CLI::App* command =
-      app.add_subcommand("submit", "Queue the runs of manifests on a cluster as an array job");
+  const auto [command, options] = add_command(
+      app, context, "submit", "Queue the runs of manifests on a cluster as an array job", submit);
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_job_options(*command, *options);
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Each task computes the runs of some packings in its own store under STORE/submissions; a job
 after the array merges these stores into STORE. Near its time limit a task writes checkpoints
 and queues itself again. Runs that are done or queued are left out, so you can submit again at
@@ -270,10 +269,6 @@ Examples:
   shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00
   shearcell submit experiments/*.yaml --scale desk --scratch '$TMPDIR' --sbatch=--mem=4G
   shearcell submit experiments/drag.yaml --dry-run)");
-  command->callback([options, &context] {
-    check_time(options->job);
-    submit(*options, context);
-  });
 }
 
 }  // namespace shearcell::cli

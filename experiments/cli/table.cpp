@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
-
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
@@ -51,9 +49,8 @@ void table(const TableOptions& options, Context& context) {
 }  // namespace
 
 void add_table(CLI::App& app, Context& context) {
-  auto options = std::make_shared<TableOptions>();
-  CLI::App* command =
-      app.add_subcommand("table", "Write runs and their measures as one table, CSV or JSON");
+  const auto [command, options] = add_command(
+      app, context, "table", "Write runs and their measures as one table, CSV or JSON", table);
   add_selection_options(*command, options->selection);
   CLI::Option* per =
       command->add_option("--per", options->per, "One row for each checkpoint or each run")
@@ -83,30 +80,28 @@ void add_table(CLI::App& app, Context& context) {
     for (const Measure& measure : one.measures) added.push_back(measure.name);
     command
         ->add_flag_callback(
-            "--" + name, [options, name] { options->simulated.push_back(name); },
+            "--" + name, [options = options, name] { options->simulated.push_back(name); },
             fmt::format("Add {}, which is simulated: {}", fmt::join(added, ", "), one.cost))
         ->excludes(command->get_option("--curve"));
   }
   command->add_option("--out", options->out, "File to write (default: standard output)")
       ->type_name("FILE");
-  add_common_options(*command, context);
-  command->get_option("--json")->excludes(format)->description(
-      "One JSON object: `rows`, as of --format json, and `notes` on what is left out");
-  command->footer(
+  add_common_options(
+      *command, context,
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
-      columns_text +
-      "Simulated columns come with their option alone. The last ones, from critical_size on, are "
-      "those of --per run, whose measures are of the "
-      "newest\ncheckpoint. A row for each experiment that shares a run, up to the cycles that it "
-      "asks for.\n\nCurves:\n" +
-      curves_text +
-      "Examples:\n"
-      "  shearcell table --experiment drag --out drag.csv\n"
-      "  shearcell table --per run --variant fluid=cell --format json\n"
-      "  shearcell table --curve pair_correlation --out g_of_r.csv\n"
-      "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
-  command->callback([options, &context] { table(*options, context); });
+          columns_text +
+          "Simulated columns come with their option alone. The last ones, from critical_size on, "
+          "are those of --per run, whose measures are of the newest\ncheckpoint. A row for each "
+          "experiment that shares a run, up to the cycles that it asks for.\n\nCurves:\n" +
+          curves_text +
+          "Examples:\n"
+          "  shearcell table --experiment drag --out drag.csv\n"
+          "  shearcell table --per run --variant fluid=cell --format json\n"
+          "  shearcell table --curve pair_correlation --out g_of_r.csv\n"
+          "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
+  command->get_option("--json")->excludes(format)->description(
+      "One JSON object: `rows`, as of --format json, and `notes` on what is left out");
 }
 
 }  // namespace shearcell::cli

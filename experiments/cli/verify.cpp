@@ -5,11 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/sha256.hpp"
@@ -182,9 +181,9 @@ void rebuild(Context& context) {
 }  // namespace
 
 void add_verify(CLI::App& app, Context& context) {
-  auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command = app.add_subcommand(
-      "verify", "Check the event chain, every file's hash and the derived tables");
+  const auto [command, options] =
+      add_command(app, context, "verify",
+                  "Check the event chain, every file's hash and the derived tables", verify);
   command
       ->add_option("--against", options->against,
                    "Number and hash of the last event, as an earlier `verify` printed them")
@@ -196,8 +195,8 @@ void add_verify(CLI::App& app, Context& context) {
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_number(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
   add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
-  add_common_options(*command, context);
-  command->footer(
+  add_common_options(
+      *command, context,
       R"(Proves that no event or file was changed or lost; that each file is the one that its event
 describes (step, cycle, time, units, grains, observables, state); that each run has the
 parameters and swept values of its id and began from a completed packing; that the tables follow
@@ -212,19 +211,18 @@ Examples:
   shearcell verify --json
   shearcell verify --replay 5
   shearcell verify --against 16 4358ffe4f2a9...)");
-  command->callback([options, &context] { verify(*options, context); });
 }
 
 void add_rebuild(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("rebuild", "Rebuild the tables of the store from its events");
-  add_common_options(*command, context);
-  command->footer(
+  command->callback([&context] { rebuild(context); });
+  add_common_options(
+      *command, context,
       R"(Use it when `verify` reports a table that differs from the events. Events and checkpoints do
 not change.
 Examples:
   shearcell rebuild)");
-  command->callback([&context] { rebuild(context); });
 }
 
 }  // namespace shearcell::cli

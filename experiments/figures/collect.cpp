@@ -15,7 +15,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/limits.hpp"

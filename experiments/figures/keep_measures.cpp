@@ -17,7 +17,7 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kBatch = 500;  // checkpoints whose results are in memory at a time
+constexpr std::size_t kAtOnce = 500;  // checkpoints whose results are in memory at a time
 
 bool is_simulated(const std::string& name) {
   return provider(name).from == ComputedFrom::simulation;
@@ -52,7 +52,7 @@ class Keeping {
       const std::vector<CheckpointRecord> own = store_.checkpoints(*run);
       batch.insert(batch.end(), own.begin(), own.end());
       simulate(*run, own, options);
-      if (++run != runs.end() && batch.size() < kBatch) continue;
+      if (++run != runs.end() && batch.size() < kAtOnce) continue;
       take(measure_checkpoints(store_, batch, analysing_providers(), options), batch,
            MeasureSources(store_, options.cadence));
       batch.clear();

@@ -12,7 +12,7 @@
 #include "analysis/onset.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 
 namespace shearcell {

@@ -6,15 +6,28 @@
 #include <openssl/sha.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
-#include <set>
+#include <optional>
 #include <span>
-#include <vector>
+#include <stdexcept>
+#include <tuple>
 
+#include "analysis/error.hpp"
+#include "analysis/plot.hpp"
+#include "experiments/figures/collect.hpp"
+#include "experiments/figures/draw.hpp"
+#include "experiments/figures/lineage.hpp"
+#include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/report/html.hpp"
+#include "experiments/runner/host.hpp"
+#include "experiments/runner/outlook.hpp"
+#include "experiments/runner/registered.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -35,6 +48,35 @@ using nlohmann::json;
 std::string_view front_end_script() {
   return {shearcell_script, shearcell_script_end};
 }
+
+/// An experiment of the store.
+struct Experiment {
+  RegisteredManifest manifest;  ///< its newest version
+  std::string manifest_path = {};
+  bool labelled = false;                 ///< the manifest names variants
+  json figures = json::array();          ///< as figure_json() gives them
+  std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
+  std::vector<Stage> runs = {};
+  std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
+  RunTable table = {};               ///< a row for each run, without those that settle packings
+  /// For the front end, in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi,
+  /// ...}]. The cycle and each scalar measure are arrays over the checkpoints, null where a value
+  /// is unknown.
+  json traces = json::array();
+};
+
+/// What the store holds.
+struct Content {
+  const Store& store;
+  const ReportOptions& options;
+  Report& report;
+  std::vector<Experiment> experiments = {};
+  json across = json::array();   ///< figures of all experiments together
+  json charts = json::object();  ///< by the id of their panel
+  RunLineages runs = {};
+  std::map<std::string, ManifestText> manifests = {};
+  Packings packings = {};
+};
 
 /// The hash of the script for a Content-Security-Policy that allows no other script.
 std::string script_hash(std::string_view script) {
@@ -60,20 +102,6 @@ json ruling_json(Ruling ruling) {
   return {{"name", name_of(ruling)}, {"mark", mark}};
 }
 
-/// How many claims of the experiment's figures have each ruling.
-json verdict_of(const ReportData& data, const ReportExperiment& experiment) {
-  std::map<Ruling, std::size_t> count;
-  for (const std::size_t figure : experiment.figures) {
-    for (const Verdict& verdict : data.figures.at(figure).summary.verdicts) ++count[verdict.ruling];
-  }
-  json list = json::array();
-  for (const auto& [ruling, number] : count) {
-    list.push_back(ruling_json(ruling));
-    list.back()["number"] = number;
-  }
-  return list;
-}
-
 json text_table(const TextTable& table) {
   if (table.rows.empty()) return false;
   json head = json::array(), rows = json::array();
@@ -92,16 +120,59 @@ json text_table(const TextTable& table) {
   return {{"head", head}, {"rows", rows}, {"note", text_html(table.note)}};
 }
 
-json panel_json(const ReportData& data, const ReportPanel& panel) {
-  const bool chart = data.interactive && !panel.chart.is_null();
-  const bool drawn = chart || !panel.drawing.empty() || !panel.text.rows.empty();
-  return {{"id", panel.id},
-          {"name", panel.name},
+std::string draw(const FigureTable& table) {
+  const TemporaryFolder folder("shearcell-report-");
+  constexpr std::size_t most = 64'000'000;
+  std::optional<std::string> svg = read_plain(draw_svg(table, folder.path()), most);
+  if (!svg) throw AnalysisError(fmt::format("{}.svg is larger than {} bytes", table.name, most));
+  return std::move(*svg);
+}
+
+/// `id`: in the page, "drag.S2a".
+json panel_json(const FigureTable& table, const std::string& id, const WantedFigure& figure,
+                Content& content) {
+  const bool interactive = content.report.interactive;
+  const bool chart = interactive && !table.chart.series.empty();
+  if (chart) content.charts[id] = chart_json(table);
+  std::string drawing, trouble;
+  try {
+    if (!interactive && table.text.rows.empty()) drawing = draw(table);
+  } catch (const AnalysisError& error) {
+    trouble = error.what();
+    content.report.undrawn.insert(fmt::format("figure {}: {}", figure.path(), trouble));
+  }
+  return {{"id", id},
+          {"name", table.name},
           {"chart", chart},
-          {"drawing", base64(std::as_bytes(std::span(panel.drawing)))},
-          {"table", text_table(panel.text)},
-          {"trouble", drawn || data.interactive ? "" : panel.trouble},
-          {"csv", panel.csv}};
+          {"drawing", base64(std::as_bytes(std::span(drawing)))},
+          {"table", text_table(table.text)},
+          {"trouble", trouble},
+          {"csv", to_csv(table)}};
+}
+
+/// Whether the record is of the same figure, with the same scale, states and analysis version.
+bool is_record_of(const Store& store, const FigureRecord& record, const FigureLineage& lineage) {
+  if (figure_name(record) != figure_name(lineage.record)) return false;
+  const auto key = [](const FigureInput& i) {
+    return std::tie(i.run, i.experiment, i.variant, i.seed, i.manifest, i.overrides, i.states);
+  };
+  try {
+    const FigureLineage recorded = figure_lineage(store, record);
+    return recorded.scale == lineage.scale &&
+           recorded.analysis_version == lineage.analysis_version &&
+           std::ranges::equal(recorded.inputs, lineage.inputs, {}, key, key);
+  } catch (const StoreDamaged&) {
+    return false;
+  }
+}
+
+/// The newest record of the figure with these inputs.
+std::optional<FigureRecord> recorded_as(const Content& content, const FigureLineage& lineage) {
+  std::optional<FigureRecord> newest;
+  for (const FigureRecord& record : figure_records(content.store)) {
+    if (is_record_of(content.store, record, lineage)) newest = record;
+  }
+  return newest;
 }
 
 std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
@@ -113,20 +184,20 @@ std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
 }
 
 /// Where a figure comes from.
-json lineage_json(const ReportFigure& figure) {
-  const FigureLineage& lineage = figure.lineage;
-  const FigureSummary& summary = figure.summary;
+json lineage_json(const FigureLineage& lineage, const FigureSummary& summary, const json& panels,
+                  const std::optional<FigureRecord>& recorded) {
   std::set<std::string> makers;
   for (const auto& [id, stage] : lineage.runs) {
     for (const Attempt& attempt : stage.attempts) makers.insert(text_of(maker_of(attempt.host)));
   }
   json outputs = json::array(), inputs = json::array(), manifests = json::array();
-  for (const ReportPanel& panel : figure.panels) {
-    const std::string file = panel.name + ".csv", sha256 = sha256_hex(panel.csv);
+  for (const json& panel : panels) {
+    const std::string file = panel.at("name").get<std::string>() + ".csv";
+    const std::string sha256 = sha256_hex(panel.at("csv").get_ref<const std::string&>());
     std::string found;
-    if (figure.recorded) {
-      const json recorded = member_of(figure.recorded->provenance, "outputs");
-      found = text_at(recorded, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
+    if (recorded) {
+      const json known = member_of(recorded->provenance, "outputs");
+      found = text_at(known, file.c_str()) == sha256 ? ", as recorded" : ", NOT as recorded";
     }
     outputs.push_back({{"file", file}, {"sha256", sha256}, {"found", found}});
   }
@@ -152,13 +223,56 @@ json lineage_json(const ReportFigure& figure) {
           {"makers", makers},
           {"manifests", manifests},
           {"outputs", outputs},
-          {"recorded", figure.recorded ? fmt::format("event {} of {}", figure.recorded->seq,
-                                                     figure.recorded->recorded_at)
-                                       : ""},
+          {"recorded",
+           recorded ? fmt::format("event {} of {}", recorded->seq, recorded->recorded_at) : ""},
           {"command",
            summary.experiment.empty() ? command : command + " --experiment " + summary.experiment},
           {"record", lineage.record.name},
           {"inputs", inputs}};
+}
+
+/// Computes the figure. What it says of the store goes into the report.
+json figure_json(const WantedFigure& wanted, Content& content) {
+  const ReportOptions& options = content.options;
+  FigureOptions how;
+  how.runs = options.runs;
+  how.workers = options.workers;
+  how.report = options.measured;
+  const ComputedFigure computed = compute_figure(content.store, wanted, how);
+  const FigureSummary& summary = computed.summary;
+  const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
+  const FigureLineage lineage =
+      figure_lineage(content.store, {wanted.path(), 0, "", computed.lineage});
+  for (const ManifestText& manifest : lineage.manifests) {
+    content.manifests.try_emplace(manifest.sha256, manifest);
+  }
+  json panels = json::array(), claims = json::array(), warnings = json::array();
+  for (const FigureTable& table : computed.result.tables) {
+    panels.push_back(panel_json(table, prefix + table.name, wanted, content));
+  }
+  for (const Verdict& verdict : summary.verdicts) {
+    claims.push_back({{"ruling", ruling_json(verdict.ruling)},
+                      {"claim", verdict.claim},
+                      {"numbers", fmt::format("{}: {}{}{}", verdict.quantity, numbers_of(verdict),
+                                              verdict.note.empty() ? "" : ". ", verdict.note)}});
+  }
+  for (const auto* list : {&summary.damage, &summary.pruned}) {
+    for (const std::string& line : *list) warnings.push_back("Left out: " + line);
+  }
+  for (const std::string& line : summary.notes) warnings.push_back(line);
+  std::vector<std::string>& damage = content.report.damage;
+  damage.insert(damage.end(), summary.damage.begin(), summary.damage.end());
+  for (const auto* list : {&summary.pruned, &summary.notes}) {
+    content.report.notes.insert(content.report.notes.end(), list->begin(), list->end());
+  }
+  return {{"id", prefix + wanted.figure.name},
+          {"name", summary.name},
+          {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", summary.name,
+                                  summary.title.empty() ? "" : ". ", summary.title)},
+          {"panels", panels},
+          {"claims", claims},
+          {"warnings", warnings},
+          {"lineage", lineage_json(lineage, summary, panels, recorded_as(content, lineage))}};
 }
 
 /// A stage with its attempts and checkpoints.
@@ -204,30 +318,6 @@ json stage_json(const RunLineage& stage) {
           {"count", stage.checkpoints.size()}};
 }
 
-json figure_json(const ReportData& data, const ReportFigure& figure) {
-  const FigureSummary& summary = figure.summary;
-  json panels = json::array(), claims = json::array(), warnings = json::array();
-  for (const ReportPanel& panel : figure.panels) panels.push_back(panel_json(data, panel));
-  for (const Verdict& verdict : summary.verdicts) {
-    claims.push_back({{"ruling", ruling_json(verdict.ruling)},
-                      {"claim", verdict.claim},
-                      {"numbers", fmt::format("{}: {}{}{}", verdict.quantity, numbers_of(verdict),
-                                              verdict.note.empty() ? "" : ". ", verdict.note)}});
-  }
-  for (const auto* list : {&summary.damage, &summary.pruned}) {
-    for (const std::string& line : *list) warnings.push_back("Left out: " + line);
-  }
-  for (const std::string& line : summary.notes) warnings.push_back(line);
-  return {{"id", figure.id},
-          {"name", summary.name},
-          {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", summary.name,
-                                  summary.title.empty() ? "" : ". ", summary.title)},
-          {"panels", panels},
-          {"claims", claims},
-          {"warnings", warnings},
-          {"lineage", lineage_json(figure)}};
-}
-
 struct Count {
   const char* state;
   const char* mark;  ///< distinguishes the states without colour
@@ -247,7 +337,7 @@ json step(const char* title, std::initializer_list<Count> counts) {
           {"manifest", false}, {"figures_step", false}, {"counts", std::move(list)}};
 }
 
-json stages_step(const char* title, const ReportExperiment& experiment, bool prepare) {
+json stages_step(const char* title, const Experiment& experiment, bool prepare) {
   std::map<StageState, std::size_t> in;
   for (const Stage& run : experiment.runs) {
     if ((run.kind == name_of(StageKind::prepare)) == prepare) ++in[run.state];
@@ -260,10 +350,10 @@ json stages_step(const char* title, const ReportExperiment& experiment, bool pre
 }
 
 /// The way from the manifest to the figures, with the states of each step.
-json workflow(const ReportData& data, const ReportExperiment& experiment) {
+json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
   for (const Stage& run : experiment.runs) {
-    for (const CheckpointHistory& c : data.runs.at(run.id).checkpoints) ++in[c.record.state];
+    for (const CheckpointHistory& c : content.runs.at(run.id).checkpoints) ++in[c.record.state];
   }
   json manifest = step("Manifest", {});
   manifest["none"] = false;
@@ -289,7 +379,7 @@ struct RunColumn {
 };
 
 /// The columns that are shown at first: what distinguishes the runs, then their state and results.
-std::vector<RunColumn> columns_of(const ReportExperiment& experiment) {
+std::vector<RunColumn> columns_of(const Experiment& experiment) {
   const RunTable& table = experiment.table;
   const std::size_t seed = table.place("seed"), cycle = table.place("cycle");
   std::vector<RunColumn> shown = {{table.place("run"), "run", false}};
@@ -329,15 +419,15 @@ std::vector<RunColumn> columns_of(const ReportExperiment& experiment) {
   return shown;
 }
 
-json cell_json(const ReportData& data, const TableColumn& column, const json& value) {
+json cell_json(const Packings& packings, const TableColumn& column, const json& value) {
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   json cell = {{"known", !value.is_null()}, {"value", text},  {"run", false},
                {"packed", false},           {"state", false}, {"text", ""}};
   if (column.name == "run") {
     cell["brief"] = brief(text);
     cell["run"] = text.substr(0, 8);
-    cell["packed"] = std::ranges::any_of(data.packings.runs,
-                                         [&](const json& run) { return run.at("id") == value; });
+    cell["packed"] =
+        std::ranges::any_of(packings.runs, [&](const json& run) { return run.at("id") == value; });
   } else if (column.name == "state") {
     cell["state"] = text;
   } else if (value.is_number_float()) {
@@ -348,7 +438,7 @@ json cell_json(const ReportData& data, const TableColumn& column, const json& va
   return cell;
 }
 
-json run_rows(const ReportData& data, const ReportExperiment& experiment) {
+json run_rows(const Packings& packings, const Experiment& experiment) {
   const RunTable& table = experiment.table;
   if (table.rows.empty()) return false;
   json columns = json::array(), rows = json::array();
@@ -363,8 +453,8 @@ json run_rows(const ReportData& data, const ReportExperiment& experiment) {
   for (const std::vector<json>& row : table.rows) {
     json cells = json::array();
     for (std::size_t c = 0; c < shown.size(); ++c) {
-      json& cell =
-          cells.emplace_back(cell_json(data, table.columns.at(shown[c].at), row.at(shown[c].at)));
+      json& cell = cells.emplace_back(
+          cell_json(packings, table.columns.at(shown[c].at), row.at(shown[c].at)));
       cell["heading"] = shown[c].heading;
       cell["numeric"] = shown[c].numeric;
     }
@@ -373,51 +463,49 @@ json run_rows(const ReportData& data, const ReportExperiment& experiment) {
   return {{"columns", columns}, {"rows", rows}};
 }
 
-json experiment_json(const ReportData& data, const ReportExperiment& experiment) {
+json experiment_json(const Content& content, const Experiment& experiment) {
   const RegisteredManifest& manifest = experiment.manifest;
-  json figures = json::array();
-  for (const std::size_t figure : experiment.figures) {
-    figures.push_back(figure_json(data, data.figures.at(figure)));
+  std::map<Ruling, std::size_t> rulings;
+  for (const json& figure : experiment.figures) {
+    for (const json& claim : figure.at("claims")) {
+      ++rulings[value_of<Ruling>(claim.at("ruling").at("name").get<std::string>()).value()];
+    }
   }
-  const json verdict = verdict_of(data, experiment);
+  json verdict = json::array();
+  for (const auto& [ruling, number] : rulings) {
+    verdict.push_back(ruling_json(ruling));
+    verdict.back()["number"] = number;
+  }
   return {{"experiment", manifest.experiment},
           {"question", manifest.question.empty() ? manifest.experiment : manifest.question},
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
           {"stage_count", experiment.runs.size()},
-          {"steps", workflow(data, experiment)},
-          {"figures", std::move(figures)},
+          {"steps", workflow(content, experiment)},
+          {"figures", experiment.figures},
           {"unmade", experiment.unmade},
-          {"runs", run_rows(data, experiment)}};
+          {"runs", run_rows(content.packings, experiment)}};
 }
 
 /// The experiments, then the figures of all experiments together.
-json parts_of(const ReportData& data) {
-  json parts = json::array(), across = json::array();
-  for (const ReportExperiment& experiment : data.experiments) {
-    parts.push_back(experiment_json(data, experiment));
+json parts_of(const Content& content) {
+  json parts = json::array();
+  for (const Experiment& experiment : content.experiments) {
+    parts.push_back(experiment_json(content, experiment));
   }
-  for (const ReportFigure& figure : data.figures) {
-    if (figure.summary.experiment.empty()) across.push_back(figure_json(data, figure));
-  }
-  if (!across.empty()) {
+  if (!content.across.empty()) {
     parts.push_back({{"experiment", false},
                      {"question", "All experiments together"},
-                     {"figures", std::move(across)},
+                     {"figures", content.across},
                      {"runs", false}});
   }
   return parts;
 }
 
 /// What the front end reads.
-json script_data(const ReportData& data) {
-  json charts = json::object(), experiments = json::array();
-  for (const ReportFigure& figure : data.figures) {
-    for (const ReportPanel& panel : figure.panels) {
-      if (!panel.chart.is_null()) charts[panel.id] = panel.chart;
-    }
-  }
-  for (const ReportExperiment& experiment : data.experiments) {
+json script_data(const Content& content) {
+  json experiments = json::array();
+  for (const Experiment& experiment : content.experiments) {
     json columns = json::array();
     for (const TableColumn& column : experiment.table.columns) {
       const Field* field = find_field(column.name);
@@ -430,9 +518,172 @@ json script_data(const ReportData& data) {
                            {"rows", experiment.table.rows},
                            {"runs", experiment.traces}});
   }
-  return {{"charts", std::move(charts)},
-          {"packings", data.packings.runs},
+  return {{"charts", content.charts},
+          {"packings", content.packings.runs},
           {"experiments", std::move(experiments)}};
+}
+
+/// The experiments named, or all, in the order in which they were first registered, each with its
+/// newest manifest.
+std::vector<Experiment> experiments_of(const Store& store, const std::vector<std::string>& names) {
+  std::vector<Experiment> found;
+  for (RegisteredManifest& manifest : newest_manifests(store)) {
+    if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
+    const std::optional<Manifest> known = parsed(manifest);
+    Experiment& experiment = found.emplace_back();
+    experiment.manifest = std::move(manifest);
+    experiment.labelled = known && !known->labels.empty();
+  }
+  const std::vector<Stage> runs = store.stages();
+  for (Experiment& experiment : found) {
+    const auto is_member = [&](const Ask& m) {
+      return m.experiment == experiment.manifest.experiment;
+    };
+    for (const Stage& run : runs) {
+      if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
+    }
+  }
+  return found;
+}
+
+void add_figures(Content& content) {
+  const WantedFigures wanted = wanted_figures(content.store, {}, content.options.runs.experiments);
+  std::vector<std::string>& notes = content.report.notes;
+  notes = wanted.unknown;
+  for (const WantedFigure& figure : wanted.figures) {
+    const auto home = std::ranges::find(content.experiments, figure.experiment,
+                                        [](const Experiment& e) { return e.manifest.experiment; });
+    const bool at_home = home != content.experiments.end();
+    const auto leave_out = [&](const std::exception& why) {
+      notes.push_back("figure " + figure.path() + ": " + why.what());
+      if (at_home) home->unmade.push_back(figure.figure.name);
+    };
+    try {
+      (at_home ? home->figures : content.across).push_back(figure_json(figure, content));
+      ++content.report.figures;
+    } catch (const StoreDamaged& damage) {
+      content.report.damage.emplace_back(damage.what());
+      leave_out(damage);
+    } catch (const UsageError& problem) {
+      leave_out(problem);
+    } catch (const AnalysisError& problem) {
+      leave_out(problem);
+    }
+  }
+  std::ranges::sort(notes);
+  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+}
+
+void add_runs(Content& content) {
+  const Store& store = content.store;
+  for (Experiment& experiment : content.experiments) {
+    if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
+      experiment.manifest_path = manifest->path;
+      content.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
+    }
+    for (const Stage& run : experiment.runs) {
+      add_run_lineage(store, run.id, content.runs);
+      // How long a packing takes to settle is not known.
+      if (run.kind == name_of(StageKind::prepare)) continue;
+      std::vector<Ask> asks = run.asks;
+      std::erase_if(
+          asks, [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
+      const Outlook look = outlook(run, asks, seen_checkpoints(store, run.id));
+      if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
+    }
+  }
+}
+
+/// Experiment::traces.
+json traces_of(const RunTable& runs, const RunLineages& lineages) {
+  constexpr int significant = 6;
+  json all = json::array();
+  for (std::size_t k = 0; k < runs.rows.size(); ++k) {
+    json& run = all.emplace_back(json::object());
+    for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
+      run["cycle"].push_back(checkpoint.cycle);
+      for (const Measure& measure : provider(table_providers().front()).measures) {
+        run[std::string(measure.name)].push_back(
+            rounded(checkpoint.measures.number(measure.name), significant));
+      }
+    }
+    const std::vector<json>& row = runs.rows[k];
+    for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
+    run["id"] = row[runs.place("run")];
+    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
+  }
+  return all;
+}
+
+/// Adds the results and traces of each experiment's runs. An experiment without them is named in
+/// Report::notes.
+void add_run_tables(Content& content) {
+  const ReportOptions& options = content.options;
+  std::vector<std::string>& damage = content.report.damage;
+  const MeasureOptions measuring{.workers = options.workers, .report = options.measured};
+  for (Experiment& experiment : content.experiments) {
+    RunSelection selection = options.runs;
+    selection.experiments = {experiment.manifest.experiment};
+    try {
+      experiment.table = run_table(content.store, selection, RowPer::run, measuring);
+      // Another program may have declared runs since they were listed.
+      for (const FigureRun& run : experiment.table.histories)
+        add_run_lineage(content.store, run.run_id, content.runs);
+      experiment.traces = traces_of(experiment.table, content.runs);
+      for (const std::string& line : experiment.table.damage) {
+        if (std::ranges::count(damage, line) == 0) damage.push_back(line);
+      }
+    } catch (const std::runtime_error& problem) {
+      // No run at this scale, or a record that this version of the program cannot read.
+      content.report.notes.push_back(
+          fmt::format("table of runs of {}: {}", experiment.manifest.experiment, problem.what()));
+    }
+  }
+}
+
+/// The values of the template.
+json page_of(const Content& content, const Head& head) {
+  const json program = host_facts().at("build");
+  const std::size_t packed = content.packings.runs.size();
+  json packings = false;
+  if (packed > 0) {
+    packings = {{"counts", fmt::format("{} of {}", counted(content.packings.frames, "checkpoint"),
+                                       counted(packed, "run"))},
+                {"step", fmt::format("{:.2g}", content.packings.largest_step)}};
+  }
+  const std::string counts =
+      fmt::format("{}, {}, {}", counted(content.experiments.size(), "experiment"),
+                  counted(content.report.figures, "figure"), counted(content.runs.size(), "stage"));
+  json stages = json::array(), manifests = json::array();
+  for (const auto& [id, stage] : content.runs) stages.push_back(stage_json(stage));
+  for (const auto& [sha256, manifest] : content.manifests) {
+    manifests.push_back(
+        {{"brief", brief(sha256)}, {"path", manifest.path}, {"text", manifest.text}});
+  }
+  json facts = {
+      {"store",
+       std::filesystem::absolute(content.store.folder()).lexically_normal().filename().string()},
+      {"counts", counts},
+      {"event", head.seq},
+      {"log_head", head.hash},
+      {"log_brief", brief(head.hash)},
+      {"version", program.value("version", "")},
+      {"commit", program.value("commit", "")},
+      {"interactive", content.report.interactive},
+      {"drawings_asked", !content.report.interactive && has_front_end()},
+      {"no_front_end", !has_front_end()},
+      {"parts", parts_of(content)},
+      {"packings", packings},
+      {"stages", stages},
+      {"manifests", manifests},
+      {"style", std::string(shearcell_style, shearcell_style_end)}};
+  if (content.report.interactive) {
+    facts["script_hash"] = script_hash(front_end_script());
+    facts["script"] = front_end_script();
+    facts["licences"] = std::string(shearcell_licences, shearcell_licences_end);
+    facts["script_data"] = script_json(script_data(content));
+  }
+  return facts;
 }
 
 }  // namespace
@@ -441,45 +692,36 @@ bool has_front_end() {
   return !front_end_script().empty();
 }
 
-std::string report_page(const ReportData& data) {
-  const std::size_t packed = data.packings.runs.size();
-  json packings = false;
-  if (packed > 0) {
-    packings = {{"counts", fmt::format("{} of {}", counted(data.packings.frames, "checkpoint"),
-                                       counted(packed, "run"))},
-                {"step", fmt::format("{:.2g}", data.packings.largest_step)}};
+Report make_report(const Store& store, const ReportOptions& options) {
+  Report report;
+  Content content{store, options, report};
+  const Head head = store.head();
+  report.interactive = options.interactive && has_front_end();
+  select_runs(store, options.runs);  // refuses a name that the store does not have
+  content.experiments = experiments_of(store, options.runs.experiments);
+  if (content.experiments.empty()) {
+    throw NotFound(store.folder().string() +
+                   ": the store holds no experiment; `shearcell run` one first");
   }
-  const std::string counts =
-      fmt::format("{}, {}, {}", counted(data.experiments.size(), "experiment"),
-                  counted(data.figures.size(), "figure"), counted(data.runs.size(), "stage"));
-  json stages = json::array(), manifests = json::array();
-  for (const auto& [id, stage] : data.runs) stages.push_back(stage_json(stage));
-  for (const auto& [sha256, manifest] : data.manifests) {
-    manifests.push_back(
-        {{"brief", brief(sha256)}, {"path", manifest.path}, {"text", manifest.text}});
+  std::vector<std::string> names;
+  for (const Experiment& experiment : content.experiments) {
+    names.push_back(experiment.manifest.experiment);
   }
-  json facts = {{"store", data.store},
-                {"counts", counts},
-                {"event", data.head.seq},
-                {"log_head", data.head.hash},
-                {"log_brief", brief(data.head.hash)},
-                {"version", data.program.value("version", "")},
-                {"commit", data.program.value("commit", "")},
-                {"interactive", data.interactive},
-                {"drawings_asked", !data.interactive && has_front_end()},
-                {"no_front_end", !has_front_end()},
-                {"parts", parts_of(data)},
-                {"packings", packings},
-                {"stages", stages},
-                {"manifests", manifests},
-                {"style", std::string(shearcell_style, shearcell_style_end)}};
-  if (data.interactive) {
-    facts["script_hash"] = script_hash(front_end_script());
-    facts["script"] = front_end_script();
-    facts["licences"] = std::string(shearcell_licences, shearcell_licences_end);
-    facts["script_data"] = script_json(script_data(data));
+  add_figures(content);
+  add_runs(content);
+  add_run_tables(content);
+  if (report.interactive) {
+    content.packings = collect_packings(store, names, options.runs, options.packings,
+                                        options.workers, options.encoded);
+    const std::vector<std::string>& notes = content.packings.notes;
+    report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   }
-  return filled({shearcell_page, shearcell_page_end}, facts);
+  report.experiments = content.experiments.size();
+  report.stages = content.runs.size();
+  report.packings = content.packings.runs.size();
+  report.checkpoints = content.packings.frames;
+  report.html = filled({shearcell_page, shearcell_page_end}, page_of(content, head));
+  return report;
 }
 
 }  // namespace shearcell

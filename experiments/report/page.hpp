@@ -2,15 +2,45 @@
 // The report as HTML: page.html filled with what a store holds.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
+#include <vector>
 
-#include "experiments/report/report_data.hpp"
+#include "experiments/figures/select_runs.hpp"
+#include "experiments/report/packings.hpp"
+#include "provenance/store.hpp"
 
 namespace shearcell {
 
-/// The whole page: markup, style, data and, if it is interactive, the front end. The same store and
-/// options give the same bytes with the same program (drawings also need the same gnuplot). Texts
-/// from a store or a file are escaped.
-std::string report_page(const ReportData& data);
+struct ReportOptions {
+  RunSelection runs;  ///< for figures, tables and packings; a figure has one scale
+  PackingChoice packings;
+  bool interactive = true;  ///< false: drawings only, as in a build without Node
+  std::size_t workers = 1;
+  std::function<void(std::size_t done, std::size_t total)> measured;  ///< may be empty
+  std::function<void(std::size_t done, std::size_t total)> encoded;   ///< may be empty
+};
+
+/// Whether this build holds the front end. Building that needs Node.
+bool has_front_end();
+
+struct Report {
+  /// The whole page: markup, style, data and, if it is interactive, the front end. Texts from a
+  /// store or a file are escaped.
+  std::string html;
+  bool interactive = false;
+  std::size_t experiments = 0, figures = 0, stages = 0;  ///< that it shows
+  std::size_t packings = 0, checkpoints = 0;             ///< runs in 3D, and their checkpoints
+  std::set<std::string> undrawn;    ///< which drawings failed and why, one line each
+  std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
+  std::vector<std::string> notes;   ///< about runs, figures and tables, one line each
+};
+
+/// The same store and options give the same bytes with the same program (drawings also need the
+/// same gnuplot). Writes nothing but measures into derived.sqlite. Throws NotFound if the store has
+/// no experiment or a run of `packings.runs` is unknown.
+Report make_report(const Store& store, const ReportOptions& options);
 
 }  // namespace shearcell

@@ -4,16 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <random>
+#include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/measure_sources.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
@@ -190,6 +194,34 @@ void copy_measures(const Store& store, DerivedCache& from) {
 }
 
 }  // namespace
+
+std::vector<CheckpointRecord> replayable(const Store& store) {
+  std::vector<CheckpointRecord> found;
+  for (const Stage& run : store.stages()) {
+    if (why_not_again(run)) continue;
+    std::ranges::move(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found));
+  }
+  return found;
+}
+
+std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
+                                     std::uint64_t seed) {
+  count = std::min(count, records.size());
+  // Distributions of the standard library differ between libraries; a remainder does not.
+  std::mt19937_64 random(seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(records[i], records[i + random() % (records.size() - i)]);
+  }
+  records.resize(count);
+  return records;
+}
+
+std::uint64_t seed_of(const Head& head) {
+  const std::string digits = head.hash.substr(0, 12);
+  std::uint64_t seed = 0;  // 0 if a damaged log has no digits
+  std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
+  return seed;
+}
 
 std::vector<Finding> check_runs(const Store& store) {
   std::vector<Finding> findings;

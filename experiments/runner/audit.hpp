@@ -20,6 +20,17 @@ namespace shearcell {
 /// parameters.
 std::vector<Finding> check_runs(const Store& store);
 
+/// Every checkpoint that can be replayed, pruned ones included, in the order of runs and steps.
+/// Checkpoints of another engine cannot.
+std::vector<CheckpointRecord> replayable(const Store& store);
+
+/// `count` of the records without repetition, or all; the same for the same seed.
+std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
+                                     std::uint64_t seed);
+
+/// A seed for sample() that changes with every new event of the log.
+std::uint64_t seed_of(const Head& head);
+
 struct MeasureCheck {
   std::size_t cached = 0;    ///< checkpoints of the store with cached measures
   std::size_t computed = 0;  ///< of these, computed again

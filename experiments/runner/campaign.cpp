@@ -16,12 +16,14 @@
 #include "core/threads.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -37,13 +39,113 @@ constexpr std::chrono::milliseconds kCheckInterval{500};
 // A run that was lost so often while no other program holds it cannot be computed.
 constexpr int kMostLosses = 20;
 
+// --- Progress on standard error ---
+
+std::string describe(const StageStatus& status) {
+  const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
+  const std::string where =
+      status.target_cycles > 0
+          ? fmt::format("cycle {:.2f} of {:g}", status.cycle, status.target_cycles)
+          : fmt::format("step {}", status.step);
+  const std::string left =
+      status.seconds_left >= 0 ? format_duration(status.seconds_left) + " left" : "";
+  return fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate, left);
+}
+
+/// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
+/// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
+class Progress {
+ public:
+  Progress(std::size_t stages, bool quiet)
+      : stages_(stages), quiet_(quiet), terminal_(moves_cursor(stderr)) {}
+  ~Progress() { erase(); }
+
+  void begin(const StageJob& job) {
+    const std::lock_guard lock(mutex_);
+    running_[job.id] = {job.name, "starting", {}};
+    if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
+  }
+
+  void update(const StageJob& job, const StageStatus& status) {
+    const std::lock_guard lock(mutex_);
+    Shown& shown = running_[job.id];
+    shown.text = describe(status);
+    if (quiet_) return;
+    if (terminal_) return draw();
+    if (shown.said.seconds() < 10) return;
+    shown.said.restart();
+    print_stderr("{}: {}\n", shown.name, shown.text);
+  }
+
+  /// `done` counts it among the stages that are done.
+  void end(const StageJob& job, const std::string& how, bool done) {
+    const std::lock_guard lock(mutex_);
+    running_.erase(job.id);
+    if (done) ++done_;
+    if (quiet_) return;
+    erase();
+    print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
+    if (terminal_) draw();
+  }
+
+  /// Counts a stage that was done before among those that are done.
+  void count() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+  }
+
+  /// This program no longer computes the stage.
+  void drop(const StageJob& job) {
+    const std::lock_guard lock(mutex_);
+    running_.erase(job.id);
+    erase();
+  }
+
+  /// A permanent line; a `minor` one only if progress is shown.
+  void say(const std::string& line, bool minor = false) {
+    const std::lock_guard lock(mutex_);
+    if (minor && quiet_) return;
+    erase();
+    print_stderr("{}\n", line);
+  }
+
+ private:
+  struct Shown {
+    std::string name, text;
+    Stopwatch said;
+  };
+
+  void erase() {
+    for (; drawn_ > 0; --drawn_) write_stderr("\x1b[1A\x1b[2K");
+  }
+
+  void draw() {
+    erase();
+    // A longer line would wrap, and drawing over it would leave its beginning behind.
+    const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
+    std::multimap<std::string, std::string> lines;
+    for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
+    for (const auto& [name, text] : lines) {
+      print_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
+      ++drawn_;
+    }
+  }
+
+  std::mutex mutex_;
+  std::size_t stages_, done_ = 0;
+  bool quiet_, terminal_;
+  std::size_t drawn_ = 0;                 ///< lines on the screen that the next drawing replaces
+  std::map<std::string, Shown> running_;  ///< by id
+};
+
+// --- Scheduling ---
+
 class Campaign {
  public:
-  Campaign(Store& store, const std::vector<StageJob>& jobs, Progress& progress,
-           const Parallel& parallel)
+  Campaign(Store& store, const std::vector<StageJob>& jobs, const Parallel& parallel, bool quiet)
       : store_(store),
         jobs_(jobs),
-        progress_(progress),
+        progress_(jobs.size(), quiet),
         parallel_(parallel),
         states_(jobs.size()) {}
 
@@ -152,10 +254,11 @@ class Campaign {
     }
     if (holders.empty()) return;  // it has just ended
     shown_held_ = held;
-    progress_.note(
+    progress_.say(
         fmt::format("waiting for {} that another program computes ({}); a stage is free when its "
                     "holder has ended or been silent for {} s",
-                    counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000));
+                    counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
+        true);
   }
 
   JobState run_job(std::size_t j, bool was_held) {
@@ -179,7 +282,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
     }
-    progress_.drop(job.id);
+    progress_.drop(job);
     return JobState::ended;
   }
 
@@ -211,25 +314,26 @@ class Campaign {
       note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
     }
-    progress_.begin(job.id, job.name);
+    progress_.begin(job);
     const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
     switch (outcome) {
       case StageOutcome::completed:
-        finish(job, &CampaignResult::completed, done_text(job), true);
+      case StageOutcome::already: {
+        const bool now = outcome == StageOutcome::completed;
+        finish(job, now ? &CampaignResult::completed : &CampaignResult::already, done_text(job),
+               true);
         return JobState::done;
-      case StageOutcome::already:
-        finish(job, &CampaignResult::already, done_text(job), true);
-        return JobState::done;
+      }
       case StageOutcome::interrupted:
         finish(job, &CampaignResult::interrupted, "interrupted", false);
         return JobState::ended;
       case StageOutcome::failed:
         note(job, &CampaignResult::failed, store_.stage(job.id).error);
-        progress_.end(job.id, job.name, "FAILED", false);
+        progress_.end(job, "FAILED", false);
         return JobState::ended;
       case StageOutcome::held:
       case StageOutcome::lost:
-        progress_.drop(job.id);
+        progress_.drop(job);
         if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be started; `shearcell verify` may show why");
@@ -246,7 +350,7 @@ class Campaign {
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
-    options.report = [&](const StageStatus& status) { progress_.update(job.id, status); };
+    options.report = [&](const StageStatus& status) { progress_.update(job, status); };
     return options;
   }
 
@@ -261,7 +365,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       ++(result_.*count);
     }
-    progress_.end(job.id, job.name, how, done);
+    progress_.end(job, how, done);
   }
 
   void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
@@ -275,7 +379,7 @@ class Campaign {
 
   Store& store_;
   const std::vector<StageJob>& jobs_;
-  Progress& progress_;
+  Progress progress_;
   Parallel parallel_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
@@ -286,24 +390,24 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-// Variants that start from one packing share it, so its name says no variant.
-std::string job_name(const Ask& ask, const std::string& name) {
-  return fmt::format("{} {} seed={}", ask.experiment, name, ask.seed);
-}
-
-StageJob job_of(const Stage& run, const VariantNames& names) {
-  if (run.asks.empty()) return {run.id, run.parent, run.kind};
-  const Ask& place = run.asks.front();
-  return {run.id, run.parent, job_name(place, names.of(run, place))};
-}
-
-/// Adds their ids to equal names, as those of several scales.
-void tell_apart(std::vector<StageJob>& jobs) {
+/// A job for each stage, named by its first place, and by its id where names are equal, as those of
+/// several scales.
+std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
+  std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
-  for (const StageJob& job : jobs) ++count[job.name];
+  for (const Stage& stage : stages) {
+    std::string name = stage.kind;
+    if (!stage.asks.empty()) {
+      const Ask& place = stage.asks.front();
+      name = fmt::format("{} {} seed={}", place.experiment, names.of(stage, place), place.seed);
+    }
+    ++count[name];
+    jobs.push_back({stage.id, stage.parent, name});
+  }
   for (StageJob& job : jobs) {
     if (count[job.name] > 1) job.name += " " + job.id.substr(0, 8);
   }
+  return jobs;
 }
 
 // By scale, where it is not the default.
@@ -326,32 +430,28 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
     info["max_overlap_diameters"] = std::move(limits);
   }
   store.register_manifest(manifest.text, manifest.file, info);
-  std::vector<StageJob> jobs;
+  std::vector<Stage> stages;
   std::set<std::string> known;
-  PackingNames packings;
-  for (const PlannedRun& run : plan.runs) packings.add(run, run.prepare.resolved);
   for (const PlannedRun& run : plan.runs) {
     for (Stage stage : {run.prepare, run.last}) {
       const bool prepare = stage.kind == name_of(StageKind::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      Ask ask = run;
+      stage.asks = {run};
       if (prepare) {
-        ask = {.experiment = run.experiment,
-               .scale = run.scale,
-               .variant = "packing",
-               .seed = run.seed,
-               .manifest = run.manifest,
-               .checkpoint_every = run.checkpoint_every};
+        // Variants that start from one packing share it, so its place says no variant.
+        stage.asks = {{.experiment = run.experiment,
+                       .scale = run.scale,
+                       .variant = "packing",
+                       .seed = run.seed,
+                       .manifest = run.manifest,
+                       .checkpoint_every = run.checkpoint_every}};
       }
-      const std::string name = prepare ? packings.of(run, stage.resolved) : run.name;
-      if (first) jobs.push_back({stage.id, stage.parent, job_name(ask, name)});
-      stage.asks = {std::move(ask)};
       store.declare_stage(stage);
+      if (first) stages.push_back(std::move(stage));
     }
   }
-  tell_apart(jobs);
-  return jobs;
+  return jobs_of(stages, VariantNames(store));
 }
 
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
@@ -366,18 +466,14 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (Stage run : asked) {
     while (wanted.insert(run.id).second && !run.parent.empty()) run = store.stage(run.parent);
   }
-  std::vector<StageJob> jobs;
-  const VariantNames names(store);
-  for (const Stage& run : store.stages()) {
-    if (wanted.contains(run.id)) jobs.push_back(job_of(run, names));
-  }
-  tell_apart(jobs);
-  return jobs;
+  std::vector<Stage> stages = store.stages();
+  std::erase_if(stages, [&](const Stage& run) { return !wanted.contains(run.id); });
+  return jobs_of(stages, VariantNames(store));
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress, const Parallel& parallel) {
-  return Campaign(store, jobs, progress, parallel).run(workers);
+                            const Parallel& parallel, bool quiet) {
+  return Campaign(store, jobs, parallel, quiet).run(workers);
 }
 
 }  // namespace shearcell

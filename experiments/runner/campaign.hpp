@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/manifest/expand.hpp"
-#include "experiments/runner/progress.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -42,8 +42,9 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
 
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
 /// that another program computes are left to it while there is other work, then waited for, and
-/// continued here when that program ends or its lease expires.
+/// continued here when that program ends or its lease expires. Shows its progress on standard
+/// error, unless it is `quiet`.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            Progress& progress, const Parallel& parallel = {});
+                            const Parallel& parallel = {}, bool quiet = false);
 
 }  // namespace shearcell

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -13,10 +15,10 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
-#include "experiments/runner/cost.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -33,16 +35,30 @@ std::optional<Until> until_of(const Ask& ask) try {
   throw StoreDamaged(fmt::format("a record of experiment {}: {}", ask.experiment, problem.what()));
 }
 
+/// Outlook::ended, as a completion recorded it.
+struct EarlyEnd {
+  Until until;
+  double reached = 0;  ///< the cycle at which `until` was reached
+};
+
+/// Nothing for another end, or where this program cannot read it.
+std::optional<EarlyEnd> early_end(const json& ended) {
+  const json measure = member_of(ended, "measure"), cycle = member_of(ended, "reached_at_cycle");
+  if (member_of(ended, "by") != "until" || !measure.is_string() || !cycle.is_number()) return {};
+  try {
+    const json until = {{measure.get<std::string>(), member_of(ended, "value")},
+                        {"extra_cycles", member_of(ended, "extra_cycles")}};
+    return EarlyEnd{until_from_json(until), cycle.get<double>()};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 /// The cycle at which the stage reached this `until`, as a completion recorded it.
 std::optional<double> recorded_reach(const Stage& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
-    const json cycle = member_of(ended, "reached_at_cycle");
-    if (member_of(ended, "measure") == name_of(until.measure) &&
-        member_of(ended, "value") == until.value &&
-        member_of(ended, "extra_cycles") == until.extra_cycles && cycle.is_number() &&
-        std::fmod(cycle.get<double>(), every) == 0) {
-      return cycle.get<double>();
-    }
+    const auto end = early_end(ended);
+    if (end && end->until == until && std::fmod(end->reached, every) == 0) return end->reached;
   }
   return std::nullopt;
 }
@@ -240,6 +256,282 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks) {
   std::uint64_t cadence = 0;
   for (const Ask& ask : asks) cadence = std::gcd(cadence, ask.checkpoint_every);
   return std::max<std::uint64_t>(cadence, 1);
+}
+
+// --- Of the stages of a store or a plan ---
+
+namespace {
+
+[[noreturn]] void refuse_unread(const CheckpointRecord& record) {
+  const bool pruned = record.state == CheckpointState::pruned;
+  const std::string why = fmt::format(
+      "checkpoint {:.12} of run {:.12} (cycle {:g}), which may decide where the run ends "
+      "(`until`), {}; `shearcell regenerate {:.12}` restores it",
+      record.sha256, record.run, record.cycle, pruned ? "was pruned" : "cannot be read",
+      record.sha256);
+  if (pruned) throw FilePruned(why);
+  throw StoreDamaged(why);
+}
+
+/// Measures the checkpoint and the next ones at whole cycles, as many as there are workers.
+void measure_from(const Store& store, const CheckpointRecord& first,
+                  std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options) {
+  std::vector<SeenCheckpoint*> chosen;
+  std::vector<CheckpointRecord> records;
+  for (SeenCheckpoint& one : checkpoints) {
+    const bool whole = one.record.cycle == std::floor(one.record.cycle);
+    if (one.record.step < first.step || !whole || one.measures) continue;
+    chosen.push_back(&one);
+    records.push_back(one.record);
+    if (chosen.size() == options.workers) break;
+  }
+  // The crystallites come from the same analysis, and figures need them.
+  static const std::array<std::string, 1> scalars = {"scalars"};
+  const MeasureOptions also = {
+      .workers = options.workers, .report = options.report, .also = {"crystallites"}};
+  MeasuredCheckpoints found = measure_checkpoints(store, records, scalars, also);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    if (!found.lacks(k, "scalars")) chosen[k]->measures = std::move(found.measures[k]);
+  }
+  if (!chosen.front()->measures) refuse_unread(first);
+}
+
+/// The most cycles [at most those that the stage has] for which an experiment without this `until`
+/// asked when the stage ended; 0 without any.
+double longest_length(const Stage& stage, const json& ended, const json& until) {
+  const json known = member_of(ended, "memberships");
+  std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
+  double longest = 0;
+  for (const Ask& ask : stage.asks) {  // in the order of declaration
+    if (left-- == 0) break;
+    const auto cycles = static_cast<double>(ask.target_cycles);
+    if (cycles <= stage.cycle && ask.until != until) longest = std::max(longest, cycles);
+  }
+  return longest;
+}
+
+}  // namespace
+
+Outlook look_at(const Store& store, const Stage& stage) {
+  try {
+    return outlook(stage, stage.asks, seen_checkpoints(store, stage.id));
+  } catch (const StoreDamaged& damage) {
+    const bool completed = stage.state == StageState::completed;
+    return {.done = completed, .from = stage.cycle, .unreadable = damage.what()};
+  }
+}
+
+std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
+  std::map<std::string, Stage> known;
+  if (store != nullptr) {
+    for (Stage& stage : store->stages()) known.emplace(stage.id, std::move(stage));
+  }
+  std::vector<PlannedStage> stages;
+  std::set<std::string> seen;
+  for (const PlannedRun& run : plan.runs) {
+    for (const Stage* planned : {&run.prepare, &run.last}) {
+      if (!seen.insert(planned->id).second) continue;
+      PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
+      if (const auto found = known.find(planned->id); found != known.end()) {
+        one.stage = std::move(found->second);
+        one.stage.resolved = planned->resolved;  // that of the store may be damaged
+        one.asks = one.stage.asks;
+        one.checkpoints = seen_checkpoints(*store, one.stage.id);
+      }
+      if (planned == &run.last) std::ranges::copy(run.asks, std::back_inserter(one.asks));
+      one.look = outlook(one.stage, one.asks, one.checkpoints);
+    }
+  }
+  return stages;
+}
+
+std::vector<SeenCheckpoint> seen_checkpoints(const Store& store, const std::string& stage) {
+  std::vector<SeenCheckpoint> seen;
+  for (CheckpointRecord& record : store.checkpoints(stage, Listed::and_pruned)) {
+    seen.push_back({std::move(record)});
+  }
+  return seen;
+}
+
+Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
+               std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options) {
+  for (;;) {
+    Outlook look = outlook(stage, asks, checkpoints);
+    if (!look.undecided) return look;
+    measure_from(store, *look.undecided, checkpoints, options);
+  }
+}
+
+double end_for(const Store& store, const Stage& stage, const Ask& ask,
+               const MeasureOptions& options) {
+  // With one ask no other experiment can have continued it.
+  if (stage.asks.size() < 2 || !has_until(ask)) {
+    return static_cast<double>(ask.target_cycles);
+  }
+  std::vector<SeenCheckpoint> checkpoints = seen_checkpoints(store, stage.id);
+  return decide(store, stage, {&ask, 1}, checkpoints, options).end;
+}
+
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              std::span<const Ask> asks, double first,
+                                              double last) {
+  std::vector<CheckpointRecord> found = store.checkpoints(stage.id, Listed::and_pruned);
+  const double end = found.empty() ? 0 : std::min(last, found.back().cycle);
+  const bool every = asks.empty() || !shear_drive(stage);
+  std::set<std::uint64_t> steps;
+  for (const Ask& ask : asks) {
+    const auto asked = asked_steps(stage, ask, first, end);
+    steps.insert(asked.begin(), asked.end());
+  }
+  std::erase_if(found, [&](const CheckpointRecord& record) {
+    const bool asked =
+        every ? record.cycle == std::floor(record.cycle) : steps.contains(record.step);
+    return record.cycle < first || record.cycle > last || !asked;
+  });
+  return found;
+}
+
+std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
+                                              const Ask& ask, const MeasureOptions& options) {
+  return checkpoints_for(store, stage, {&ask, 1}, 0, end_for(store, stage, ask, options));
+}
+
+json end_of(const Stage& stage) {
+  const bool before_last = stage.cycle < static_cast<double>(stage.target_cycles);
+  if (stage.state != StageState::completed || stage.ends.empty() || !before_last) return json();
+  json ended = stage.ends.back();
+  const auto end = early_end(ended);
+  if (!end) return json();
+  const double reached = end->reached + static_cast<double>(end->until.extra_cycles);
+  const double asked = longest_length(stage, ended, to_json(end->until));
+  if (asked > reached) ended["cycles_asked"] = asked;
+  return ended;
+}
+
+std::string describe_end(const json& ended) {
+  if (ended.is_null()) return "";
+  const auto extra = ended.at("extra_cycles").get<std::uint64_t>();
+  std::string why =
+      fmt::format("{} >= {} at cycle {}{}", ended.at("measure").get<std::string>(),
+                  ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
+                  extra > 0 ? fmt::format(" and {}", counted(extra, "more cycle")) : "");
+  if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
+    why = fmt::format("an experiment asks for {} cycles; {}", asked.get<double>(), why);
+  }
+  return why;
+}
+
+std::optional<double> expected_end(std::span<const Stage> stages, const json& until) {
+  double sum = 0, count = 0;
+  for (const Stage& stage : stages) {
+    const json ended = end_of(stage);
+    const auto end = early_end(ended);
+    if (!end || ended.contains("cycles_asked") || to_json(end->until) != until) continue;
+    sum += stage.cycle;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+// --- What it costs ---
+
+namespace {
+
+// Particle-steps/s assumed until the store has measured them: rough cells on one core of an EPYC
+// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process (SCALING.md).
+struct MeasuredRate {
+  double grains, rate;
+};
+constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
+constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
+
+// A power law in N between two measured sizes, constant beyond the outermost ones.
+double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
+  if (grains <= rates.front().grains) return rates.front().rate;
+  for (std::size_t i = 1; i < rates.size(); ++i) {
+    const MeasuredRate &a = rates[i - 1], &b = rates[i];
+    if (grains > b.grains) continue;
+    const double part = std::log(grains / a.grains) / std::log(b.grains / a.grains);
+    return a.rate * std::pow(b.rate / a.rate, part);
+  }
+  return rates.back().rate;
+}
+
+// Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
+constexpr double kBytesPerGrain = 121;
+constexpr double kBytesPerWallGrain = 98;
+constexpr double kBytesPerFile = 18e3;
+
+}  // namespace
+
+double run_bytes(const Geometry& shape) {
+  return kRunBytesPerGrain * (static_cast<double>(shape.grains) + wall_grain_count(shape));
+}
+
+double checkpoint_bytes(const Geometry& shape) {
+  return kBytesPerFile + kBytesPerGrain * static_cast<double>(shape.grains) +
+         kBytesPerWallGrain * wall_grain_count(shape);
+}
+
+double settling_time_s(const Parameters& p) {
+  const double height = p.height_over_width * cell_width(geometry(p));
+  const double time = 0.6 + 0.00175 * height * height;
+  return std::min(std::max(time, damping_time_s(p)), p.settle_time_limit_s);
+}
+
+double minimization_evaluations(double grains) {
+  return 18e3 * std::pow(grains / 2000, 0.7);
+}
+
+Rates::Rates(const std::vector<Stage>& runs) {
+  for (const Stage& run : runs) {
+    Sum& sum = sums_[engine_of(run.resolved)];
+    sum.steps += run.particle_steps;
+    sum.seconds += run.wall_seconds;
+  }
+}
+
+Rate Rates::of(const Stage& stage) const {
+  const EngineKind engine = engine_of(stage.resolved);
+  const auto grains = static_cast<double>(stage.grains);
+  const auto sum = sums_.find(engine);
+  if (sum != sums_.end() && sum->second.seconds >= 1) {
+    return {sum->second.steps / sum->second.seconds, true};
+  }
+  if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
+  return {assumed_rate(kOurRates, grains), false};
+}
+
+void Work::add(const Stage& stage, const Outlook& look, const Rates& rates) {
+  const Rate of_stage = rates.of(stage);
+  const double own_seconds = look.particle_steps / of_stage.particle_steps_per_second;
+  ++stages;
+  particle_steps += look.particle_steps;
+  bytes += look.bytes;
+  core_seconds += own_seconds;
+  if (core_seconds > 0) {
+    rate = particle_steps / core_seconds;
+  } else if (rate == 0) {
+    rate = of_stage.particle_steps_per_second;
+  }
+  measured = measured && of_stage.measured;
+  longest_seconds = std::max(longest_seconds, chain[stage.id] = chain[stage.parent] + own_seconds);
+}
+
+double Work::seconds(std::size_t at_a_time) const {
+  return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
+}
+
+std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs) {
+  std::set<std::string> failed, waiting;
+  for (const Stage& run : runs) {
+    if (run.state == StageState::failed) failed.insert(run.id);
+  }
+  for (const Stage& run : runs) {
+    if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
+  }
+  return waiting;
 }
 
 }  // namespace shearcell

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/registered.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "experiments/manifest/identity.hpp"
@@ -38,49 +36,57 @@ std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
   }
 }
 
-void PackingNames::add(const Ask& place, const nlohmann::json& resolved) {
-  std::vector<nlohmann::json>& known = parameters_[{place.experiment, place.scale}];
-  nlohmann::json parameters = effective_parameters(resolved);
-  if (std::ranges::find(known, parameters) == known.end()) known.push_back(std::move(parameters));
+namespace {
+
+// In place of a manifest: packings of all versions are named together.
+const std::string kPackings = "packings";
+
+bool is_packing(const Stage& run) {
+  return run.kind == name_of(StageKind::prepare);
 }
 
-std::string PackingNames::of(const Ask& place, const nlohmann::json& resolved) const {
-  const auto known = parameters_.find({place.experiment, place.scale});
-  if (known == parameters_.end() || known->second.size() < 2) return "packing";
-  const auto names = variant_names(known->second, {});
-  const auto own = names.find(effective_parameters(resolved));
-  return own == names.end() ? "packing" : fmt::format("packing {}", own->second);
-}
+}  // namespace
 
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
   for (const RegisteredManifest& manifest : registered_manifests(store)) {
     if (auto known = parsed(manifest)) labels[manifest.sha256] = std::move(known->labels);
   }
-  std::map<Group, std::vector<nlohmann::json>> variants;
+  std::map<Group, std::vector<nlohmann::json>> values;
   for (const Stage& run : store.stages()) {
     for (const Ask& m : run.asks) {
-      if (run.kind == name_of(StageKind::prepare)) {
-        packings_.add(m, run.resolved);
+      if (is_packing(run)) {
+        values[{m.experiment, kPackings, m.scale}].push_back(effective_parameters(run.resolved));
       } else {
-        variants[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
+        values[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
       }
     }
   }
-  for (const auto& [group, swept] : variants) {
-    names_[group] = variant_names(swept, labels[std::get<1>(group)]);
+  for (const auto& [group, vary] : values) {
+    auto names = variant_names(vary, labels[std::get<1>(group)]);
+    if (std::get<1>(group) == kPackings) {
+      for (auto& [parameters, name] : names) name = "packing " + name;
+      if (names.size() < 2) continue;  // the variant is called "packing"
+    }
+    names_[group] = std::move(names);
   }
 }
 
-std::string VariantNames::of(const Ask& m) const {
-  const auto group = names_.find({m.experiment, m.manifest, m.scale});
-  if (group == names_.end()) return m.variant;
-  const auto name = group->second.find(m.swept);
-  return name == group->second.end() ? m.variant : name->second;
+std::string VariantNames::find(const Group& group, const nlohmann::json& values,
+                               const Ask& place) const {
+  const auto names = names_.find(group);
+  if (names == names_.end()) return place.variant;
+  const auto name = names->second.find(values);
+  return name == names->second.end() ? place.variant : name->second;
 }
 
 std::string VariantNames::of(const Stage& run, const Ask& m) const {
-  return run.kind == name_of(StageKind::prepare) ? packings_.of(m, run.resolved) : of(m);
+  if (!is_packing(run)) return of(m);
+  return find({m.experiment, kPackings, m.scale}, effective_parameters(run.resolved), m);
+}
+
+std::string VariantNames::of(const Ask& m) const {
+  return find({m.experiment, m.manifest, m.scale}, m.swept, m);
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

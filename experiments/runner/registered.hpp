@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
@@ -30,33 +29,24 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store);
 /// The parsed manifest; nothing if this version of the program cannot read it.
 std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 
-/// Display names of settled packings, which no sweep names: "packing", or if an experiment has
-/// several at one scale, with the values in which they differ: "packing N=600".
-class PackingNames {
- public:
-  /// `resolved`: the parameters of the stage that settles it.
-  void add(const Ask& place, const nlohmann::json& resolved);
-  std::string of(const Ask& place, const nlohmann::json& resolved) const;
-
- private:
-  using Group = std::pair<std::string, std::string>;         // experiment and scale
-  std::map<Group, std::vector<nlohmann::json>> parameters_;  // different ones
-};
-
 /// Display names of all variants in a store, from the labels of each manifest and the values that
-/// vary in it (experiments/manifest/variants.hpp).
+/// vary in it (experiments/manifest/variants.hpp). No sweep names settled packings: each is called
+/// "packing" or, if an experiment has several at one scale, also by the values in which they
+/// differ: "packing N=600".
 class VariantNames {
  public:
   VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
-  std::string of(const Ask& ask) const;  ///< if unknown, the variant itself
-  /// The same; for a packing, its name by PackingNames.
-  std::string of(const Stage& run, const Ask& ask) const;
+  /// In this place of the run; if unknown, the variant itself.
+  std::string of(const Stage& run, const Ask& place) const;
+  /// The same; not of a packing.
+  std::string of(const Ask& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
-  std::map<Group, std::map<nlohmann::json, std::string>> names_;    // by swept values
-  PackingNames packings_;
+  std::string find(const Group& group, const nlohmann::json& values, const Ask& place) const;
+
+  std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by values that vary
 };
 
 /// The version of each experiment that was registered last, in the order in which the experiments

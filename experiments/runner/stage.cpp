@@ -4,24 +4,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "core/diagnostics.hpp"
 #include "core/drive.hpp"
 #include "core/filling.hpp"
 #include "core/machine.hpp"
+#include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/cost.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/host.hpp"
+#include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/stop.hpp"
 #include "protocols/cyclic_shear.hpp"
 #include "protocols/settle.hpp"
 #include "protocols/stiffen.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
+#include "provenance/io/clock.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
+
+// --- A stage, made from its record and ready to be stepped ---
 
 Scene make_scene(const StageInputs& stage) {
   switch (stage.stage) {
@@ -80,14 +91,52 @@ double overlap_limit(const Store& store, const Stage& run, double otherwise) {
   return limit;
 }
 
-// Where the stage itself begins.
-Beginning begin_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage) {
+/// The scene and the protocol of a stage.
+struct ReadyStage {
+  Stage run;
+  StageInputs stage;
+  Scene scene;
+  std::unique_ptr<Protocol> protocol;
+};
+
+/// The watchdog's overlap limit is the largest that a manifest of the run states.
+ReadyStage ready_stage(const Store& store, Stage run) {
+  if (stage_key(run.resolved) != run.id) {
+    throw StoreDamaged("run " + run.id.substr(0, 12) +
+                       ": its recorded parameters are not those that it is named after");
+  }
+  StageInputs stage = read_stage(run.resolved);
+  double& limit = stage.parameters.max_overlap_diameters;
+  limit = overlap_limit(store, run, limit);
+  require_memory(stage);
+  const Scene scene = make_scene(stage);
+  auto protocol = make_protocol(stage, run);
+  return {std::move(run), std::move(stage), scene, std::move(protocol)};
+}
+
+/// The state from which a stage is stepped on.
+struct Beginning {
+  Cell cell;
+  State state;
+  std::optional<CheckpointRecord> from = {};  ///< checkpoint of this stage that it continues
+  std::string parent_checkpoint = {};         ///< that the stage begins from, or ""
+};
+
+/// The newest valid checkpoint before a step. Without one, the beginning of the stage. Throws
+/// Interrupted when a stop is requested during the filling. `damage` as in
+/// Store::newest_valid_checkpoint.
+Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
+                       std::uint64_t before_step = UINT64_MAX) {
   const Stage& run = plan.run;
+  if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
+    return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
+            std::move(newest->record)};
+  }
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.stage.parameters);
     Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
     State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
-    return {std::move(cell), std::move(state), std::nullopt, ""};
+    return {std::move(cell), std::move(state)};
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
@@ -106,31 +155,7 @@ Beginning begin_stage(Store& store, const ReadyStage& plan, std::vector<std::str
           parent->record.sha256};
 }
 
-}  // namespace
-
-ReadyStage ready_stage(const Store& store, Stage run) {
-  if (stage_key(run.resolved) != run.id) {
-    throw StoreDamaged("run " + run.id.substr(0, 12) +
-                       ": its recorded parameters are not those that it is named after");
-  }
-  StageInputs stage = read_stage(run.resolved);
-  double& limit = stage.parameters.max_overlap_diameters;
-  limit = overlap_limit(store, run, limit);
-  require_memory(stage);
-  const Scene scene = make_scene(stage);
-  auto protocol = make_protocol(stage, run);
-  return {std::move(run), std::move(stage), scene, std::move(protocol)};
-}
-
-Beginning continue_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
-                         std::uint64_t before_step) {
-  if (auto newest = store.newest_valid_checkpoint(plan.run.id, damage, before_step)) {
-    return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
-            std::move(newest->record), ""};
-  }
-  return begin_stage(store, plan, damage);
-}
-
+/// Takes ownership of the beginning's cell and state.
 Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
   SimulationSettings settings;
   settings.threads = threads;
@@ -138,16 +163,7 @@ Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::s
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
 }
 
-// At 50 million particle-steps/s.
-std::uint64_t chunk_steps(std::size_t grains) {
-  return std::max<std::uint64_t>(1, 2'500'000 / std::max<std::size_t>(1, grains));
-}
-
-Checkpoint make_checkpoint(const ReadyStage& plan, const Simulation& simulation, double cycle) {
-  simulation.check_recordable();
-  return make_checkpoint(plan, simulation.cell(), simulation.scene(), simulation.state(), cycle);
-}
-
+/// The checkpoint of a state on which `scene` acts now; it depends on the state alone.
 Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
@@ -173,6 +189,548 @@ Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene
     checkpoint.observables["force_residual_P_d2"] = force_residual(cell, scene, state);
   }
   return checkpoint;
+}
+
+// --- Engines: our own simulation in this process, or LAMMPS in another ---
+
+/// Steps between two checks for signals and leases: about 50 ms at 50 million particle-steps/s.
+std::uint64_t chunk_steps(std::size_t grains) {
+  return std::max<std::uint64_t>(1, 2'500'000 / std::max<std::size_t>(1, grains));
+}
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  /// Advances for about 50 ms and returns its progress, as Protocol::advance does. Throws
+  /// NumericalFailure, and ProgramError when another program failed.
+  virtual StageProgress advance() = 0;
+
+  /// Stops before the end of the stage. No checkpoint is due if another program did not answer:
+  /// then there is no state beyond the last recorded one.
+  virtual StageProgress halt() = 0;
+
+  /// The checkpoint of the newest state (of LAMMPS: its last frame). Throws NumericalFailure.
+  virtual Checkpoint checkpoint(double cycle) const = 0;
+
+  virtual std::uint64_t step() const = 0;         ///< present step
+  virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
+};
+
+class OwnEngine final : public Engine {
+ public:
+  OwnEngine(const ReadyStage& plan, Beginning&& beginning, std::size_t threads)
+      : plan_(plan), simulation_(make_simulation(plan, std::move(beginning), threads)) {}
+
+  StageProgress advance() override { return advance_by(UINT64_MAX); }
+  StageProgress advance_by(std::uint64_t most) {
+    const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
+    return progress_ = plan_.protocol->advance(simulation_, steps);
+  }
+  StageProgress halt() override {
+    progress_.checkpoint_due = true;
+    return progress_;
+  }
+  Checkpoint checkpoint(double cycle) const override {
+    simulation_.check_recordable();
+    return make_checkpoint(plan_, simulation_.cell(), simulation_.scene(), simulation_.state(),
+                           cycle);
+  }
+  std::uint64_t step() const override { return simulation_.step(); }
+  std::uint64_t evaluations() const override { return simulation_.evaluations(); }
+
+ private:
+  const ReadyStage& plan_;
+  Simulation simulation_;
+  StageProgress progress_;
+};
+
+/// Advances to a step; stays before it where the stage ends earlier. Calls between(progress)
+/// about every 50 ms.
+StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
+  StageProgress progress;  // of the beginning of a stage, where nothing is stepped
+  while (engine.step() < step && !progress.finished) {
+    progress = engine.advance_by(step - engine.step());
+    if (engine.step() < step) between(progress);
+  }
+  return progress;
+}
+
+// Time for LAMMPS to write a frame and end. It checks for a stop every half second; batch systems
+// kill half a minute after their first signal.
+constexpr std::chrono::seconds kPatience{10};
+
+class LammpsEngine final : public Engine {
+ public:
+  LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
+               const LammpsProgram& program)
+      : plan_(plan),
+        stride_(checkpoint_cadence(plan.run.asks) * cycle_steps(plan.protocol->drive())),
+        cell_(std::move(beginning.cell)),
+        state_(std::move(beginning.state)),
+        first_(state_.step),
+        step_(first_) {
+    const std::uint64_t end = plan.protocol->last_step();
+    if (first_ >= end) return;
+    const LammpsTask task{.cell = cell_,
+                          .scene = plan.scene,
+                          .drive = plan.protocol->drive(),
+                          .state = state_,
+                          .end = end,
+                          .stride = stride_,
+                          .check_every = lammps_check_steps(plan.run.grains, parallel.ranks)};
+    run_.emplace(program, task, parallel.ranks);
+  }
+
+  StageProgress advance() override {
+    constexpr std::chrono::milliseconds patience{50};
+    const bool moved = run_ && take(run_->next_frame(patience));
+    if (run_ && !moved) step_ = run_->step();
+    return progress(moved);
+  }
+
+  StageProgress halt() override {
+    run_->ask_to_stop();
+    const bool answered = take(run_->next_frame(kPatience));
+    StageProgress halted = progress(answered);
+    halted.checkpoint_due = answered;
+    return halted;
+  }
+
+  Checkpoint checkpoint(double cycle) const override {
+    return make_checkpoint(plan_, cell_, plan_.scene, state_, cycle);
+  }
+  std::uint64_t step() const override { return step_; }
+  std::uint64_t evaluations() const override { return step_ - first_; }
+
+ private:
+  // The watchdog checks the frame after a step of our own engine from it.
+  bool take(std::optional<State> frame) {
+    if (!frame) return false;
+    state_ = std::move(*frame);
+    Simulation watched = make_simulation(plan_, {cell_, state_}, 1);
+    watched.advance(plan_.protocol->drive(), 1);
+    watched.check();
+    step_ = state_.step;
+    return true;
+  }
+
+  StageProgress progress(bool at_frame) const {
+    StageProgress progress;
+    const auto per_cycle = static_cast<double>(cycle_steps(plan_.protocol->drive()));
+    progress.cycle = static_cast<double>(step_) / per_cycle;
+    progress.finished = state_.step >= plan_.protocol->last_step();
+    progress.checkpoint_due = progress.finished || (at_frame && step_ % stride_ == 0);
+    return progress;
+  }
+
+  const ReadyStage& plan_;
+  std::uint64_t stride_;
+  Cell cell_;
+  State state_;  ///< of the last frame
+  std::uint64_t first_;
+  std::uint64_t step_;  ///< where LAMMPS is
+  std::optional<LammpsRun> run_;
+};
+
+// --- Computing ---
+
+// One attempt to compute a stage.
+class StageAttempt {
+ public:
+  StageAttempt(Store& store, Stage run, const StageOptions& options)
+      : store_(store), options_(options), plan_(ready_stage(store, std::move(run))) {}
+
+  StageOutcome run() {
+    std::vector<std::string> damage;
+    Beginning beginning = beginning_of(store_, plan_, &damage);
+    for (const std::string& what : damage) {
+      if (options_.damaged) options_.damaged(what);
+    }
+    const bool fresh = !beginning.from;
+    nlohmann::json facts = host_facts();
+    std::optional<LammpsProgram> lammps;
+    if (plan_.stage.parameters.engine == EngineKind::lammps) {
+      lammps = find_lammps(options_.parallel.ranks);
+      facts["engine"] = {{"name", "LAMMPS"},
+                         {"version", lammps->version},
+                         {"program", lammps->path},
+                         {"processes", options_.parallel.ranks}};
+    }
+    return attempt(beginning, facts, false, [&] {
+      seen_ = seen_checkpoints(store_, id());
+      if (ends_early()) return StageOutcome::completed;
+      std::unique_ptr<Engine> engine;
+      if (lammps) {
+        engine =
+            std::make_unique<LammpsEngine>(plan_, std::move(beginning), options_.parallel, *lammps);
+      } else {
+        engine =
+            std::make_unique<OwnEngine>(plan_, std::move(beginning), options_.parallel.threads);
+      }
+      first_step_ = engine->step();
+      // The settled packing is cycle 0 of what follows.
+      if (fresh && plan_.stage.stage != StageKind::prepare) record(*engine, 0);
+      if (ends_early()) return StageOutcome::completed;
+      return advance(*engine);
+    });
+  }
+
+  // Records the checkpoints at these steps of a completed run, which lacks them.
+  StageOutcome fill(const std::vector<std::uint64_t>& steps) {
+    Beginning beginning = beginning_of(store_, plan_, nullptr, steps.front());
+    const nlohmann::json& ends = plan_.run.ends;
+    nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
+    if (ended.is_null()) ended = {{"by", "cycles"}};
+    // The stage is completed for all that were declared since.
+    if (ended.contains("memberships")) ended["memberships"] = plan_.run.asks.size();
+    return attempt(beginning, host_facts(), true, [&] {
+      OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
+      first_step_ = engine.step();
+      for (const std::uint64_t step : steps) {
+        const auto pause = [&](const StageProgress& progress) {
+          give_up_if_requested();
+          must_hold();
+          report(engine, progress.cycle);
+        };
+        const StageProgress there = advance_to(engine, step, pause);
+        record(engine, there.cycle);
+        pause(there);
+      }
+      complete(ended);
+      return StageOutcome::completed;
+    });
+  }
+
+  /// Whether a checkpoint was recorded.
+  bool computed() const { return computed_; }
+
+ private:
+  // Records the start, computes, and records the end.
+  StageOutcome attempt(const Beginning& beginning, const nlohmann::json& facts, bool filling,
+                       const std::function<StageOutcome()>& compute) {
+    const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
+    bool started = false;
+    try {
+      store_.start_stage(id(), facts, from, beginning.parent_checkpoint, filling);
+      started = true;
+      if (options_.begun) options_.begun();
+      return compute();
+    } catch (const ConcurrencyConflict& conflict) {
+      if (started) release(conflict);
+      throw;
+    } catch (const Interrupted&) {
+      return interrupted();
+    } catch (const ProgramError& error) {
+      store_.fail_stage(id(), error.what(), nlohmann::json::object());
+      return StageOutcome::failed;
+    } catch (const NumericalFailure& failure) {
+      store_.fail_stage(id(), failure.what(),
+                        {{"quantity", failure.quantity},
+                         {"value", failure.value},
+                         {"limit", failure.limit},
+                         {"grain", failure.grain},
+                         {"step", failure.step}});
+      return StageOutcome::failed;
+    } catch (const std::exception& failure) {
+      // The disk, the memory or the store. A failed sync may leave even the start recorded.
+      release(failure);
+      throw;
+    }
+  }
+
+  // Lets other programs continue the run.
+  void release(const std::exception& failure) {
+    try {
+      store_.interrupt_stage(id(), failure.what());
+    } catch (const std::exception&) {
+      // For the same reason; then the run's lease expires.
+    }
+  }
+
+  StageOutcome advance(Engine& engine) {
+    for (;;) {
+      StageProgress progress = engine.advance();
+      const bool stop = !progress.finished && stop_requested();
+      if (stop && !progress.checkpoint_due) progress = engine.halt();
+      if (progress.checkpoint_due) record(engine, progress.cycle);
+      if (progress.finished) {
+        complete({{"by", plan_.stage.stage == StageKind::prepare ? "settled" : "cycles"}});
+        return StageOutcome::completed;
+      }
+      // `until` is checked at whole cycles only.
+      const bool whole = progress.cycle == std::floor(progress.cycle);
+      if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
+      if (stop) return interrupted();
+      must_hold();
+      report(engine, progress.cycle);
+    }
+  }
+
+  void must_hold() const {
+    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
+  }
+
+  StageOutcome interrupted() {
+    store_.interrupt_stage(id(), "stopped by a signal");
+    return StageOutcome::interrupted;
+  }
+
+  // Completes the stage when what is recorded is all that the experiments ask for, those included
+  // that declared it meanwhile.
+  bool ends_early() {
+    const Stage now = store_.stage(id());
+    if (seen_.empty() || std::ranges::none_of(now.asks, has_until)) return false;
+    const nlohmann::json ended = decide(store_, now, now.asks, seen_, {}).ended;
+    recorded_.restart();  // measuring is not computing
+    if (!ended.is_null()) complete(ended);
+    return !ended.is_null();
+  }
+
+  void complete(const nlohmann::json& ended) {
+    store_.complete_stage(id(), {{"ended", ended}}, plan_.run.target_cycles);
+  }
+
+  const std::string& id() const { return plan_.run.id; }
+
+  void record(const Engine& engine, double cycle) {
+    const Checkpoint checkpoint = engine.checkpoint(cycle);
+    const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
+    const CheckpointRecord recorded = store_.record_checkpoint(
+        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
+    computed_ = true;
+    seen_.push_back({recorded});
+    recorded_.restart();
+    recorded_evaluations_ = engine.evaluations();
+  }
+
+  void report(const Engine& engine, double cycle) {
+    const double since = reported_.seconds();
+    if (!options_.report || since < 0.2) return;
+    StageStatus status;
+    status.cycle = cycle;
+    status.target_cycles =
+        plan_.stage.stage != StageKind::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
+    status.steps_per_second =
+        static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
+    status.grains = plan_.run.grains;
+    status.step = engine.step();
+    const std::uint64_t end = plan_.protocol->last_step();
+    const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
+    status.seconds_left =
+        end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;
+    options_.report(status);
+    reported_.restart();
+    reported_evaluations_ = engine.evaluations();
+  }
+
+  Store& store_;
+  const StageOptions& options_;
+  ReadyStage plan_;
+  std::vector<SeenCheckpoint> seen_;
+  bool computed_ = false;
+  std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
+  Stopwatch started_, recorded_, reported_;
+};
+
+// If it is not, run_stage reports what is wrong with it.
+bool newest_is_sound(const Store& store, const Stage& run) {
+  const auto recorded = store.checkpoints(run.id);
+  return !recorded.empty() && store.load_if_readable(recorded.back());
+}
+
+// --- Computing again ---
+
+// Integers in the order of the reals: neighbouring doubles differ by 1, and so do -0 and +0.
+std::int64_t ordered_bits(double x) {
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
+}
+
+std::uint64_t ulp_distance(double a, double b) {
+  const std::int64_t x = ordered_bits(a), y = ordered_bits(b);
+  return x > y ? static_cast<std::uint64_t>(x) - static_cast<std::uint64_t>(y)
+               : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
+}
+
+void compare(const char* field, double a, double b, Divergence& worst, Eigen::Index grain = -1) {
+  const std::uint64_t ulp = ulp_distance(a, b);
+  if (ulp <= worst.ulp) return;
+  worst.field = field;
+  worst.grain = grain;
+  worst.ulp = ulp;
+}
+
+void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b,
+             Divergence& worst) {
+  if (a.cols() != b.cols()) return;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) compare(field, a(k, i), b(k, i), worst, i);
+  }
+}
+
+class Replaying {
+ public:
+  Replaying(Store& store, const CheckpointRecord& record)
+      : store_(store), plan_(ready_stage(store, store.stage(record.run))) {
+    replay_.record = record;
+  }
+
+  /// The state at the record's step; nothing when that was not reached.
+  std::optional<Checkpoint> compute(std::size_t threads) {
+    const CheckpointRecord& record = replay_.record;
+    try {
+      Beginning beginning = beginning_of(store_, plan_, nullptr, record.step);
+      replay_.from = beginning.from;
+      OwnEngine engine(plan_, std::move(beginning), threads);
+      first_ = engine.step();
+      const StageProgress progress = advance_to(engine, record.step, [&](const StageProgress&) {
+        replay_.steps = engine.step() - first_;
+        give_up_if_requested();
+      });
+      replay_.steps = engine.step() - first_;
+      if (engine.step() == record.step) return engine.checkpoint(progress.cycle);
+      diverge(engine.step(), fmt::format("the stage ended at step {} already", engine.step()));
+    } catch (const Interrupted&) {
+      replay_.interrupted = true;
+    } catch (const NumericalFailure& failure) {
+      diverge(failure.step, failure.what());
+    }
+    return std::nullopt;
+  }
+
+  void compare_with(const Checkpoint& found) {
+    const CheckpointRecord& record = replay_.record;
+    const std::string hash = state_hash(found);
+    if (hash == record.state_hash) return compare_numbers(found);
+    diverge(record.step, fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
+    Divergence& worst = *replay_.divergence;
+    if (const auto recorded = store_.load_if_readable(record)) {
+      const State& a = recorded->state;
+      const State& b = found.state;
+      compare("position", a.position, b.position, worst);
+      compare("velocity", a.velocity, b.velocity, worst);
+      compare("wall_height", a.wall_height, b.wall_height, worst);
+      compare("wall_velocity", a.wall_velocity, b.wall_velocity, worst);
+    }
+  }
+
+  // Compares the numbers that the log and the file have beside the state.
+  void compare_numbers(const Checkpoint& found) {
+    const auto require = [this](const std::string& field, double computed, double recorded) {
+      if (computed == recorded || replay_.divergence) return;
+      diverge(replay_.record.step, fmt::format("{} {} instead of {}", field, computed, recorded),
+              field);
+      compare(field.c_str(), computed, recorded, *replay_.divergence);
+    };
+    const CheckpointRecord& record = replay_.record;
+    require("cycle", found.cycle, record.cycle);
+    require("time_s", found.time_s, record.time_s);
+    // Versions before this one may have recorded fewer observables.
+    for (const auto& [name, value] : record.observables) {
+      const auto again = found.observables.find(name);
+      require(name, again == found.observables.end() ? std::nan("") : again->second, value);
+    }
+    if (const auto recorded = store_.load_if_readable(record)) {
+      require("theta", found.theta, recorded->theta);
+    }
+  }
+
+  void diverge(std::uint64_t step, const std::string& message, const std::string& field = "") {
+    replay_.divergence = Divergence{first_, step, field, -1, 0, message};
+  }
+
+  void record_outcome() {
+    const CheckpointRecord& record = replay_.record;
+    nlohmann::json facts = {{"sha256", record.sha256}, {"step", record.step},
+                            {"cycle", record.cycle},   {"state_hash", record.state_hash},
+                            {"from", nullptr},         {"steps", replay_.steps},
+                            {"host", host_facts()}};
+    if (replay_.from) {
+      facts["from"] = {{"sha256", replay_.from->sha256}, {"step", replay_.from->step}};
+    }
+    if (replay_.divergence) facts.update(to_json(*replay_.divergence));
+    store_.record_replay(record.run, !replay_.divergence, facts);
+  }
+
+  Replay& result() { return replay_; }
+
+ private:
+  Store& store_;
+  ReadyStage plan_;
+  Replay replay_;
+  std::uint64_t first_ = 0;
+};
+
+/// `restore`: also writes the file.
+Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads, bool restore) {
+  Replaying replaying(store, record);
+  const auto found = replaying.compute(threads);
+  if (found) replaying.compare_with(*found);
+  Replay& result = replaying.result();
+  if (restore && found && !result.divergence) {
+    try {
+      store.restore_checkpoint(record, *found);
+    } catch (const StoreDamaged& other_bytes) {
+      replaying.diverge(record.step, other_bytes.what(), "file");
+    }
+  }
+  if (restore ? result.divergence.has_value() : !result.interrupted) replaying.record_outcome();
+  return std::move(result);
+}
+
+}  // namespace
+
+StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
+  try {
+    Stage run = store.stage(id);
+    bool computed = false;
+    if (run.state != StageState::completed || !newest_is_sound(store, run)) {
+      StageAttempt attempt(store, std::move(run), options);
+      const StageOutcome outcome = attempt.run();
+      run = store.stage(id);
+      if (outcome != StageOutcome::completed || run.state != StageState::completed) return outcome;
+      computed = attempt.computed();
+    }
+    // A denser cadence may have been asked for.
+    const std::vector<std::uint64_t> missing =
+        outlook(run, run.asks, seen_checkpoints(store, id)).missing;
+    if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
+    return computed ? StageOutcome::completed : StageOutcome::already;
+  } catch (const RunHeld&) {
+    return StageOutcome::held;
+  } catch (const Interrupted&) {
+    return StageOutcome::interrupted;  // before an attempt was recorded
+  } catch (const ConcurrencyConflict&) {
+    return StageOutcome::lost;
+  }
+}
+
+bool is_done(const Store& store, const Stage& stage) {
+  return outlook(stage, stage.asks, seen_checkpoints(store, stage.id)).done &&
+         newest_is_sound(store, stage);
+}
+
+nlohmann::json to_json(const Divergence& divergence) {
+  return {{"last_same_step", divergence.same_step},
+          {"first_step", divergence.first_step},
+          {"field", divergence.field},
+          {"grain", divergence.grain},
+          {"ulp", divergence.ulp},
+          {"why", divergence.message}};
+}
+
+std::optional<std::string> why_not_again(const Stage& run) {
+  if (engine_of(run.resolved) == EngineKind::shearcell) return std::nullopt;
+  return "LAMMPS made it, whose runs are not repeated bit for bit";
+}
+
+Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {
+  return replay(store, record, threads, false);
+}
+
+Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads) {
+  return replay(store, record, threads, true);
 }
 
 }  // namespace shearcell

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stage of a run, made from its record and ready to be stepped. A first computation, a
-// continuation and a replay all use it.
+// Computes one stage from its record in the store and records the result; or computes a recorded
+// state again, to prove it or to restore its file.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "core/simulation.hpp"
-#include "experiments/manifest/identity.hpp"
-#include "protocols/protocol.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -22,46 +20,73 @@ struct Parallel {
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
-/// The scene and the protocol of a stage.
-struct ReadyStage {
-  Stage run;
-  StageInputs stage;
-  Scene scene;
-  std::unique_ptr<Protocol> protocol;
+/// How a stage ended in this process. `already`: it was completed and nothing was left to compute.
+/// `held`: another program holds it; nothing was started. `lost`: another program took its lease,
+/// completed it or recorded a later state meanwhile.
+enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
+
+/// The progress of a running stage.
+struct StageStatus {
+  double cycle = 0;
+  double target_cycles = 0;  ///< 0 for a stage without cycles
+  double steps_per_second = 0;
+  std::size_t grains = 0;
+  std::uint64_t step = 0;
+  double seconds_left = 0;  ///< negative when it is not known
 };
 
-/// The watchdog's overlap limit is the largest that a manifest of the run states. Throws
-/// StoreDamaged when the recorded parameters do not give the run's id.
-ReadyStage ready_stage(const Store& store, Stage run);
-
-/// The state from which a stage is stepped on.
-struct Beginning {
-  Cell cell;
-  State state;
-  std::optional<CheckpointRecord> from;  ///< checkpoint of this stage that it continues
-  std::string parent_checkpoint;         ///< that the stage begins from, or ""
+struct StageOptions {
+  Parallel parallel = {};
+  std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
+  std::function<void()> begun;                      ///< called when an attempt has been recorded
+  std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 
-/// The newest valid checkpoint before a step. Without one, the beginning of the stage: the state at
-/// which its parent was completed, or a fresh filling. Throws StoreDamaged when the parent's state
-/// cannot be read or the parent is not completed, and Interrupted when a stop is requested during
-/// the filling.
-/// `damage` as in Store::newest_valid_checkpoint.
-Beginning continue_stage(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
-                         std::uint64_t before_step = UINT64_MAX);
+/// Computes the stage `id` until its target, then the checkpoints that it lacks. Starts from its
+/// newest valid checkpoint; without one, from the state at which its parent was completed, or a
+/// fresh filling. Between chunks of steps of about 50 ms it checks stop_requested() and whether the
+/// store still holds the run. Throws StoreDamaged when the parent is not completed or its last
+/// state cannot be read, or the recorded parameters do not give the id; GeometryError for a cell
+/// that cannot be filled; TooLittleMemory; and ProgramError when the stage's engine is not
+/// installed, all before an attempt is recorded. A stage that is interrupted while its cell is
+/// filled records nothing.
+StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Takes ownership of the beginning's cell and state.
-Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads);
+/// Whether the stage is done and its last state can be read.
+bool is_done(const Store& store, const Stage& stage);
 
-/// Steps between two checks for signals and leases: about 50 ms of work.
-std::uint64_t chunk_steps(std::size_t grains);
+/// Where a recomputed state differs from the recorded one.
+struct Divergence {
+  std::uint64_t same_step = 0;   ///< last step known to be the same: where the replay began
+  std::uint64_t first_step = 0;  ///< first step known to differ
+  /// "position", "velocity", "wall_height", "wall_velocity"; if the states are equal: "cycle",
+  /// "time_s", "theta" or the name of an observable; if these are equal too: "file"; "" if unknown.
+  std::string field;
+  std::int64_t grain = -1;
+  std::uint64_t ulp = 0;  ///< largest distance in the field [units in the last place]
+  std::string message;
+};
 
-/// The checkpoint of the present state; it depends on the state alone. Throws NumericalFailure for
-/// an invalid state.
-Checkpoint make_checkpoint(const ReadyStage& plan, const Simulation& simulation, double cycle);
+nlohmann::json to_json(const Divergence& divergence);
 
-/// The same for a state that another engine computed; `scene` acts on it now.
-Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
-                           const State& state, double cycle);
+struct Replay {
+  CheckpointRecord record;
+  std::optional<CheckpointRecord> from;  ///< nothing: from the beginning of the stage
+  std::uint64_t steps = 0;               ///< number of recomputed steps
+  std::optional<Divergence> divergence;
+  bool interrupted = false;  ///< by a signal; there is no result and nothing was recorded
+};
+
+/// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
+std::optional<std::string> why_not_again(const Stage& run);
+
+/// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
+/// the record's step, compares the state and all that is recorded with it (cycle, time, tilt,
+/// observables), and records ReplayVerified or ReplayDiverged.
+Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
+
+/// The same; also writes the file, so that a pruned, missing or damaged checkpoint is restored with
+/// the same SHA-256. If the bytes differ, ReplayDiverged is recorded and no file is written.
+Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

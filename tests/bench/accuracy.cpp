@@ -13,8 +13,8 @@
 #include "analysis/plot.hpp"
 #include "analysis/statistics.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "tests/bench/closed_forms.hpp"
+#include "tests/support/run_lammps.hpp"
 
 namespace shearcell::test {
 namespace {

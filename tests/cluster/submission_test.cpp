@@ -9,8 +9,7 @@
 #include <map>
 
 #include "experiments/cluster/submission.hpp"
-#include "experiments/runner/cost.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/variable.hpp"

@@ -10,9 +10,9 @@
 
 #include "analysis/statistics.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
 #include "provenance/io/clock.hpp"
 #include "tests/support/packing.hpp"
+#include "tests/support/run_lammps.hpp"
 #include "tests/support/text.hpp"
 
 namespace shearcell::test {

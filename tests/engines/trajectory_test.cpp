@@ -8,7 +8,7 @@
 
 #include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/lammps/lammps_run.hpp"
+#include "tests/support/run_lammps.hpp"
 
 namespace shearcell::test {
 namespace {

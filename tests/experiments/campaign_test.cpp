@@ -8,7 +8,7 @@
 #include <set>
 
 #include "experiments/manifest/identity.hpp"
-#include "experiments/runner/look.hpp"
+#include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -142,8 +142,7 @@ TEST_F(CampaignTest, ResumesARequestedRunWithItsPacking) {
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].id, wanted.parent);
   EXPECT_EQ(jobs[1].id, wanted.id);
-  Progress progress(jobs.size(), true);
-  EXPECT_EQ(run_campaign(store_, jobs, 1, progress).completed, 2U);
+  EXPECT_EQ(run_campaign(store_, jobs, 1, {}, true).completed, 2U);
   EXPECT_EQ(store_.stage(wanted.id).state, StageState::completed);
   EXPECT_EQ(store_.stage(all[1].id).state, StageState::declared);
 

@@ -171,7 +171,7 @@ TEST_F(Commands, NamesIncludeValuesThatARecordLeavesOut) {
   EXPECT_EQ(status.find("pressure_at"), status.npos) << status;
   write("lighter.yaml", swept("moving_wall: [bottom], pressure_at: [moving_wall]"));
   expect(0, {"run", "lighter.yaml", "--cycles", "0", "-q"});
-  expect(0, {"show", last_run()}, {"\npressure_at                      \"moving_wall\"\n"});
+  expect(0, {"show", last_run()}, {"\npressure_at                  \"moving_wall\"\n"});
   write("draws.yaml", renamed(swept("wall_grain_draw: [0, 1]"), "draws"));
   expect(0, {"run", "draws.yaml", "--cycles", "0", "-q"});
   expect(0, {"status"}, {"packing wall_grain_draw=0 ", "packing wall_grain_draw=1 "});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cost of a campaign by `plan`, compared with its real cost.
-#include "experiments/runner/cost.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/cost.hpp"
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/outlook.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
@@ -180,8 +180,7 @@ TEST_F(Failure, OfAPackingFileIsRepairedToTheSameState) {
   for (const CheckpointRecord& record : store_.checkpoints(jobs[0].id)) {
     std::filesystem::remove(file_of(record));
   }
-  Progress progress(jobs.size(), true);
-  const CampaignResult result = run_campaign(store_, jobs, 2, progress);
+  const CampaignResult result = run_campaign(store_, jobs, 2, {}, true);
   EXPECT_EQ(result.damaged, 1U);
   EXPECT_EQ(result.completed, 2U);
   EXPECT_EQ(final_hashes(store_), undisturbed(tiny_manifest()));

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 

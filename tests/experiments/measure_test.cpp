@@ -11,7 +11,7 @@
 #include "analysis/error.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/runner/audit.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/sqlite.hpp"

@@ -9,7 +9,7 @@
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"

@@ -9,9 +9,8 @@
 
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/run_table.hpp"
-#include "experiments/runner/cost.hpp"
-#include "experiments/runner/look.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/outlook.hpp"
+#include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
@@ -183,7 +182,7 @@ TEST_F(Phases, OfAForgedRecordAreRejected) {
   forged.asks[0].checkpoint_phases.assign(1001, 0.5);
   plain_.declare_stage(forged);
   EXPECT_THROW(is_done(plain_, plain_.stage(run.id)), StoreDamaged);
-  EXPECT_THROW(ready_stage(plain_, plain_.stage(run.id)), StoreDamaged);
+  EXPECT_THROW(verify_by_replay(plain_, plain_.checkpoints(run.id).back()), StoreDamaged);
 }
 
 // The area of the loop of the interior stress is not the work of the walls, as the layers at the

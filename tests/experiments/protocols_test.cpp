@@ -8,8 +8,7 @@
 
 #include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
-#include "experiments/runner/replay.hpp"
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "protocols/rest.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every recorded state can be recomputed to the last bit from any state before it. States that
 // cannot be recomputed are distinguished from changed ones.
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/audit.hpp"
+#include "experiments/runner/stage.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@
 
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/campaign.hpp"
-#include "experiments/runner/stage_runner.hpp"
+#include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/store.hpp"
 #include "tests/support/files.hpp"
@@ -65,14 +65,12 @@ inline std::vector<StageJob> declared(Store& store, const std::string& text,
 inline CampaignResult compute(Store& store, const std::string& text,
                               const ExpandOptions& options = {}, std::size_t workers = 2) {
   const std::vector<StageJob> jobs = declared(store, text, options);
-  Progress progress(jobs.size(), true);
-  return run_campaign(store, jobs, workers, progress);
+  return run_campaign(store, jobs, workers, {}, true);
 }
 
 inline CampaignResult resume(Store& store, std::size_t workers = 2) {
   const std::vector<StageJob> jobs = stages_to_resume(store, {});
-  Progress progress(jobs.size(), true);
-  return run_campaign(store, jobs, workers, progress);
+  return run_campaign(store, jobs, workers, {}, true);
 }
 
 /// Run id -> hash of its last state.

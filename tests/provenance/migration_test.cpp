@@ -130,6 +130,29 @@ TEST_F(MigrationTest, AnInterruptedMigrationKeepsTheOldVersion) {
   EXPECT_EQ(version(), kSchemaVersion);
 }
 
+// Whatever stands in the derived tables, they are derived again. Nothing else may be there.
+TEST_F(MigrationTest, OldDerivedTablesAreNotRead) {
+  using Pair = std::pair<std::string, std::string>;
+  for (const auto& [other, rest] :
+       {Pair{"TRIGGER t", " AFTER INSERT ON events BEGIN DELETE FROM runs; END"},
+        {"TABLE t", "(a)"},
+        {"VIEW manifests", " AS SELECT 1"}}) {
+    execute("CREATE " + other + rest);
+    for (const Access access : {Access::read, Access::write}) {
+      EXPECT_THROW(Store(path_, access), StoreDamaged) << other;
+    }
+    execute("DROP " + other);
+  }
+  execute(
+      "DROP TABLE figures; CREATE TABLE figures(x INTEGER CHECK (x IS NOT randomblob(1)), y AS (2 "
+      "* "
+      "x) STORED); INSERT INTO figures(x) VALUES (1); CREATE TABLE newest(a)");
+  EXPECT_EQ(version(), 1);
+  expect_what_was_stored(Store(path_, Access::read));
+  expect_what_was_stored(Store(path_, Access::write));
+  EXPECT_EQ(version(), kSchemaVersion);
+}
+
 TEST_F(MigrationTest, OldEventsAreReadInTheirNewLayout) {
   const Store store(path_, Access::read);
   int started = 0, completed = 0;

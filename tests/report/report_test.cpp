@@ -37,8 +37,8 @@ nlohmann::json data_of(const std::string& html) {
 
 class ReportOf : public StoreTest {
  protected:
-  ReportData collect(const ReportOptions& options = {}) { return collect_report(store_, options); }
-  std::string make(const ReportOptions& options = {}) { return report_page(collect(options)); }
+  Report report(const ReportOptions& options = {}) { return make_report(store_, options); }
+  std::string make(const ReportOptions& options = {}) { return report(options).html; }
 
   static ReportOptions drawings() {
     ReportOptions options;
@@ -66,19 +66,20 @@ TEST_F(ReportOfRuns, HasTheSameBytesTwiceAndAddsNoEvent) {
 TEST_F(ReportOfRuns, HoldsTheSelectedRuns) {
   ReportOptions options;
   options.runs.variants = {"fluid=cell"};
-  const ReportData report = collect(options);
-  EXPECT_EQ(report.experiments.at(0).table.rows.size(), 1U);
-  EXPECT_EQ(report.figures.at(0).summary.runs, 1U);
+  const std::string html = make(options);
+  EXPECT_EQ(count(html, "<tbody data-row="), 1U);
+  EXPECT_TRUE(has(html, "<dt>inputs</dt><dd>1 runs, ")) << "of the first figure";
+  EXPECT_FALSE(has(html, "<dt>inputs</dt><dd>2 runs, "));
   options.runs.experiments = {"tini"};
-  EXPECT_THROW(collect(options), NotFound);
+  EXPECT_THROW(make(options), NotFound);
 }
 
 TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
-  const ReportData report = collect();
-  EXPECT_EQ(report.experiments.size(), 1U);
-  EXPECT_EQ(report.figures.size(), 2U) << "S2, and Table I of all experiments";
+  const Report made = report();
+  EXPECT_EQ(made.experiments, 1U);
+  EXPECT_EQ(made.figures, 2U) << "S2, and Table I of all experiments";
   const Head head = store_.head();
-  const std::string html = report_page(report);
+  const std::string& html = made.html;
   for (const std::string& part :
        {std::string("Does the runner keep its promises?"), std::string("undecided"),
         std::string("fluid=still"), std::string("variant,cycle,phi_mean"), head.hash,
@@ -177,32 +178,31 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
   for (const char* link : {"src=\"http", "href=\"http", "url(http", "@import"}) {
     EXPECT_EQ(count(markup, link), 0U) << link;
   }
-  const ReportData report = collect(drawings());
-  const std::string drawn = report_page(report);
-  EXPECT_FALSE(report.interactive);
+  const Report made = report(drawings());
+  const std::string& drawn = made.html;
+  EXPECT_FALSE(made.interactive);
   EXPECT_EQ(count(drawn, "<script"), 0U);
-  EXPECT_EQ(count(drawn, "<img alt=\"S2"), 2U)
-      << (report.notes.empty() ? "" : report.notes.front());
+  EXPECT_EQ(count(drawn, "<img alt=\"S2"), 2U) << (made.notes.empty() ? "" : made.notes.front());
 }
 
 TEST_F(ReportOfRuns, SaysWhichDrawingsFailed) {
   const TemporaryFolder programs;
   write_script(programs.path() / "gnuplot", "#!/bin/sh\nkill -KILL $$\n");
   const Variable first("PATH", programs.path().string() + ":" + std::getenv("PATH"));
-  const ReportData report = collect(drawings());
-  ASSERT_EQ(report.undrawn.size(), 2U);
-  EXPECT_EQ(*report.undrawn.begin(),
+  const Report made = report(drawings());
+  ASSERT_EQ(made.undrawn.size(), 2U);
+  EXPECT_EQ(*made.undrawn.begin(),
             "figure tiny/S2: gnuplot could not draw S2a.svg: it was ended by signal 9");
-  EXPECT_EQ(count(report_page(report), "No drawing: gnuplot could not draw S2b.svg"), 1U);
-  EXPECT_TRUE(collect().undrawn.empty() || !has_front_end());
+  EXPECT_EQ(count(made.html, "No drawing: gnuplot could not draw S2b.svg"), 1U);
+  EXPECT_TRUE(report().undrawn.empty() || !has_front_end());
 }
 
 TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
   const std::string run = runs_of_kind(store_, "shear").front().id;
   truncate_file(store_.folder() / store_.checkpoints(run).front().file);
-  const ReportData report = collect();
-  ASSERT_EQ(report.damage.size(), 1U);
-  EXPECT_TRUE(has(report_page(report), "Left out: "));
+  const Report made = report();
+  ASSERT_EQ(made.damage.size(), 1U);
+  EXPECT_TRUE(has(made.html, "Left out: "));
 }
 
 TEST_F(ReportOf, NeedsAnExperiment) {

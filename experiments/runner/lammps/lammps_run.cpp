@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
@@ -51,18 +50,6 @@ std::vector<std::string> variables() {
     if (std::getenv(name.c_str()) == nullptr) missing.push_back(name + '=' + value);
   }
   return missing;
-}
-
-std::unique_ptr<ChildProcess> start(const LammpsProgram& program, const fs::path& folder,
-                                    std::size_t ranks) {
-  std::vector<std::string> words = {program.path, "-in",     "deck.in", "-log",
-                                    "log",        "-screen", "none"};
-  if (ranks > 1) words.insert(words.begin(), {"mpirun", "-np", std::to_string(ranks)});
-  const fs::path file = folder / "said";
-  const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (!said.valid()) throw ProgramError("cannot write " + file.string());
-  return std::make_unique<ChildProcess>(
-      Command{words, folder, variables(), said.get(), said.get()});
 }
 
 // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
@@ -119,13 +106,25 @@ std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks) {
   return std::max<std::uint64_t>(1, 3'000'000 * ranks / std::max<std::size_t>(1, grains));
 }
 
+std::unique_ptr<ChildProcess> start_lammps(const LammpsProgram& program, const LammpsTask& task,
+                                           const fs::path& folder, std::size_t ranks) {
+  write_output(folder / "scene.data", lammps_data(task));
+  write_output(folder / "deck.in", lammps_deck(task));
+  std::vector<std::string> words = {program.path, "-in",     "deck.in", "-log",
+                                    "log",        "-screen", "none"};
+  if (ranks > 1) words.insert(words.begin(), {"mpirun", "-np", std::to_string(ranks)});
+  const fs::path file = folder / "said";
+  const Descriptor said(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  if (!said.valid()) throw ProgramError("cannot write " + file.string());
+  return std::make_unique<ChildProcess>(
+      Command{words, folder, variables(), said.get(), said.get()});
+}
+
 LammpsRun::LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks)
     : grains_(static_cast<std::size_t>(task.state.position.cols())),
       ranks_(ranks),
       step_(task.state.step) {
-  write_output(folder_.path() / "scene.data", lammps_data(task));
-  write_output(folder_.path() / "deck.in", lammps_deck(task));
-  process_ = start(program, folder_.path(), ranks);
+  process_ = start_lammps(program, task, folder_.path(), ranks);
 }
 
 std::optional<State> LammpsRun::take_frame() {
@@ -175,23 +174,6 @@ std::uint64_t LammpsRun::step() {
   return step_;
 }
 
-void LammpsRun::finish() {
-  if (const int code = process_->wait(); code != 0) fail(code);
-}
-
-double LammpsRun::loop_seconds() const {
-  // "Loop time of T on P procs for S steps with A atoms", once for each run.
-  const std::string log = read_text(folder_.path() / "log");
-  const std::string_view title = "Loop time of ";
-  double sum = 0;
-  for (auto at = log.find(title); at != log.npos; at = log.find(title, at + 1)) {
-    double seconds = 0;
-    std::from_chars(log.data() + at + title.size(), log.data() + log.size(), seconds);
-    sum += seconds;
-  }
-  return sum;
-}
-
 void LammpsRun::fail(int code) const {
   const std::string log = read_text(folder_.path() / "log");
   const std::string said = read_text(folder_.path() / "said");
@@ -204,13 +186,6 @@ void LammpsRun::fail(int code) const {
   throw ProgramError(fmt::format("LAMMPS{} ended with code {} near step {}: {}",
                                  ranks_ > 1 ? fmt::format(" on {} processes", ranks_) : "", code,
                                  step_, why.empty() ? "no message" : why));
-}
-
-LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks) {
-  LammpsRun run(program, task, ranks);
-  auto frame = run.next_frame(std::chrono::hours(24 * 365));
-  run.finish();
-  return {std::move(*frame), run.loop_seconds(), run.peak_bytes()};
 }
 
 }  // namespace shearcell

@@ -31,10 +31,14 @@ LammpsProgram find_lammps(std::size_t ranks = 1);
 /// about half a second of work.
 std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks);
 
+/// Starts it in `folder`, with `ranks` processes under mpirun when that is more than one. Throws
+/// ProgramError.
+std::unique_ptr<ChildProcess> start_lammps(const LammpsProgram& program, const LammpsTask& task,
+                                           const std::filesystem::path& folder, std::size_t ranks);
+
 class LammpsRun {
  public:
-  /// Starts it, with `ranks` processes under mpirun when that is more than one. Throws
-  /// ProgramError.
+  /// Starts it as start_lammps() does.
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
   /// The next frame; waits for it at most for `patience`. Throws ProgramError with LAMMPS's message
@@ -47,14 +51,6 @@ class LammpsRun {
   /// The newest step in its log.
   std::uint64_t step();
 
-  /// Waits for its end. Throws ProgramError if it failed.
-  void finish();
-
-  /// Wall seconds of its time loop, as it printed them, and memory [bytes] of its largest process;
-  /// after `finish`.
-  double loop_seconds() const;
-  std::size_t peak_bytes() const { return process_->peak_bytes(); }
-
  private:
   std::optional<State> take_frame();
   [[noreturn]] void fail(int code) const;
@@ -65,14 +61,5 @@ class LammpsRun {
   std::uint64_t step_;
   std::unique_ptr<ChildProcess> process_;  // ends before its folder is deleted
 };
-
-struct LammpsResult {
-  State state;             ///< at the end of the task
-  double loop_seconds;     ///< wall time of its time loop
-  std::size_t peak_bytes;  ///< memory of its largest process
-};
-
-/// Runs a task that asks for one frame, its last, and waits for it. Throws ProgramError.
-LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
 }  // namespace shearcell
