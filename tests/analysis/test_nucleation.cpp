@@ -122,10 +122,10 @@ TEST(FigureS7, DecidesCorrectlyForKnownPlaces) {
   const auto near_the_bottom = [](double u) { return u * u; };
   using R = Ruling;
   EXPECT_EQ(rulings(runs_with_places(100, even, near_the_top)),
-            (std::vector{R::agrees, R::agrees}));
+            (std::vector{R::agrees, R::supported}));
   EXPECT_EQ(rulings(runs_with_places(100, in_one_spot, near_the_bottom)),
-            (std::vector{R::differs, R::differs}));
-  EXPECT_EQ(rulings(runs_with_places(100, even, even)), (std::vector{R::agrees, R::differs}))
+            (std::vector{R::differs, R::refuted}));
+  EXPECT_EQ(rulings(runs_with_places(100, even, even)), (std::vector{R::agrees, R::refuted}))
       << "no excess at the top";
   EXPECT_EQ(rulings(runs_with_places(3, even, even)), (std::vector{R::undecided, R::undecided}));
 }
