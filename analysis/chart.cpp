@@ -233,7 +233,7 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
 }
 
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
-  std::string text = title + ".";
+  std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, notes, sources;
   std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show

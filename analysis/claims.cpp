@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analysis/binning.hpp"
-#include "analysis/published.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -156,30 +155,25 @@ Scalar over_cycles(const std::string& name, const std::string& measure, std::int
           fmt::format("cycles {} to {}", first, last), of};
 }
 
-Scalar early_phi() {
-  return over_cycles("phi", "phi", 1, early_cycles);
-}
-
-Scalar percentage_over_phi() {
-  const auto of = [](const FigureRun& run) -> RunValue {
+Scalar over_phi(const std::string& name, const std::string& measure, double low, double high) {
+  const auto of = [=](const FigureRun& run) -> RunValue {
     const FigureRun* one = &run;
-    const std::vector<PhiBin> bins = binned_by_phi(std::span(&one, 1), "crystalline_percent");
+    const std::vector<PhiBin> bins = binned_by_phi(std::span(&one, 1), measure);
     if (bins.empty()) return {0, Missing::too_short};
-    if (*bins.front().phi.mean > window_low) return {0, Missing::too_late};
-    if (*bins.back().phi.mean < window_high) return {0, Missing::too_short};
+    if (*bins.front().phi.mean > low) return {0, Missing::too_late};
+    if (*bins.back().phi.mean < high) return {0, Missing::too_short};
     double area = 0;
     for (std::size_t k = 1; k < bins.size(); ++k) {
       const double x0 = *bins[k - 1].phi.mean, x1 = *bins[k].phi.mean;
-      const double low = std::max(x0, window_low), high = std::min(x1, window_high);
-      if (low >= high) continue;
-      const double middle = ((low + high) / 2 - x0) / (x1 - x0);
-      area += (high - low) * std::lerp(*bins[k - 1].value.mean, *bins[k].value.mean, middle);
+      const double begin = std::max(x0, low), end = std::min(x1, high);
+      if (begin >= end) continue;
+      const double middle = ((begin + end) / 2 - x0) / (x1 - x0);
+      area += (end - begin) * std::lerp(*bins[k - 1].value.mean, *bins[k].value.mean, middle);
     }
-    return measured(area / (window_high - window_low));
+    return measured(area / (high - low));
   };
-  return {
-      fmt::format("percentage crystalline, mean over phi from {} to {}", window_low, window_high),
-      fmt::format("phi from {} to {}", window_low, window_high), of};
+  return {fmt::format("{}, mean over phi from {} to {}", name, low, high),
+          fmt::format("phi from {} to {}", low, high), of};
 }
 
 Scalar of_whole_run(const Measure& measure) {

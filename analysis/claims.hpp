@@ -29,12 +29,9 @@ struct Scalar {
 Scalar over_cycles(const std::string& name, const std::string& measure, std::int64_t first,
                    std::int64_t last);
 
-/// phi, mean over cycles 1 to 15, before most runs crystallize.
-Scalar early_phi();
-
-/// Percentage of crystalline grains, mean over phi from 0.646 to 0.67: the polygon through the
+/// Mean of a measure, called `name` in sentences, over a window of phi: the polygon through the
 /// means of the run's bins of phi (binning.hpp), integrated over that window.
-Scalar percentage_over_phi();
+Scalar over_phi(const std::string& name, const std::string& measure, double low, double high);
 
 /// A measure of the whole run.
 Scalar of_whole_run(const Measure& measure);

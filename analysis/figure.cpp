@@ -9,7 +9,6 @@
 #include <set>
 
 #include "analysis/figures/figures.hpp"
-#include "core/named.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -27,6 +26,18 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
     if (values->is_object() && values->contains(key)) return values->at(key);
   }
   return nullptr;
+}
+
+bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated) {
+  if (!value.is_number() || !stated.is_number()) return value == stated;
+  const auto number = stated.get<double>();
+  return std::abs(value.get<double>() - number) <= 1e-6 * std::abs(number);
+}
+
+bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    return is_as_stated(parameter_of(run, stated.key()), stated.value());
+  });
 }
 
 bool sweeps_engine(const FigureRun& run) {
@@ -105,7 +116,7 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
   return keys_telling_apart(list, std::move(in_order));
 }
 
-std::span<const Figure> all_figures() {
+std::span<const Figure> computed_figures() {
   using enum FigureForm;
   using Names = std::vector<std::string>;
   const auto one = [](const char* name, const char* title, auto* make, FigureForm form,
@@ -115,10 +126,6 @@ std::span<const Figure> all_figures() {
   static const std::vector<Figure> all = {
       one("table1", "Table I beside the parameters of every experiment", figure_table1, table),
       one("S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}),
-      one("S2", "Still fluid and fluid that moves with the cell", figure_s2, curves, {"fluid"}),
-      one("S3", "Time steps", figure_s3, curves, {"steps_per_cycle"}),
-      one("S4", "Moving bottom wall and moving top wall", figure_s4, curves,
-          {"moving_wall", "pressure_at"}),
       one("S5a", "Onset of crystallization against amplitude", figure_s5a, groups,
           {"amplitude_rad"}),
       one("S5b", "Onset of crystallization against system size", figure_s5b, groups, {"grains"}),
@@ -131,17 +138,8 @@ std::span<const Figure> all_figures() {
       one("nucleation", "Runs without an onset, and the rate of nucleation", figure_nucleation,
           groups, {"amplitude_rad", "grains"}),
       one("nucleation_core", "The rate of nucleation at least 4 d from the walls",
-          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"}),
-      one("B5", "Continuous and periodically paused shear", figure_b5, curves, {"protocol"},
-          {"rest"}),
-      one("walls", "Rough and smooth walls", figure_walls, curves, {"walls"}),
-      one("choices", "Mass and drag of the moving wall, and other wall grains", figure_choices,
-          curves, {"wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s", "wall_grain_draw"})};
+          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"})};
   return all;
-}
-
-const Figure* find_figure(std::string_view name) {
-  return find_named(all_figures(), name);
 }
 
 }  // namespace shearcell

@@ -84,6 +84,8 @@ struct Figure {
   /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
   /// other figures are of whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
+  /// The cycles, first to last, of which it needs what is simulated; default: all that it takes.
+  std::optional<std::array<std::uint64_t, 2>> simulated = {};
   /// Whether it uses the run, whose checkpoints are not read yet; empty: it uses all.
   std::function<bool(const FigureRun& run)> uses = {};
 };
@@ -95,6 +97,12 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
 const std::string& packing_of(const FigureRun& run);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
+
+/// Whether a value is as stated. Numbers may differ by a millionth, since a manifest may round
+/// them.
+bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated);
+/// Whether the run has these parameters.
+bool has_parameters(const FigureRun& run, const nlohmann::json& where);
 
 /// Whether its engine is one of its swept values: `run --engine` adds such runs to an experiment.
 bool sweeps_engine(const FigureRun& run);
@@ -120,10 +128,8 @@ void require_told_apart(const std::string& figure, std::span<const FigureRun> ru
 /// together with it.
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first = "");
 
-/// Every figure, in the order of the supplement.
-std::span<const Figure> all_figures();
-
-/// The figure with that name ("S2"), or null.
-const Figure* find_figure(std::string_view name);
+/// The figures with an analysis of their own (analysis/figures/), in the order of the supplement.
+/// Manifests state the others (experiments/manifest/shipped.hpp).
+std::span<const Figure> computed_figures();
 
 }  // namespace shearcell

@@ -70,7 +70,8 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< of a curve
   GrainScale scale = {};                 ///< of a measure of each grain
   RunValue (*of_run)(const FigureRun& run) = nullptr;
-  /// Its name in sentences, of a number of a whole run or of a measure of each grain.
+  /// Its name in sentences; "" for `name`. Numbers of a whole run and measures of each grain have
+  /// one.
   std::string_view words = {};
   std::string_view reach = {};  ///< what a run must reach to have it
   bool waits = false;           ///< the cycle of an event, before which a run may end

@@ -17,13 +17,6 @@
 namespace shearcell {
 namespace {
 
-/// Whether the run has these parameters.
-bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
-  return std::ranges::all_of(where.items(), [&](const auto& stated) {
-    return parameter_of(run, stated.key()) == stated.value();
-  });
-}
-
 std::size_t variants(RunGroup runs) {
   std::set<std::string> distinct;
   for (const FigureRun* run : runs) distinct.insert(run->variant);
@@ -45,12 +38,17 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
 
 /// The compared number. Of an expression: the runs must come from with_values().
 Scalar scalar_of(const ClaimSpec& claim) {
+  const Measure* measure = find_measure(claim.compare);
+  const bool has_words = measure != nullptr && !measure->words.empty();
+  const std::string name = has_words ? std::string(measure->words) : claim.compare;
   Scalar scalar;
   if (const Measure* of_run = find_measure(claim.compare, MeasureKind::run)) {
     scalar = of_whole_run(*of_run);
   } else if (claim.cycles) {
-    scalar = over_cycles(claim.compare, claim.compare, static_cast<std::int64_t>(claim.cycles->at(0)),
+    scalar = over_cycles(name, claim.compare, static_cast<std::int64_t>(claim.cycles->at(0)),
                          static_cast<std::int64_t>(claim.cycles->at(1)));
+  } else if (claim.phi) {
+    scalar = over_phi(name, claim.compare, claim.phi->at(0), claim.phi->at(1));
   } else {
     const auto of = [text = claim.compare](const FigureRun& run) {
       return measured(number_of(run, text));
@@ -64,7 +62,36 @@ Scalar scalar_of(const ClaimSpec& claim) {
 /// Whether waiting times are compared: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim) {
   const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
-  return of_run != nullptr && of_run->waits && !claim.published;
+  return claim.reaches || (of_run != nullptr && of_run->waits && !claim.published);
+}
+
+/// What the runs of such a claim wait for.
+std::string event_of(const ClaimSpec& claim) {
+  return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
+}
+
+/// The name of the compared number in sentences.
+std::string quantity_of(const ClaimSpec& claim) {
+  return compares_waits(claim) ? "the cycle of " + event_of(claim) : scalar_of(claim).name;
+}
+
+/// Crystallization changes a mean over cycles: the note counts the runs that begin to crystallize
+/// before the last of these.
+void note_early_onsets(const ClaimSpec& claim, std::initializer_list<RunGroup> groups,
+                       Verdict& verdict) {
+  if (!claim.cycles || claim.cycles->at(0) == claim.cycles->at(1)) return;
+  const std::uint64_t last = claim.cycles->at(1);
+  std::size_t early = 0, all = 0;
+  for (const RunGroup group : groups) {
+    all += group.size();
+    early += static_cast<std::size_t>(
+        std::ranges::count_if(waits_for_onset(group), [&](const Waiting& wait) {
+          return wait.observed && wait.cycle < static_cast<double>(last);
+        }));
+  }
+  if (early == 0) return;
+  verdict.note +=
+      fmt::format("; {} of all {} runs have their onset before cycle {}", early, all, last);
 }
 
 std::string published_in_words(const PublishedSpec& published) {
@@ -76,15 +103,17 @@ std::string published_in_words(const PublishedSpec& published) {
 /// What the claim says. `sides`: names of the variants.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
   const bool waits = compares_waits(claim);
-  const std::string name = waits ? "the cycle of the onset" : scalar_of(claim).name;
+  const std::string name = quantity_of(claim);
   const bool higher = claim.is == Relation::higher;
   std::string how = "the same";
   if (claim.is != Relation::same) {
     const char* word = waits ? (higher ? "later" : "earlier") : (higher ? "higher" : "lower");
-    how = fmt::format("{} by more than {}", word,
-                      waits            ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
-                      : claim.relative ? fmt::format("{} %", 100 * claim.margin)
-                                       : fmt::format("{}", claim.margin));
+    how = word;
+    if (claim.margin > 0) {
+      how += " by more than " + (waits ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
+                                 : claim.relative ? fmt::format("{} %", 100 * claim.margin)
+                                                  : fmt::format("{}", claim.margin));
+    }
   }
   const bool same = claim.is == Relation::same;
   std::string text = claim.statement;
@@ -101,6 +130,24 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
                 : Claim{text, -claim.margin, Claimed::below};
 }
 
+/// The verdict on runs of both sides, or of the first one with a published number.
+Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
+  if (compares_waits(claim)) {
+    const auto waits = [&claim](RunGroup runs) {
+      return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
+    };
+    return compare_waits(stated, event_of(claim), waits, a, b);
+  }
+  if (claim.published) {
+    const double published = *claim.published->value;
+    if (claim.margin > 0) return compare_with(stated, scalar_of(claim), a, published);
+    return compare_with({stated.text, published, stated.claimed}, scalar_of(claim), a, 0);
+  }
+  Verdict verdict = compare(stated, scalar_of(claim), a, b);
+  note_early_onsets(claim, {a, b}, verdict);
+  return verdict;
+}
+
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {
   const std::vector<FigureRun> runs = with_values(given, {claim.compare});
   std::array<std::vector<const FigureRun*>, 2> sides;
@@ -113,31 +160,25 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
     const bool named = !sides.at(k).empty() && !sides.at(k).front()->name.empty();
     words.at(k) = named ? sides.at(k).front()->name : words_of(claim.between.at(k));
     if (claim.between.at(k).empty()) words.at(k).clear();
+    if (claim.optional && sides.at(k).empty()) return {};
   }
   const Claim decided = stated(claim, words);
   const bool same = !sides[0].empty() && !sides[1].empty() &&
                     sides[0].front()->run_id == sides[1].front()->run_id;
   const std::vector<std::string> problems = problems_of_sides(claim, counts, same);
-  if (!problems.empty()) {
+  if (!problems.empty() && !claim.listed) {
     throw UsageError(fmt::format("claim {}: {}", claim.name, problems.front()));
   }
-  const bool waits = compares_waits(claim);
+  if (!problems.empty()) sides = {};
   for (std::size_t k = 0; k < compared; ++k) {
-    if (!sides.at(k).empty()) continue;
+    if (!sides.at(k).empty() || claim.listed) continue;
     return {{},
-            {decide(decided,
-                    "difference in " + (waits ? "the cycle of the onset" : scalar_of(claim).name),
-                    std::nullopt, 0,
+            {decide(decided, "difference in " + quantity_of(claim), std::nullopt, 0,
                     fmt::format("no run{} has a checkpoint{}",
                                 words.at(k).empty() ? "" : " with " + words.at(k),
                                 claim.cycles ? " of " + scalar_of(claim).reach : ""))}};
   }
-  if (claim.published) {
-    return {{}, {compare_with(decided, scalar_of(claim), sides[0], *claim.published->value)}};
-  }
-  return {{},
-          {waits ? compare_waits(decided, "the onset", waits_for_onset, sides[0], sides[1])
-                 : compare(decided, scalar_of(claim), sides[0], sides[1])}};
+  return {{}, {decided_by(claim, decided, sides[0], sides[1])}};
 }
 
 }  // namespace

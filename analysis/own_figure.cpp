@@ -32,10 +32,12 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   return {std::move(name), std::move(unit), std::string(measure)};
 }
 
-/// The column of a number of checkpoints or runs, or of an expression.
-MeasureColumn scalar_column(const std::string& text) {
-  if (const Measure* measure = find_measure(text)) return column_of(text, measure->unit);
-  return {is_expression(text) ? "(" + text + ")" : text, "", text};
+/// The column of a number of checkpoints or runs, or of an expression. `name` replaces its name.
+MeasureColumn scalar_column(const std::string& text, const std::string& name = {}) {
+  MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, "", text};
+  if (const Measure* measure = find_measure(text)) column = column_of(text, measure->unit);
+  if (!name.empty()) column.name = name;
+  return column;
 }
 
 const Measure* find_curve(std::string_view name) {
@@ -299,7 +301,8 @@ std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
   constexpr std::array<int, 11> points = {0, 5, 7, 9, 11, 13, 4, 6, 8, 10, 12};  // of a Marker
   std::vector<CurveStyle> styles;
   for (const SeriesSpec& one : plot.series) {
-    CurveStyle& stated = styles.emplace_back(CurveStyle{.where = one.where, .of_manifest = true});
+    CurveStyle& stated =
+        styles.emplace_back(CurveStyle{.where = one.where, .of_manifest = !plot.listed});
     stated.title = text_with_formulas(one.label);
     const auto name = std::ranges::find(colour_names, one.colour);
     stated.colour = name == colour_names.end()
@@ -349,7 +352,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
   if (plot.show != Show::mean) return traces(plot, curves);
-  for (const std::string& measure : plot.also) columns.push_back(scalar_column(measure));
+  for (const ColumnSpec& one : plot.also) columns.push_back(scalar_column(one.measure, one.name));
   if (plot.x == "cycle") return against_cycle(plot.name, curves, columns, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, columns[0], {});
   return against_measure(plot, curves);
@@ -428,12 +431,32 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
   return result;
 }
 
-/// One figure of several: its panels and verdicts are theirs.
-Figure joined(const std::string& name, std::vector<Figure> parts) {
-  if (parts.size() == 1) return std::move(parts.front());
-  Figure figure{name, parts.front().title, {}};
-  figure.within = parts.front().within;
+/// The cycles, first to last, of which the parts need what is simulated; none: all.
+std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
+  std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {
+    const bool simulates = std::ranges::any_of(part.needs, [](const std::string& name) {
+      return provider(name).from == ComputedFrom::simulation;
+    });
+    if (!simulates) continue;
+    if (!part.within) return std::nullopt;
+    const auto [first, last] = *part.within;
+    hull =
+        hull ? std::array{std::min(hull->at(0), first), std::max(hull->at(1), last)} : *part.within;
+  }
+  return hull;
+}
+
+/// One figure of several: its panels and verdicts are theirs.
+Figure joined(const std::string& name, const std::string& title, std::vector<Figure> parts) {
+  if (parts.size() == 1 && parts.front().name == name) return std::move(parts.front());
+  Figure figure{name, title.empty() ? parts.front().title : title, {}};
+  figure.within = parts.front().within;
+  figure.simulated = simulated_by(parts);
+  for (const Figure& part : parts) {
+    for (const std::string& key : part.keys) {
+      if (std::ranges::find(figure.keys, key) == figure.keys.end()) figure.keys.push_back(key);
+    }
     figure.needs.insert(figure.needs.end(), part.needs.begin(), part.needs.end());
     if (part.within != figure.within) figure.within = {};
   }
@@ -517,7 +540,11 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
       plot.name, plot.y + " against " + x,
       [plot, names](std::span<const FigureRun> runs) { return plot_runs(plot, runs, names); }};
   if (measured != nullptr) figure.needs.push_back(provider_of(*measured).name);
-  std::vector<std::string> texts = plot.also;
+  for (const SeriesSpec& one : plot.series) {
+    for (const auto& [key, value] : one.where.items()) figure.keys.push_back(key);
+  }
+  std::vector<std::string> texts;
+  for (const ColumnSpec& one : plot.also) texts.push_back(one.measure);
   texts.insert(texts.end(), {plot.x, plot.y});
   for (const std::string& need : needs_of(texts)) figure.needs.push_back(need);
   figure.within = plot.cycles;
@@ -528,7 +555,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 }
 
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
-                                const NameVariants& names) {
+                                const NameVariants& names, const std::string& question) {
   std::vector<Figure> parts;
   std::vector<std::string> figures;  // of each part
   for (const PlotSpec& plot : plots) {
@@ -544,7 +571,7 @@ std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const
   std::vector<Figure> found;
   for (const std::string& figure : figures) {
     std::vector<Figure> together = std::exchange(parts_of.at(figure), {});
-    if (!together.empty()) found.push_back(joined(figure, std::move(together)));
+    if (!together.empty()) found.push_back(joined(figure, question, std::move(together)));
   }
   return found;
 }

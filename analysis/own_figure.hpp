@@ -76,6 +76,14 @@ struct PublishedSpec {
   bool operator==(const PublishedSpec&) const = default;
 };
 
+/// A further column of a plot's CSV.
+struct ColumnSpec {
+  std::string measure;
+  std::string name = {};  ///< of the column, without unit; "": that of the measure
+
+  bool operator==(const ColumnSpec&) const = default;
+};
+
 struct PlotSpec {
   std::string name;
   /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
@@ -91,12 +99,15 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  std::vector<std::string> also = {};  ///< further scalar measures for the CSV, against the cycle
+  std::vector<ColumnSpec> also = {};  ///< further scalar measures for the CSV, against the cycle
   /// Of curves, or with a parameter as x; default: the last one that all runs have.
   std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
+  /// Of a figure that a manifest lists and does not state. Labels of that manifest come before
+  /// those of `series`, and styles are used only where the runs differ in their parameters alone.
+  bool listed = false;
 
   bool operator==(const PlotSpec&) const = default;
 };
@@ -105,16 +116,23 @@ struct ClaimSpec {
   std::string name;
   std::string figure = {};  ///< as PlotSpec::figure
   std::string compare;      ///< as PlotSpec::y, but no curve
-  /// The measure's mean over these cycles, first to last; nothing for a run measure.
+  /// One of these three, nothing for a run measure: the measure's mean over cycles, first to last;
+  /// its mean over a window of phi; the first cycle at which it has at least this value.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
+  std::optional<std::array<double, 2>> phi = {};
+  std::optional<double> reaches = {};
   /// Parameters and their values, of one variant each. The second one is empty if the first is
   /// compared with published numbers.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  double margin = 0;           ///< of onset_size_cycle, of log2 of the ratio
+  /// Of onset_size_cycle and `reaches`, of log2 of the ratio. 0: the published number is a bound.
+  double margin = 0;
   bool relative = false;       ///< the margin is of the relative difference
   std::string statement = {};  ///< what the claim says, for people; "": from its keys
   Relation is = Relation::same;
+  bool optional = false;  ///< no verdict if a side has no runs
+  /// As PlotSpec::listed. A side that is not one variant has no runs, and is not refused.
+  bool listed = false;
 
   bool operator==(const ClaimSpec&) const = default;
 };
@@ -157,8 +175,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
 /// Its function throws UsageError with the first of problems_of_sides().
 Figure claim_figure(const ClaimSpec& claim);
 
-/// The figures of a manifest, in the order of their first plots and claims.
+/// The figures of a manifest, in the order of their first plots and claims. `question` is the title
+/// of those with several parts.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
-                                const NameVariants& names);
+                                const NameVariants& names, const std::string& question = {});
 
 }  // namespace shearcell

@@ -62,37 +62,25 @@ inline constexpr double converged_interior_grains = 6000;
 
 /// Section B.2: relative fall of phi_u over a hundredfold k, "roughly 2 %".
 inline constexpr double published_fall_of_phi_u = 0.02;
-/// Section B.4: the average overlap is less than this [d].
-inline constexpr double published_overlap = 1e-3;
 
 /// Section E: sizes of the crystallites of Fig. S7.
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
-/// Cycles over which phi is compared: before most runs crystallize. [choice]
-inline constexpr std::int64_t early_cycles = 15;
 /// phi over which the percentage of crystalline grains is compared: from the onset to where a fifth
 /// of the grains is crystalline. [choice]
 inline constexpr double window_low = 0.646;
 inline constexpr double window_high = 0.67;
 
 // Margins: differences that do not matter, by which two results may differ and still agree. They
-// are stated here before the runs are made; a published number's own uncertainty is part of its
-// margin.
+// are stated here, or in the manifest whose claims they are of, before the runs are made; a
+// published number's own uncertainty is part of its margin.
 
-/// phi, mean over cycles 1 to 15: the supplement states phi to 0.001.
-inline constexpr double margin_early_phi = 0.001;
 /// Percentage crystalline, mean over phi from 0.646 to 0.67 [points]: it rises by 2 points over
 /// 0.002 in phi, the margin of the onset.
 inline constexpr double margin_percentage = 2;
 /// phi at the onset: the supplement's +-0.001, and as much for our critical size.
 inline constexpr double margin_onset_phi = 0.002;
-/// Cycle of the onset, log2 of the ratio: the supplement's curves of equal runs part from others at
-/// n = 30, 40 and 60, a factor of 2.
-inline constexpr double margin_onset_cycle = 1;
-/// Mean overlap, contacts per grain, relative: overlaps are proportional to the pressure, 3 % of
-/// it.
-inline constexpr double margin_contacts = 0.03;
 /// Critical size, of the published one: those differ by a quarter from one amplitude to the next.
 inline constexpr double margin_critical_size = 0.25;
 /// Share of nuclei in one part of the cell less that in another: 60 % against 40 % is the least
@@ -104,11 +92,5 @@ inline constexpr double margin_fall_of_phi_u = 0.005;
 inline constexpr double margin_hard_phi = 0.002;
 /// N_inves, relative: the surface of a rough wall, a choice, displaced by 0.12 d.
 inline constexpr double margin_interior = 0.03;
-/// phi gained by pauses at rest, mean over cycles 1 to 15: half of what a cycle adds; a larger gain
-/// is a gain.
-inline constexpr double margin_pause_gain = 0.0002;
-/// Cycle of 20 % crystalline grains, rough walls against smooth, log2 of the ratio: smooth walls
-/// that matter halve the time.
-inline constexpr double margin_wall_delay = 1;
 
 }  // namespace shearcell

@@ -102,9 +102,11 @@ Provider ledger_provider() {
 Provider rest_provider() {
   return {.name = "rest",
           .parameters = {{"rest_s", rest_s}},
-          .measures = {{"phi_at_rest", "1",
-                        "volume fraction of interior grains (Eq. S4) after 0.1 s between walls "
-                        "that are held in place"}},
+          .measures = {{.name = "phi_at_rest",
+                        .unit = "1",
+                        .meaning = "volume fraction of interior grains (Eq. S4) after 0.1 s "
+                                   "between walls that are held in place",
+                        .words = "phi at rest"}},
           .compute = rest_of,
           .from = ComputedFrom::simulation,
           .cost = "a twentieth of a cycle"};

@@ -18,15 +18,6 @@
 namespace shearcell {
 namespace {
 
-bool matches(const FigureRun& run, const nlohmann::json& where) {
-  return std::ranges::all_of(where.items(), [&](const auto& stated) {
-    const nlohmann::json value = parameter_of(run, stated.key());
-    if (!value.is_number() || !stated.value().is_number()) return value == stated.value();
-    const auto wanted = stated.value().template get<double>();
-    return std::abs(value.get<double>() - wanted) <= 0.03 * std::abs(wanted);
-  });
-}
-
 /// A variant as one field without quotes, for readers that do not know RFC 4180. Variants of
 /// manifests have no special characters but the comma; those of another program's store may.
 std::string plain_field(std::string variant) {
@@ -141,8 +132,6 @@ bool follow_runs(const Curve& curve, const MeasureColumn& measure, Series& mean,
   return true;
 }
 
-const MeasureColumn crystalline = {"crystalline", "percent", "crystalline_percent"};
-
 }  // namespace
 
 double MeasureColumn::of(const Measures& measures) const {
@@ -185,7 +174,7 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
     curve.points = points_of(curve.runs);
     if (curve.points.empty()) continue;
     const auto style = std::ranges::find_if(styles, [&](const CurveStyle& s) {
-      return (own || s.of_manifest) && matches(*curve.runs.front(), s.where);
+      return (own || s.of_manifest) && has_parameters(*curve.runs.front(), s.where);
     });
     const auto rank = static_cast<std::size_t>(style - styles.begin());
     ++used[rank];
@@ -222,17 +211,6 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
   std::vector<Curve> curves;
   for (auto& [rank, curve] : ranked) curves.push_back(std::move(curve));
   return curves;
-}
-
-RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& where) {
-  std::vector<const Curve*> found;
-  for (const Curve& curve : curves) {
-    if (matches(*curve.runs.front(), where)) found.push_back(&curve);
-  }
-  if (found.size() > 1) {
-    std::erase_if(found, [](const Curve* curve) { return sweeps_engine(*curve->runs.front()); });
-  }
-  return found.size() == 1 ? RunGroup(found.front()->runs) : RunGroup();
 }
 
 Axis cycle_axis() {
@@ -337,20 +315,6 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
   columns.x_error = "phi_standard_error";
   table.chart = {.x = phi_axis(), .y = std::move(y), .series = series_of(curves, columns)};
   return table;
-}
-
-FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves) {
-  static const std::array<MeasureColumn, 3> measures = {
-      {{"phi", "", "phi"}, {"phi_u", "", "phi_uncorrected"}, {"overlap", "d", "mean_overlap_d"}}};
-  return against_cycle(name, curves, measures, phi_axis());
-}
-
-FigureTable crystallinity_against_cycle(const std::string& name, std::span<const Curve> curves) {
-  return against_cycle(name, curves, {&crystalline, 1}, crystalline_axis());
-}
-
-FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves) {
-  return against_phi(name, curves, crystalline, crystalline_axis());
 }
 
 }  // namespace shearcell

@@ -17,10 +17,9 @@
 
 namespace shearcell {
 
-/// How the curve of the runs with these parameters is drawn. Numbers match within 3 %, because a
-/// time step is a whole fraction of a cycle. A style is used only if one curve fits it. What a
-/// style does not state, and other curves, follow from what varies: its names, a colour for each
-/// value of the first parameter and a symbol for the others.
+/// How the curve of the runs with these parameters is drawn. A style is used only if one curve fits
+/// it. What a style does not state, and other curves, follow from what varies: its names, a colour
+/// for each value of the first parameter and a symbol for the others.
 struct CurveStyle {
   nlohmann::json where;     ///< parameters and their values
   Text title = {};          ///< empty: not stated
@@ -48,10 +47,6 @@ struct Curve {
 /// Checkpoints inside a cycle are left out. Throws AnalysisError if one run has two checkpoints of
 /// one cycle. Points into `runs`.
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const CurveStyle> styles);
-
-/// Runs of the one curve with these parameters; empty if there is no such curve, or several. A
-/// curve of another engine counts only if there is no other.
-RunGroup runs_with(std::span<const Curve> curves, const nlohmann::json& where);
 
 // The axes that several figures share.
 Axis cycle_axis();
@@ -110,11 +105,5 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
 /// A row for each variant and bin of phi.
 FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
                         const MeasureColumn& measure, Axis y);
-
-/// phi, and columns of phi_u and the mean overlap.
-FigureTable phi_against_cycle(const std::string& name, std::span<const Curve> curves);
-/// The percentage of crystalline grains.
-FigureTable crystallinity_against_cycle(const std::string& name, std::span<const Curve> curves);
-FigureTable crystallinity_against_phi(const std::string& name, std::span<const Curve> curves);
 
 }  // namespace shearcell

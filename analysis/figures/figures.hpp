@@ -16,11 +16,6 @@ MakeFigure figure_table1;
 // phi and phi_u of a packing whose springs are made stiffer.
 MakeFigure figure_s1;
 
-// The two panels of S2 to S4 are phi against cycle, and percentage crystalline against phi, with a
-// curve per variant. B5 and walls have the percentage against cycle between them; choices has phi
-// against cycle alone.
-MakeFigure figure_s2, figure_s3, figure_s4, figure_b5, figure_walls, figure_choices;
-
 // Growth of crystallites; onset of crystallization; where they nucleate.
 MakeFigure figure_c, figure_s5a, figure_s5b, figure_s6, figure_s7;
 

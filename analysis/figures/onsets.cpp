@@ -190,7 +190,8 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
 /// in which quantity.
 std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   std::vector<FigureTable> panels = {
-      crystallinity_against_phi("S6_crystalline", curves),
+      against_phi("S6_crystalline", curves, {"crystalline", "percent", "crystalline_percent"},
+                  crystalline_axis()),
       against_phi("S6_contacts", curves, {"contacts_per_grain", "", "contacts_per_grain"},
                   {.name = "contacts per grain"}),
       against_phi("S6_overlap", curves, {"overlap", "d", "mean_overlap_d"}, overlap_axis())};
@@ -214,7 +215,8 @@ std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, Ru
                            "and without gravity",
                            amplitude),
                margin_percentage},
-              percentage_over_phi(), without, with)};
+              over_phi("percentage crystalline", "crystalline_percent", window_low, window_high),
+              without, with)};
 }
 
 }  // namespace
@@ -285,7 +287,9 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   const std::vector<CurveStyle> styles = styles_for(runs);
   const std::vector<Curve> curves = curves_of(runs, styles);
   const std::vector<CurveOnset> onsets = onsets_of(curves);
-  FigureTable phi = phi_against_cycle("S6", curves);
+  const std::array<MeasureColumn, 3> measures = {
+      {{"phi", "", "phi"}, {"phi_u", "", "phi_uncorrected"}, {"overlap", "d", "mean_overlap_d"}}};
+  FigureTable phi = against_cycle("S6", curves, measures, phi_axis());
   phi.chart.lines = onset_lines();
   phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};

@@ -11,6 +11,7 @@
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 
 namespace shearcell::cli {
 namespace {

@@ -11,6 +11,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -48,7 +49,7 @@ std::string figure_comments() {
   for (const Figure& figure : all_figures()) {
     if (figure.keys.empty()) continue;
     text +=
-        fmt::format("#   {:<10} {}: {}\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
+        fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
   }
   return text;
 }

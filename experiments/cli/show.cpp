@@ -18,6 +18,7 @@
 #include "experiments/figures/run_table.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"

@@ -10,8 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "analysis/own_figure.hpp"
+#include "core/named.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -139,17 +140,6 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
-std::vector<Figure> own_figures(const RegisteredManifest& manifest) {
-  const std::optional<Manifest> read_one = parsed(manifest);
-  if (!read_one) return {};
-  const auto names = [labels = read_one->labels](const std::vector<nlohmann::json>& variants) {
-    return variant_names(variants, labels);
-  };
-  const std::vector<PlotSpec> plots(read_one->plots.begin(), read_one->plots.end());
-  const std::vector<ClaimSpec> claims(read_one->claims.begin(), read_one->claims.end());
-  return own_figures(plots, claims, names);
-}
-
 /// Names the variants of the runs, which may be of several versions of a manifest.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -262,12 +252,15 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const RegisteredManifest& manifest : manifests) {
+    const std::optional<Manifest> read_one = parsed(manifest);
+    std::vector<Figure> stated = read_one ? stated_figures(*read_one) : std::vector<Figure>();
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;
+      if (find_named(std::span<const Figure>(stated), figure.name) != nullptr) continue;
       wanted.figures.push_back({figure, manifest.experiment});
     }
-    for (Figure& figure : own_figures(manifest)) {
+    for (Figure& figure : stated) {
       known.insert(figure.name);
       if (asked(figure.name)) wanted.figures.push_back({std::move(figure), manifest.experiment});
     }

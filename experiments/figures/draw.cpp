@@ -14,6 +14,7 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/host.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -193,7 +194,7 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
   const bool of_its_keys = std::ranges::any_of(
       varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
   if (figure.keys.empty() || varied.empty() || of_its_keys) return figure.title;
-  return fmt::format("{}; these runs differ in {}", figure.title, fmt::join(varied, ", "));
+  return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
 }  // namespace
@@ -210,6 +211,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   summary.scale = collected.scale;
   MeasureOptions measuring = options;
   measuring.also = wanted.also;
+  measuring.simulated = figure.simulated;
   const std::vector<FigureRun> runs =
       figure_runs(store, figure, collected.runs, measuring, summary);
   if (figure.form == FigureForm::groups) {

@@ -98,14 +98,11 @@ class Keeping {
                 const MeasureOptions& options) {
     for (const Ask& m : store_.stage(run).asks) {
       for (const Figure& figure : simulating_[m.experiment]) {
-        std::vector<CheckpointRecord> taken = records;
-        std::erase_if(taken, [&](const CheckpointRecord& c) {
-          return figure.within && (c.cycle < static_cast<double>((*figure.within)[0]) ||
-                                   c.cycle > static_cast<double>((*figure.within)[1]));
-        });
+        MeasureOptions some = options;
+        some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), "scalars");
-        take(measure_checkpoints(store_, taken, names, options));
+        take(measure_checkpoints(store_, records, names, some));
       }
     }
   }

@@ -19,6 +19,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
@@ -460,7 +461,7 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
 
 bool has_values(const Variant& variant, const json& where) {
   return std::ranges::all_of(where.items(), [&](const auto& item) {
-    return find_field(item.key())->get(variant.parameters) == item.value();
+    return is_as_stated(find_field(item.key())->get(variant.parameters), item.value());
   });
 }
 
@@ -480,7 +481,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
 }
 
 std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
-                                std::span<const Variant> variants, std::size_t) {
+                                std::span<const Variant> variants) {
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
   keys.insert(keys.end(), {plot.by, plot.panel});
@@ -514,29 +515,38 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
   return found;
 }
 
-std::vector<string> problems_of(const ClaimSpec& claim, const Scale& scale,
-                                std::span<const Variant> variants, std::size_t seeds) {
+struct ClaimProblems {
+  std::vector<string> refusals;  // why `figures` will refuse the claim
+  std::vector<string> lacks;     // why the claim will be undecided
+};
+
+ClaimProblems problems_of(const ClaimSpec& claim, const Scale& scale,
+                          std::span<const Variant> variants, std::size_t seeds) {
   std::array<std::vector<const Variant*>, 2> sides;
   for (const Variant& variant : variants) {
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
       if (has_values(variant, claim.between[k])) sides[k].push_back(&variant);
     }
   }
+  const bool lacks_one = sides[0].empty() || (sides[1].empty() && !claim.published);
+  if (claim.optional && lacks_one) return {};
   const auto run_of = [](const Variant& variant) {
     return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).id;
   };
-  if (claim.published) sides[1].clear();
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
-  std::vector<string> found =
+  ClaimProblems found = {
       problems_of_sides(claim, {sides[0].size(), sides[1].size()},
-                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0]));
+                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0])),
+      {}};
   sides[0].insert(sides[0].end(), sides[1].begin(), sides[1].end());
   for (const Variant* side : sides[0]) {
-    found.push_back(lack_of(claim, scale, *side));
-    if (!found.back().empty()) break;
+    string lack = lack_of(claim, scale, *side);
+    if (lack.empty()) continue;
+    found.lacks.push_back(std::move(lack));
+    break;
   }
   if (seeds < least_runs) {
-    found.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
+    found.lacks.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
   }
   return found;
 }
@@ -554,17 +564,25 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale,
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
-  const auto warn_of = [&](const char* kind, const auto& specs) {
-    for (const auto& own : specs) {
-      for (const string& problem : problems_of(own, scale, variants, seeds)) {
-        if (problem.empty()) continue;
-        warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
-                                  kind, own.name, problem));
-      }
+  const auto warn_of = [&](const char* kind, const auto& own, const std::vector<string>& problems) {
+    for (const string& problem : problems) {
+      if (problem.empty()) continue;
+      warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
+                                kind, own.name, problem));
     }
   };
-  warn_of("plot", manifest.plots);
-  warn_of("claim", manifest.claims);
+  for (const auto& plot : manifest.plots) warn_of("plot", plot, problems_of(plot, scale, variants));
+  for (const auto& claim : manifest.claims) {
+    const ClaimProblems here = problems_of(claim, scale, variants, seeds);
+    warn_of("claim", claim, here.refusals);
+    // A small scale is for trying: nothing is said where another one can decide the claim.
+    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
+      if (here.lacks.empty() || other.name == scale.name) return false;
+      const auto there = problems_of(claim, other, variants_of(other), other.seeds.values.size());
+      return there.refusals.empty() && there.lacks.empty();
+    });
+    if (!decided) warn_of("claim", claim, here.lacks);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -112,8 +113,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   Node take() { return std::move(root_); }
 
-  [[noreturn]] void refuse_reference(const YAML::Mark& mark, const std::string& name) {
-    refuse(file_, position(mark), printable(name), "anchors and aliases are not read", "",
+  [[noreturn]] void refuse_reference(const YAML::Mark& mark) {
+    refuse(file_, position(mark), "", "is not an anchor, or an alias of an earlier anchor", "",
            "Write the value out, and quote a text that begins with & or *.");
   }
 
@@ -126,35 +127,44 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnDocumentEnd() override {}
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add({.at = position(mark)}); }
-  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
-    refuse_reference(mark, "&" + name);
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    keep(anchor, add({.at = position(mark)}));
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse_reference(mark, "*"); }
+  // An alias is a copy of the anchored value, which counts like a value that is written out.
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = anchored_.find(anchor);
+    if (known == anchored_.end()) refuse_reference(mark);  // within its own anchor
+    check_size(known->second, position(mark), open_.size());
+    add(known->second);
+  }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     check_tag(mark, tag);
     check_text(mark, value);
-    add({.kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"});
+    Node node{
+        .kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"};
+    keep(anchor, node);
+    add(std::move(node));
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
     check_tag(mark, tag);
-    open({.kind = Node::Kind::list, .at = position(mark)});
+    open({.kind = Node::Kind::list, .at = position(mark)}, anchor);
   }
-  void OnSequenceEnd() override { open_.pop_back(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
     check_tag(mark, tag);
-    open({.kind = Node::Kind::map, .at = position(mark)});
+    open({.kind = Node::Kind::map, .at = position(mark)}, anchor);
   }
-  void OnMapEnd() override { open_.pop_back(); }
+  void OnMapEnd() override { close(); }
 
  private:
   // A list or map that is being read.
   struct Open {
     Node& node;
+    YAML::anchor_t anchor;
     std::set<std::string> keys = {};
     bool awaits_value = false;
   };
@@ -185,23 +195,49 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  void open(Node node) {
-    if (open_.size() >= ManifestLimits::depth) {
-      refuse(file_, node.at, "", fmt::format("nested deeper than {} levels", ManifestLimits::depth),
-             "", "");
+  void open(Node node, YAML::anchor_t anchor) {
+    check_depth(node.at, open_.size());
+    open_.push_back({add(std::move(node)), anchor});
+  }
+  void close() {
+    keep(open_.back().anchor, open_.back().node);
+    open_.pop_back();
+  }
+
+  // Keeps a copy of an anchored value (0: no anchor) for its aliases.
+  void keep(YAML::anchor_t anchor, const Node& node) {
+    if (anchor == 0) return;
+    check_size(node, node.at, 0);
+    anchored_[anchor] = node;
+  }
+
+  // Counts the values of a copy, which begins at this depth.
+  void check_size(const Node& node, Position at, std::size_t depth) {
+    count_value(at);
+    if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
+    for (const Node& part : node.parts) {
+      if (node.kind == Node::Kind::map) count_value(at);  // its key
+      check_size(part, at, depth + 1);
     }
-    open_.push_back({add(std::move(node))});
+  }
+
+  void check_depth(Position at, std::size_t depth) {
+    if (depth < ManifestLimits::depth) return;
+    refuse(file_, at, "", fmt::format("nested deeper than {} levels", ManifestLimits::depth), "",
+           "");
+  }
+
+  void count_value(Position at) {
+    if (++nodes_ <= ManifestLimits::nodes) return;
+    refuse(file_, at, "", fmt::format("holds more than {} values", ManifestLimits::nodes), "", "");
   }
 
   // Adds an item, key or value to the innermost open list or map. It stays in its place until that
   // list or map gets the next one.
   Node& add(Node node) {
-    if (++nodes_ > ManifestLimits::nodes) {
-      refuse(file_, node.at, "", fmt::format("holds more than {} values", ManifestLimits::nodes),
-             "", "");
-    }
+    count_value(node.at);
     if (open_.empty()) return root_ = std::move(node);
-    auto& [parent, keys, awaits_value] = open_.back();
+    auto& [parent, anchor, keys, awaits_value] = open_.back();
     const bool is_key = parent.kind == Node::Kind::map && !awaits_value;
     awaits_value = is_key;
     if (is_key) {
@@ -234,6 +270,7 @@ class TreeBuilder : public YAML::EventHandler {
   bool started_ = false;
   std::size_t nodes_ = 0;
   std::vector<Open> open_;
+  std::map<YAML::anchor_t, Node> anchored_;
   Node root_;
 };
 
@@ -288,7 +325,7 @@ Node read_document(string_view text, string_view file) {
     // The messages of yaml-cpp for anchors and aliases depend on its version.
     if (error.msg.find("anchor") != std::string::npos ||
         error.msg.find("alias") != std::string::npos) {
-      builder.refuse_reference(error.mark, "");
+      builder.refuse_reference(error.mark);
     }
     refuse(file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
            syntax_remedy(text, error));

@@ -31,10 +31,10 @@ struct Node {
   const Node* find(std::string_view name) const;
 };
 
-/// One YAML document without anchors, aliases, tags or repeated keys, within ManifestLimits. Its
-/// texts are UTF-8, without control characters other than line feeds, without characters that
-/// change the direction of text, and without code points that are no characters. Throws
-/// ManifestError.
+/// One YAML document without tags or repeated keys, within ManifestLimits. An alias becomes a copy
+/// of the anchored value with its positions. Texts are UTF-8, without control characters other than
+/// line feeds, without characters that change the direction of text, and without code points that
+/// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
 /// Makes a text fit for a one-line message. Escapes control characters, characters that change the

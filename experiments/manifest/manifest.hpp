@@ -208,8 +208,9 @@ Manifest parse_manifest(std::string_view text, std::string_view file);
 /// The table of the keys at the top level in experiments/REFERENCE.md.
 std::string manifest_markdown();
 
-/// The same without the checks of the variants: only keys, types and ranges. Throws ManifestError
+/// The same without the checks of the variants: only keys, types and ranges. Plots and claims may
+/// have the names of figures of the supplement if the manifest is `shipped`. Throws ManifestError
 /// with all problems.
-Manifest read_manifest(std::string_view text, std::string_view file);
+Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
 }  // namespace shearcell

@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 #include <span>
@@ -20,6 +21,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
@@ -34,7 +36,7 @@ using Names = std::vector<string_view>;
 
 constexpr std::size_t kLongestLabel = 120;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Range kCycles = {1, StoreLimits::cycles};
+constexpr Range kCycles = {0, StoreLimits::cycles};
 // A double holds it exactly, so readers in any language can.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
@@ -63,7 +65,7 @@ Names numbers() {
 }
 
 void fields(Checkpoints& checkpoints, const auto& visit) {
-  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = kCycles});
+  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = {1, StoreLimits::cycles}});
   visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
 }
 
@@ -170,7 +172,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "y] or [x, y, error], each with its `source`",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
-                    .doc = "further measures in the CSV of a plot of means against the cycle",
+                    .doc = "further measures in the CSV of a plot of means against the cycle; as a "
+                           "map, with names for their columns: `{phi_u: phi_uncorrected}`",
                     .names = scalars,
                     .example = "[phi_uncorrected]"});
   visit(plot.cycle,
@@ -203,18 +206,20 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .doc = "swept values that single out a variant, for the first and for the second. The "
                 "difference is the first less the second",
          .example = "[{fluid: still}, {fluid: cell}]"});
-  visit(claim.published, {.name = "published",
-                          .doc = "instead of `between`: the mean over the runs less this number",
-                          .example = "{value: 0.646, error: 0.001, source: S C}"});
+  visit(claim.published,
+        {.name = "published",
+         .doc = "instead of `between`: the mean over the runs less this number; "
+                "with `is: lower` or `higher` and no margin, the number is a bound",
+         .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
                            .doc = "with `published`: swept values that single out the variant",
                            .example = "{fluid: still}"});
   visit(claim.margin,
         {.name = "margin",
          .range = {0, kInfinity, true},
-         .doc = "in the unit of the measure; of `onset_size_cycle`, of log2 of the ratio of both "
-                "waiting times (log-rank test, which counts runs without an onset): 1 is a factor "
-                "of 2"});
+         .doc = "in the unit of the measure; of `onset_size_cycle` and `reaches`, of log2 of the "
+                "ratio of both waiting times (log-rank test, which counts runs that end before): 1 "
+                "is a factor of 2"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: of the relative difference; 0.03 is 3 %"});
@@ -223,12 +228,22 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                        .range = kCycles,
                        .doc = "or first and last of the cycles whose mean is compared",
                        .example = "[1, 15]"});
+  visit(claim.phi, {.name = "phi",
+                    .range = {0, 1},
+                    .doc = "or a window of phi over which the mean is compared",
+                    .example = "[0.646, 0.67]"});
+  visit(claim.reaches, {.name = "reaches",
+                        .range = {-1e15, 1e15},
+                        .doc = "or the value whose first cycle is compared"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first is so by more than the margin"});
   visit(claim.statement, {.name = "statement",
                           .doc = "what the claim says, for people; default: from its keys",
                           .longest = 300});
+  visit(claim.optional, {.name = "optional",
+                         .doc = "`true`: no verdict where a scale lacks one of the variants",
+                         .example = "true"});
 }
 
 void fields(Manifest& manifest, const auto& visit) {
@@ -512,6 +527,10 @@ struct Reader {
       read->get_to(value);
     }
   }
+  void read(const Node& in, const Field&, bool& value) {
+    value = in.is_scalar() && in.text == "true";
+    if (!value && in.text != "false") reject_type(in, "true or false", "Write `true`.");
+  }
   template <class T>
   void read(const Node& in, const Field& about, std::optional<T>& value) {
     read(in, with_type<T>(about), value.emplace());
@@ -561,6 +580,31 @@ struct Reader {
     }
     if (ends.size() != 2 || value[1] < value[0]) {
       reject(in, "is not a first and a last cycle", fmt::format("It takes `{}`.", about.example));
+    }
+  }
+
+  // The ends of a window.
+  void read(const Node& in, const Field& about, std::array<double, 2>& window) {
+    const std::span<const Node> ends = items_of(in, about.example);
+    for (std::size_t k = 0; k < std::min(ends.size(), window.size()); ++k) {
+      read(ends[k], {.range = about.range}, window[k]);
+    }
+    if (ends.size() != 2 || !(window[0] < window[1])) {
+      reject(in, "is not a window from a low to a high value",
+             fmt::format("It takes `{}`.", about.example));
+    }
+  }
+
+  // Measures, or names of columns and their measures.
+  void read(const Node& in, const Field& about, std::vector<ColumnSpec>& columns) {
+    const bool named = in.is_map();
+    for (const Node& one : named ? std::span(in.parts) : items_of(in, about.example)) {
+      ColumnSpec& column = columns.emplace_back();
+      if (named) {
+        read({.kind = Node::Kind::scalar, .at = one.key_at, .text = one.key, .path = one.path}, {},
+             column.name);
+      }
+      read(one, about, column.measure);
     }
   }
 
@@ -619,20 +663,19 @@ struct Reader {
     }
   }
 
-  // Measures, or figures of the supplement.
-  void read(const Node& in, const Field& about, std::vector<string>& names) {
+  // Figures of the supplement.
+  void read(const Node& in, const Field& about, std::vector<string>& figures) {
     for (const Node& item : items_of(in, about.example)) {
-      string name;
-      read(item, about, name);
-      if (!about.is_choice() && !name.empty()) {
-        if (std::ranges::find(names, name) != names.end()) {
-          reject_value(item, "names a figure twice", "Keep one of them.");
-        } else if (find_figure(name) == nullptr) {
-          reject_value(item, with_nearest("names an unknown figure", name, names_of(all_figures())),
-                       "`shearcell figures --help` lists them.");
-        }
+      string figure;
+      read(item, {}, figure);
+      if (figure.empty()) continue;
+      if (std::ranges::find(figures, figure) != figures.end()) {
+        reject_value(item, "names a figure twice", "Keep one of them.");
+      } else if (find_figure(figure) == nullptr) {
+        reject_value(item, with_nearest("names an unknown figure", figure, names_of(all_figures())),
+                     "`shearcell figures --help` lists them.");
       }
-      names.push_back(name);
+      figures.push_back(figure);
     }
   }
 
@@ -930,20 +973,26 @@ struct Reader {
   }
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
-    const Node *at_cycle = in.find("at_cycle"), *cycles = in.find("cycles");
     const Node *between = in.find("between"), *published = in.find("published");
-    const Node *margin = in.find("margin"), *relative = in.find("relative_margin");
-    const Node* of = in.find("of");
-    // One of the two, and not both.
-    const auto require_one = [&](const Node* one, const char* name, const Node* other) {
-      if (one == nullptr && other == nullptr) {
-        reject(in, fmt::format("lacks {}", name), remedy_of(about));
-      } else if (one != nullptr && other != nullptr) {
-        reject(*other, fmt::format("does not go with {}", name), "State one of them.");
+    const Node *of = in.find("of"), *reaches = in.find("reaches");
+    const Node* relative = in.find("relative_margin");
+    // One of some, and not two.
+    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
+      const Node* first = nullptr;
+      for (const char* key : keys) {
+        const Node* one = in.find(key);
+        if (one != nullptr && first != nullptr) {
+          return reject(*one, fmt::format("does not go with {}", first->key), "State one of them.");
+        }
+        if (one != nullptr) first = one;
+      }
+      if (first == nullptr && lacking != nullptr) {
+        reject(in, fmt::format("lacks {}", lacking), remedy_of(about));
       }
     };
-    require_one(between, "between", published);
-    require_one(margin, "margin", relative);
+    require_one("between", {"between", "published"});
+    const bool is_bound = published != nullptr && claim.is != Relation::same;
+    require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
     if (published != nullptr && claim.published && !claim.published->value) {
       reject(*published, "lacks value", "State the published number.");
     }
@@ -952,24 +1001,37 @@ struct Reader {
     }
     claim.relative = relative != nullptr;
     if (claim.compare.empty()) return;
+    const auto times = {"at_cycle", "cycles", "phi", "reaches"};
     if (!is_parameter(claim.compare)) {
-      require_one(at_cycle, at_cycle == nullptr ? "at_cycle or cycles" : "at_cycle", cycles);
-    } else if (at_cycle != nullptr || cycles != nullptr) {
-      reject(*(at_cycle != nullptr ? at_cycle : cycles),
-             fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
+      require_one("at_cycle or cycles", times);
+    } else {
+      for (const char* key : times) {
+        const Node* one = in.find(key);
+        if (one == nullptr) continue;
+        reject(*one, fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
+        break;
+      }
+    }
+    if (reaches != nullptr && between == nullptr) {
+      reject(*reaches, "goes with between", "A waiting time is compared with another one.");
+    }
+    if (reaches != nullptr && relative != nullptr) {
+      reject(*relative, "does not go with reaches", "Take `margin`.");
     }
   }
 
   // Names of plots and claims, of their figures and of the panels of a plot differ from each other
-  // and from those of the supplement's figures and panels.
-  void check_own_names(const Node& document) {
+  // and from those of the supplement's figures and panels, unless they are parts of such a figure
+  // that is stated here and not in another manifest. `listed`: the `figures` of this manifest.
+  void check_own_names(const Node& document, std::span<const Figure> supplement,
+                       const std::vector<string>& listed) {
     std::vector<const Node*> items;
     for (const char* list : {"plots", "claims"}) {
       const Node* own = document.find(list);
       if (own == nullptr || own->kind != Node::Kind::list) continue;
       for (const Node& item : own->parts) items.push_back(&item);
     }
-    std::set<string> taken;
+    std::map<string, string> taken;  // names, and their figures
     const auto is_panel_of_own = [&](const string& text) {
       return std::ranges::any_of(items, [&](const Node* other) {
         const Node* name = other->find("name");
@@ -980,17 +1042,22 @@ struct Reader {
     };
     for (const char* key : {"name", "figure"}) {
       for (const Node* item : items) {
-        const Node* own = item->find(key);
+        const Node *own = item->find(key), *its_figure = item->find("figure");
         if (own == nullptr || !is_name(own->text)) continue;
         const string& text = own->text;
+        const string of = its_figure == nullptr ? "" : its_figure->text;
         const auto is_panel = [&](const Figure& figure) {
+          const bool computed = find_named(computed_figures(), figure.name) != nullptr;
+          const bool also_listed = std::ranges::find(listed, figure.name) != listed.end();
+          if (!computed && !also_listed && of == figure.name) return false;
           if (!text.starts_with(figure.name)) return false;
           const string_view rest = string_view(text).substr(figure.name.size());
           return rest.size() < 2 || rest.front() == '_';
         };
-        const bool is_taken =
-            key == string_view("name") ? !taken.insert(text).second : taken.contains(text);
-        if (std::ranges::any_of(all_figures(), is_panel)) {
+        const bool is_taken = key == string_view("name")
+                                  ? !taken.emplace(text, of).second
+                                  : taken.contains(text) && taken.at(text) != text;
+        if (std::ranges::any_of(supplement, is_panel)) {
           reject_value(*own, "is the name of a figure of the supplement", "Choose another one.");
         } else if (is_taken || is_panel_of_own(text)) {
           reject_value(*own, "is the name of another plot or claim", "Choose another one.");
@@ -1008,7 +1075,7 @@ bool is_name(string_view text) {
          std::ranges::all_of(text, allowed);
 }
 
-Manifest read_manifest(string_view text, string_view file) {
+Manifest read_manifest(string_view text, string_view file, bool shipped) {
   Node root = read_document(text, file);
   ProblemList problems(file);
   Manifest manifest;
@@ -1029,7 +1096,7 @@ Manifest read_manifest(string_view text, string_view file) {
     problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
   }
   if (const Node* base = root.find("base")) manifest.base.at = base->key_at;
-  reader.check_own_names(root);
+  reader.check_own_names(root, shipped ? computed_figures() : all_figures(), manifest.figures);
   problems.raise();
   return manifest;
 }

@@ -44,16 +44,21 @@ class Measuring {
       if (fresh) distinct_.push_back(&record);
       place_.push_back(entry->second);
     }
-    for (const CheckpointRecord* record : distinct_) {
+    results_.assign(distinct_.size(), Results(providers_.size()));
+    for (std::size_t i = 0; i < distinct_.size(); ++i) {
+      const CheckpointRecord* record = distinct_[i];
       for (std::size_t p = 0; p < providers_.size(); ++p) {
         keys_.push_back(sources_.key(*record, *providers_[p]));
+        if (!takes(*record, *providers_[p])) {
+          results_[i][p] = json::object();  // without measures
+          continue;
+        }
         for (const std::uint64_t cycles : providers_[p]->earlier) {
           const CheckpointRecord* other = sources_.find(*record, cycles);
           if (other != nullptr) outcome_.earlier[other->run].emplace(other->step, other->sha256);
         }
       }
     }
-    results_.assign(distinct_.size(), Results(providers_.size()));
   }
 
   MeasuredCheckpoints run() {
@@ -86,12 +91,20 @@ class Measuring {
     if (one.is_kept() && !listed) providers_.push_back(&one);
   }
 
+  /// Whether the provider is asked for a result of this checkpoint.
+  bool takes(const CheckpointRecord& record, const Provider& one) const {
+    if (one.from != ComputedFrom::simulation || !options_.simulated) return true;
+    const auto [first, last] = *options_.simulated;
+    return record.cycle >= static_cast<double>(first) && record.cycle <= static_cast<double>(last);
+  }
+
   void look_up() {
     const auto found = cache_.get(keys_);
     for (std::size_t k = 0; k < keys_.size(); ++k) {
-      if (!found[k]) continue;
+      json& result = results_[k / providers_.size()][k % providers_.size()];
+      if (!found[k] || !result.is_null()) continue;
       try {
-        results_[k / providers_.size()][k % providers_.size()] = decode_result(*found[k]);
+        result = decode_result(*found[k]);
       } catch (const AnalysisError&) {
         // Foreign bytes with a correct hash: computed again and replaced.
       }

@@ -3,10 +3,12 @@
 // caches them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +31,9 @@ struct MeasureOptions {
   /// Names of further providers, whose results are cached too whenever a checkpoint is analysed, so
   /// that one analysis serves many callers. None may need earlier checkpoints.
   std::vector<std::string> also = {};
+  /// Cycles, first to last, outside which nothing is simulated (ComputedFrom::simulation): those
+  /// checkpoints then lack such measures, as if the run had none.
+  std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
 /// A line for each checkpoint that could not be read; sorted.

@@ -17,6 +17,7 @@
 #include "analysis/crystal.hpp"
 #include "analysis/figure.hpp"
 #include "core/random.hpp"
+#include "experiments/manifest/shipped.hpp"
 
 namespace shearcell::test {
 

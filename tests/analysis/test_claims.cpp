@@ -13,6 +13,15 @@
 namespace shearcell::test {
 namespace {
 
+// phi before most runs crystallize, and the percentage where they do.
+Scalar early_phi() {
+  return over_cycles("phi", "phi", 1, 15);
+}
+
+Scalar percentage_over_phi() {
+  return over_phi("percentage crystalline", "crystalline_percent", 0.646, 0.67);
+}
+
 /// phi = start + 0.001 n + gain from cycle 1 on; the percentage rises by 1 per 0.001 of phi above
 /// 0.646, plus `excess`.
 FigureRun rising(std::uint64_t seed, double start, double gain = 0, double excess = 0,

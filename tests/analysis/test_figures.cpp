@@ -249,9 +249,10 @@ TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithoutRuns) {
   for (const Figure& figure : all_figures()) {
     for (const std::vector<FigureRun>& runs : {few, std::vector<FigureRun>{}}) {
       const FigureResult made = figure.make(runs);
-      auto rulings = rulings_of(made.verdicts);
-      EXPECT_EQ(rulings[Ruling::differs] + rulings[Ruling::refuted], 0U) << figure.name;
-      EXPECT_EQ(rulings[Ruling::undecided] > 0, !made.verdicts.empty()) << figure.name;
+      // The interior grains of the few runs are the published ones (S5b).
+      const std::map<Ruling, std::size_t> rulings = rulings_of(made.verdicts);
+      EXPECT_FALSE(rulings.contains(Ruling::differs) || rulings.contains(Ruling::refuted));
+      EXPECT_EQ(rulings.contains(Ruling::undecided), !made.verdicts.empty()) << figure.name;
       for (const FigureTable& table : made.tables) {
         EXPECT_GT(fs::file_size(draw(table)), 1000U) << table.name;
       }

@@ -316,5 +316,123 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
   EXPECT_EQ(verdict().note, "no run with amplitude_rad=0.06 has a checkpoint of cycle 2");
 }
 
+TEST(OwnPlot, HasFurtherColumnsWithNamesOfTheirOwn) {
+  const FigureTable table = drawing_of(
+      {.name = "own",
+       .y = "phi",
+       .also = {{"phi_uncorrected", "phi_u"}, {"mean_overlap_d", "overlap"}, {"time_s"}}});
+  EXPECT_TRUE(to_csv(table).starts_with(
+      "variant,cycle,phi_mean,phi_standard_error,phi_u_mean,phi_u_standard_error,overlap_mean_d,"
+      "overlap_standard_error_d,time_mean_s,time_standard_error_s,runs\n"))
+      << to_csv(table);
+}
+
+/// phi rises by 0.001 a cycle; the percentage by one point a cycle from `first` on.
+FigureRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
+  return made_up_run("fluid", fluid, seed, 60, [=](int n, Measures& m) {
+    m.numbers["phi"] = 0.6 + 0.001 * n;
+    m.numbers["crystalline_percent"] = std::max(0, n - first);
+    m.numbers["largest_crystallite"] = n;
+  });
+}
+
+std::vector<FigureRun> runs_of_fluids() {
+  std::vector<FigureRun> runs;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    runs.push_back(crystallizing("still", seed, 10 + static_cast<int>(seed)));
+    runs.push_back(crystallizing("cell", seed + 10, 30 + static_cast<int>(seed)));
+  }
+  return runs;
+}
+
+const ClaimSpec kOfFluids = {.name = "own",
+                             .compare = "crystalline_percent",
+                             .between = {{{{"fluid", "cell"}}, {{"fluid", "still"}}}},
+                             .margin = 1};
+
+Verdict verdict_of(const ClaimSpec& claim) {
+  return claim_figure(claim).make(runs_of_fluids()).verdicts.at(0);
+}
+
+TEST(OwnClaim, ComparesMeansOverAWindowOfPhi) {
+  ClaimSpec claim = kOfFluids;
+  claim.phi = {{0.64, 0.65}};
+  const Verdict verdict = verdict_of(claim);
+  EXPECT_NEAR(verdict.estimate.value(), -20, 1e-9) << "20 cycles later, a point a cycle";
+  EXPECT_EQ(verdict.quantity,
+            "difference in percentage crystalline, mean over phi from 0.64 to 0.65");
+  claim.phi = {{0.64, 0.70}};
+  EXPECT_TRUE(has(verdict_of(claim).note, "8 of 8 runs end too early for phi from 0.64 to 0.7"));
+}
+
+TEST(OwnClaim, ComparesTheCyclesAtWhichALevelIsReached) {
+  ClaimSpec claim = kOfFluids;
+  claim.reaches = 5;
+  claim.is = Relation::higher;
+  claim.margin = 0.1;
+  const Verdict verdict = verdict_of(claim);
+  EXPECT_EQ(verdict.ruling, Ruling::supported);
+  EXPECT_EQ(verdict.claim,
+            "own: the cycle of crystalline_percent >= 5 is later by more than a factor of 1.07 for "
+            "fluid=cell than for fluid=still");
+  EXPECT_TRUE(has(verdict.note, "first: median cycle 37.5 (0 of 4 runs end before theirs)"))
+      << verdict.note;
+  claim.reaches = 28;  // from cycle 59 to 62
+  EXPECT_TRUE(has(verdict_of(claim).note, "(2 of 4 runs end before theirs)"));
+}
+
+TEST(OwnClaim, WithoutAMarginTakesThePublishedNumberAsABound) {
+  ClaimSpec claim = kOfFluids;
+  claim.cycles = {{0, 0}};
+  claim.compare = "phi";
+  claim.between[1] = nlohmann::json::object();
+  claim.published = PublishedSpec{.label = "", .source = "S C", .value = 0.61};
+  claim.margin = 0;
+  claim.is = Relation::lower;
+  EXPECT_EQ(verdict_of(claim).ruling, Ruling::supported);
+  EXPECT_NEAR(verdict_of(claim).estimate.value(), 0.6, 1e-12);
+  EXPECT_EQ(verdict_of(claim).margin, 0.61);
+  EXPECT_EQ(verdict_of(claim).claim,
+            "own: phi at cycle 0 is lower than published, 0.61 (S C), for fluid=cell");
+  claim.is = Relation::higher;
+  EXPECT_EQ(verdict_of(claim).ruling, Ruling::refuted);
+}
+
+TEST(OwnClaim, CountsTheRunsThatCrystallizeDuringItsCycles) {
+  ClaimSpec claim = kOfFluids;
+  claim.cycles = {{1, 15}};
+  EXPECT_FALSE(has(verdict_of(claim).note, "onset")) << "16 grains are critical";
+  claim.cycles = {{1, 20}};
+  EXPECT_TRUE(has(verdict_of(claim).note, "8 of all 8 runs have their onset before cycle 20"));
+}
+
+TEST(OwnClaim, IsLeftOutIfItIsOptionalAndASideHasNoRuns) {
+  ClaimSpec claim = kOfFluids;
+  claim.cycles = {{1, 15}};
+  claim.optional = true;
+  EXPECT_EQ(verdict_of(claim).estimate.has_value(), true);
+  claim.between[1] = {{"fluid", "none"}};
+  EXPECT_TRUE(claim_figure(claim).make(runs_of_fluids()).verdicts.empty());
+  claim.optional = false;
+  EXPECT_EQ(verdict_of(claim).note, "no run with fluid=none has a checkpoint of cycles 1 to 15");
+}
+
+TEST(OwnFigure, SimulatesOnlyTheCyclesOfItsPartsThatNeedIt) {
+  using Cycles = std::array<std::uint64_t, 2>;
+  ClaimSpec claim = kOfFluids;
+  claim.figure = "f";
+  claim.compare = "phi_at_rest";
+  claim.cycles = {{1, 15}};
+  const PlotSpec plot{.name = "p", .y = "phi", .figure = "f"};
+  const auto simulated = [&](const PlotSpec& of) {
+    const std::vector<PlotSpec> plots = {of};
+    const std::vector<ClaimSpec> claims = {claim};
+    return own_figures(plots, claims, {}).at(0).simulated;
+  };
+  EXPECT_EQ(simulated(plot), Cycles({1, 15}));
+  EXPECT_EQ(find_figure("B5")->simulated, Cycles({1, 15}));
+  EXPECT_EQ(simulated({.name = "p", .y = "phi_at_rest", .figure = "f"}), std::nullopt);
+}
+
 }  // namespace
 }  // namespace shearcell::test

@@ -248,7 +248,42 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
       EXPECT_NE(phi[k], recorded);
     }
     EXPECT_EQ(at_rest(1)[2], phi[2]) << "as kept";
+    const std::vector<std::string> names = {"scalars", "rest"};
+    const MeasureOptions one_cycle{.simulated = {{1, 1}}};
+    const auto some = measure_checkpoints(store_, records, names, one_cycle);
+    EXPECT_EQ(some.measures[1].number("phi_at_rest"), phi[1]);
+    for (const std::size_t other : {0U, 2U}) {
+      EXPECT_TRUE(std::isnan(some.measures[other].number("phi_at_rest"))) << "kept, not asked for";
+      EXPECT_FALSE(some.lacks(other, "rest"));
+    }
   }
+}
+
+/// The `plots` and `claims` of a manifest in experiments/.
+std::string plots_and_claims(const std::string& experiment) {
+  const std::string text = read_bytes(std::filesystem::path(SHEARCELL_TEST_DATA) / ".." / ".." /
+                                      "experiments" / (experiment + ".yaml"));
+  const std::size_t begin = text.find("\nplots:") + 1;
+  return text.substr(begin, text.find("\nbase:") + 1 - begin);
+}
+
+// A copy of drag.yaml under another name, and a manifest that lists the figure, as older ones do.
+TEST_F(DrawFigure, IsTheSameStatedAndListed) {
+  const std::string listing = tiny_manifest("", kBothFluids + "seeds: 3\n");
+  compute(store_, listing);
+  draw("listed");
+  const std::size_t begin = listing.find("question:"), end = listing.find("base:");
+  std::string stated = listing;
+  stated.replace(begin, end - begin,
+                 "question: " + find_figure("S2")->title + "\n" + plots_and_claims("drag"));
+  compute(store_, stated);
+  const WantedFigures wanted = wanted_figures(store_, {"S2"});
+  ASSERT_EQ(wanted.figures.size(), 1U) << "the stated one";
+  draw("stated", wanted.figures[0]);
+  auto listed = contents("listed"), own = contents("stated");
+  for (auto* files : {&listed, &own}) files->erase("S2.lineage.json");
+  EXPECT_EQ(listed.size(), 11U);
+  for (const auto& [name, bytes] : listed) EXPECT_EQ(bytes, own.at(name)) << name;
 }
 
 TEST_F(DrawFigure, GivesTheSameBytesTwiceAndSimulatesNothing) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "experiments/figures/draw.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell::test {

@@ -206,7 +206,7 @@ std::vector<Case> other_faults() {
       reported("lease_without_end", "resume", 0, lease(58), "elsewhere, process 77", "60 s"),
       reported("lease_without_end_to_merge", "merge shearcell-store --store other", 0, lease(0)),
       reported("lease_that_is_over", "status", 0, lease(61), "3 stages"),
-      reported("clock_went_back", "show S2", 0, figure_in_the_future, "made      20"),
+      reported("clock_went_back", "show S2", 0, figure_in_the_future, "made         20"),
       reported("clock_went_back_verified", "verify", 0, figure_in_the_future,
                "nothing was changed"),
   };

@@ -280,6 +280,63 @@ TEST(Expand, WarnsOfClaimsThatTooFewSeedsCannotDecide) {
   EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict takes at least 3 seeds, not 2"));
 }
 
+// A small scale is for trying; it is only said if no scale decides the claim.
+TEST(Expand, DoesNotWarnOfClaimsThatAnotherScaleDecides) {
+  const auto warnings = [](const std::string& desk, const std::string& sides) {
+    return plan_of(
+               "",
+               "sweep: {grid: {fluid: [still, cell], walls: [rough, smooth]}}\n"
+               "scales: {smoke: {cycles: 3, seeds: 2}, desk: {" +
+                   desk +
+                   "}}\nclaims: [{name: same, compare: phi, margin: 1, at_cycle: 5, between: [" +
+                   sides + "]}]\n",
+               {.scale = "smoke"})
+        .warnings;
+  };
+  const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
+  EXPECT_TRUE(warnings("cycles: 5, seeds: 3", sides).empty());
+  EXPECT_EQ(warnings("cycles: 5, seeds: 2", sides).size(), 2U);
+  EXPECT_EQ(warnings("cycles: 4, seeds: 3", sides).size(), 2U);
+  const auto refused = warnings("cycles: 5, seeds: 3", "{fluid: still}, {fluid: cell}");
+  ASSERT_FALSE(refused.empty());
+  EXPECT_TRUE(has(refused[0], "2 variants have fluid=still"));
+}
+
+TEST(Expand, OptionalClaimsOfVariantsThatTheScaleLacksGiveNoWarning) {
+  const auto warnings = [](const std::string& optional) {
+    return plan_of("cycles: 3",
+                   "seeds: 3\nsweep: {grid: {fluid: [still, cell]}}\n"
+                   "claims: [{name: same, compare: phi, margin: 1, at_cycle: 0, " +
+                       optional + "between: [{fluid: still}, {walls: smooth}]}]\n")
+        .warnings.size();
+  };
+  EXPECT_EQ(warnings("optional: true, "), 0U);
+  EXPECT_EQ(warnings("optional: false, "), 1U);
+}
+
+TEST(Expand, AnAliasIsACopyOfItsAnchor) {
+  const auto of_grains = [](const std::string& first, const std::string& second) {
+    return parse_manifest(
+        "experiment: a\nbase: {grains: " + first + "}\nscales: {s: {grains: " + second + "}}\n",
+        "test.yaml");
+  };
+  const Manifest aliased = of_grains("&n 700", "*n"), written = of_grains("700", "700");
+  EXPECT_EQ(aliased.scales[0].settings.at("grains").value,
+            written.scales[0].settings.at("grains").value);
+  EXPECT_EQ(aliased.scales[0].settings.at("grains").at.line, 2) << "where it is written";
+  const auto series = [](const std::string& of_second) {
+    return parse_manifest(
+               "experiment: a\nplots:\n- {name: p, y: phi, series: &s {\"fluid=still\": {label: "
+               "a}}}\n"
+               "- {name: q, y: phi, series: " +
+                   of_second + "}\n",
+               "test.yaml")
+        .plots[1]
+        .series;
+  };
+  EXPECT_EQ(series("*s"), series("{\"fluid=still\": {label: a}}"));
+}
+
 TEST(Expand, WarnsOfFiguresThatWouldAverageOverTheSweep) {
   const auto warnings = [](const std::string& figure, const std::string& sweep) {
     return plan_of("", fmt::format("figures: [{}]\nsweep: {{{}}}\n", figure, sweep)).warnings;

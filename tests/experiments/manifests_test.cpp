@@ -12,6 +12,7 @@
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/expand.hpp"
+#include "experiments/manifest/shipped.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -47,7 +48,7 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     const Manifest manifest = load_manifest(entry.path());
     EXPECT_EQ(manifest.experiment, experiment);
     EXPECT_FALSE(manifest.question.empty());
-    EXPECT_FALSE(manifest.figures.empty());
+    EXPECT_FALSE(manifest.figures.empty() && manifest.plots.empty());
     std::vector<std::string> scales;
     for (const Scale& scale : manifest.scales) {
       if (!kMoreScales.contains(scale.name)) scales.push_back(scale.name);
@@ -70,6 +71,24 @@ TEST(Manifests, EachExpandsAtEveryScale) {
             (std::set<std::string>{"choices", "critical_size", "drag", "gravity", "moving_wall",
                                    "nucleation_sites", "onset_amplitude", "relaxation",
                                    "spring_constant", "system_size", "timestep", "walls"}));
+}
+
+TEST(Manifests, StateTheFiguresThatAreNotComputed) {
+  for (const auto& [experiment, figure] : {std::pair("drag", "S2"),
+                                           {"timestep", "S3"},
+                                           {"moving_wall", "S4"},
+                                           {"relaxation", "B5"},
+                                           {"walls", "walls"},
+                                           {"choices", "choices"}}) {
+    const Manifest manifest = load_manifest(kFolder / (std::string(experiment) + ".yaml"));
+    const std::vector<Figure> stated = stated_figures(manifest);
+    ASSERT_EQ(stated.size(), 1U) << experiment;
+    EXPECT_EQ(stated[0].name, figure);
+    ASSERT_NE(find_figure(figure), nullptr);
+    EXPECT_EQ(find_figure(figure)->title, manifest.question) << "that of the program is older";
+    EXPECT_EQ(find_figure(figure)->keys, stated[0].keys);
+    EXPECT_FALSE(stated[0].keys.empty());
+  }
 }
 
 TEST(Manifests, OfPublishedResultsExpand) {
@@ -130,7 +149,7 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
   }
 }
 
-// analysis/figures/choices.cpp knows the defaults of the wall by these numbers.
+// The default of choices.yaml is that of the program.
 TEST(Manifests, ChoicesChangeOneDefaultAtATimeByAFactorOfThree) {
   const Plan expanded = plan("choices", "desk");
   ASSERT_EQ(expanded.runs.size(), 6 * 6U);

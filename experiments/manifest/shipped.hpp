@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures of the supplement: those that analysis/figures/ computes, and those that the shipped
+// manifests state, whose texts are part of the program. So `figures: [S2]` means the plots and
+// claims of drag.yaml in any manifest, also in one that an older program registered.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "experiments/manifest/manifest.hpp"
+
+namespace shearcell {
+
+/// Every figure of the supplement: the computed ones, then the stated ones.
+std::span<const Figure> all_figures();
+
+/// The figure with that name ("S2"), or null.
+const Figure* find_figure(std::string_view name);
+
+/// The figures of the manifest's own plots and claims, in the order of its text.
+std::vector<Figure> stated_figures(const Manifest& manifest);
+
+}  // namespace shearcell
