@@ -59,8 +59,8 @@ std::vector<std::string> simulating_providers();
 std::vector<TableColumn> table_columns();
 
 /// The columns of one checkpoint and their values.
-std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(
-    const CheckpointRecord& record, const Measures& measures);
+std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(const CheckpointRecord& record,
+                                                             const Measures& measures);
 
 /// RFC 4180 with a header row; numbers have the shortest digits that read back to the same double.
 std::string to_csv(const RunTable& table);
