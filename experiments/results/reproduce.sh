@@ -40,7 +40,8 @@ if [ -n "$write" ]; then
   "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
   exit
 fi
-for file in "$made"/*.csv; do
-  cmp "$file" "$here/$folder/$(basename "$file")"
-  echo "$folder/$(basename "$file"): the published bytes"
+for file in "$here/$folder"/*.csv; do
+  [ "${file##*/}" != runs.csv ] || continue
+  cmp "$file" "$made/${file##*/}"
+  echo "$folder/${file##*/}: the published bytes"
 done
