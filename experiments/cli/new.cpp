@@ -49,8 +49,8 @@ std::string figure_comments() {
   std::string text = "# Figures, and the keys that an experiment varies for them:\n";
   for (const Figure& figure : all_figures()) {
     if (figure.keys.empty()) continue;
-    text +=
-        fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title, fmt::join(figure.keys, ", "));
+    text += fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title,
+                        fmt::join(figure.keys, ", "));
   }
   return text;
 }
