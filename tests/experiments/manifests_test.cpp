@@ -110,7 +110,9 @@ TEST(Manifests, ShareTheirCommonRun) {
     const std::string base = plan("drag", scale).runs.front().last.id;
     for (const char* experiment :
          {"timestep", "relaxation", "moving_wall", "critical_size", "onset_amplitude", "walls"}) {
-      EXPECT_TRUE(last_stages(plan(experiment, scale)).contains(base)) << experiment << scale;
+      // At scale smoke the walls have runs that crystallize.
+      const bool shares = scale != "smoke" || experiment != std::string("walls");
+      EXPECT_EQ(last_stages(plan(experiment, scale)).contains(base), shares) << experiment << scale;
     }
     EXPECT_EQ(last_stages(plan("critical_size", scale)),
               last_stages(plan("onset_amplitude", scale)));
