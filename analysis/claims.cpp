@@ -237,8 +237,9 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   Values all;
   all.take(scalar, runs);
   std::vector<double> values;
+  const double sign = published < 0 ? -1 : 1;  // a higher value has a positive difference
   for (const auto& [run, value] : all.found) {
-    values.push_back(scalar.relative ? value / published - 1 : value - published);
+    values.push_back(scalar.relative ? sign * (value / published - 1) : value - published);
   }
   std::sort(values.begin(), values.end());  // not in the order of addresses
   std::string quantity = scalar.name;

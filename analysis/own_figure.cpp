@@ -341,6 +341,13 @@ void add_published(const PlotSpec& plot, Chart& chart) {
   if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }
 
+/// Of y, and of further measures.
+std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
+  std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
+  for (const ColumnSpec& one : plot.also) columns.push_back(scalar_column(one.measure, one.name));
+  return columns;
+}
+
 FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
                  const NameVariants& names) {
   const Measure* measured = find_curve(plot.y);
@@ -350,9 +357,8 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
       grouped ? by_curve(given, plot, names) : std::vector<FigureRun>();
   const std::vector<Curve> curves = curves_of(grouped ? groups : given, styles_of(plot));
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
-  std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
+  const std::vector<MeasureColumn> columns = columns_of(plot);
   if (plot.show != Show::mean) return traces(plot, curves);
-  for (const ColumnSpec& one : plot.also) columns.push_back(scalar_column(one.measure, one.name));
   if (plot.x == "cycle") return against_cycle(plot.name, curves, columns, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, columns[0], {});
   return against_measure(plot, curves);
@@ -485,6 +491,15 @@ std::string words_of(const nlohmann::json& values) {
     text += (text.empty() ? "" : ", ") + key + "=" + value_text(value);
   }
   return text;
+}
+
+std::string repeated_column(const PlotSpec& plot) {
+  std::set<std::string> names;
+  for (const MeasureColumn& column : columns_of(plot)) {
+    const std::string name = column_name(column, "mean");
+    if (!names.insert(name).second) return name;
+  }
+  return "";
 }
 
 bool is_parameter(std::string_view x) {

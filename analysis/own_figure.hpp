@@ -140,6 +140,9 @@ struct ClaimSpec {
 /// "fluid=still, walls=rough" of parameters and their values.
 std::string words_of(const nlohmann::json& values);
 
+/// A column that the CSV of means against the cycle would have twice; "" for none.
+std::string repeated_column(const PlotSpec& plot);
+
 /// Whether the x of a plot is one number of a run: it names neither the cycle nor a measure of
 /// checkpoints.
 bool is_parameter(std::string_view x);

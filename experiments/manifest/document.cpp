@@ -211,9 +211,16 @@ class TreeBuilder : public YAML::EventHandler {
     anchored_[anchor] = node;
   }
 
-  // Counts the values of a copy, which begins at this depth.
+  // Counts the values and bytes of a copy, which begins at this depth.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
+    copied_ += node.text.size() + node.key.size();
+    if (copied_ > ManifestLimits::bytes) {
+      refuse(file_, at, "",
+             fmt::format("is larger than {} bytes with its aliases written out",
+                         ManifestLimits::bytes),
+             "", "");
+    }
     if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
     for (const Node& part : node.parts) {
       if (node.kind == Node::Kind::map) count_value(at);  // its key
@@ -269,6 +276,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::string file_;
   bool started_ = false;
   std::size_t nodes_ = 0;
+  std::size_t copied_ = 0;  // bytes of text
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Node> anchored_;
   Node root_;

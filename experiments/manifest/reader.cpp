@@ -929,6 +929,9 @@ struct Reader {
     }
     if (also != nullptr && (plot.x != "cycle" || plot.show != Show::mean)) {
       reject(*also, "goes with means against the cycle", "Leave it out.");
+    } else if (const string twice = repeated_column(plot); !twice.empty()) {
+      reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
+             "Give one another name: `also: {NAME: measure}`.");
     }
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;
@@ -1015,8 +1018,14 @@ struct Reader {
     if (reaches != nullptr && between == nullptr) {
       reject(*reaches, "goes with between", "A waiting time is compared with another one.");
     }
-    if (reaches != nullptr && relative != nullptr) {
-      reject(*relative, "does not go with reaches", "Take `margin`.");
+    const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+    const bool waits = of_run != nullptr && of_run->waits && published == nullptr;
+    if (relative != nullptr && (waits || reaches != nullptr)) {
+      reject(*relative, fmt::format("does not go with {}", waits ? of_run->name : "reaches"),
+             "Take `margin`.");
+    }
+    if (relative != nullptr && claim.published && claim.published->value == 0.0) {
+      reject(*relative, "does not go with a published 0", "Take `margin`.");
     }
   }
 

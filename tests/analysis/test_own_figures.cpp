@@ -307,6 +307,11 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
       "own: 1000*phi at cycle 2 is lower by more than 10 % than published, 23 ± 0.1 (S C), for "));
   claim.margin = 0.01;
   EXPECT_EQ(verdict().ruling, Ruling::supported);
+  claim.is = Relation::higher;
+  claim.compare = "-1000*phi";
+  claim.published->value = -23;
+  EXPECT_EQ(verdict().ruling, Ruling::supported) << "-22 is higher than -23";
+  EXPECT_NEAR(verdict().estimate.value(), 1 - 22.002 / 23, 1e-9);
   claim.statement = "B.9: they are equal";
   EXPECT_EQ(verdict().claim, "B.9: they are equal");
   claim.between[0] = nlohmann::json::object();

@@ -314,6 +314,14 @@ TEST(Expand, OptionalClaimsOfVariantsThatTheScaleLacksGiveNoWarning) {
   EXPECT_EQ(warnings("optional: false, "), 1U);
 }
 
+TEST(Manifest, AliasesOfLongTextsCountAsWrittenOut) {
+  std::string text =
+      "experiment: long\nquestion: &q \"" + std::string(100'000, 'a') + "\"\nseeds: [";
+  for (int k = 0; k < 20; ++k) text += "*q, ";
+  EXPECT_TRUE(has(message_of<ManifestError>([&] { parse_manifest(text + "1]\n", "long.yaml"); }),
+                  "is larger than 1048576 bytes with its aliases written out"));
+}
+
 TEST(Expand, AnAliasIsACopyOfItsAnchor) {
   const auto of_grains = [](const std::string& first, const std::string& second) {
     return parse_manifest(
