@@ -254,11 +254,11 @@ class TreeBuilder : public YAML::EventHandler {
       if (!keys.insert(node.text).second) {
         refuse(file_, node.at, name, "appears twice in one map", "", "Keep one of them.");
       }
-      return parent.parts.emplace_back(
-          Node{.at = node.at,  // an empty value is reported at its key
-               .key = std::move(node.text),
-               .key_at = node.at,
-               .path = parent.path.empty() ? name : parent.path + '.' + name});
+      Node value{.at = node.at,  // an empty value is reported at its key
+                 .key = std::move(node.text),
+                 .key_at = node.at,
+                 .path = parent.path.empty() ? name : parent.path + '.' + name};
+      return parent.parts.emplace_back(std::move(value));
     }
     if (parent.kind == Node::Kind::list) {
       node.key_at = parent.key_at;

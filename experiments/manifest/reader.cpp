@@ -629,13 +629,14 @@ struct Reader {
   // Points [x, y] or [x, y, error].
   void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
     for (const Node& item : items_of(in, about.example)) {
-      std::vector<double>& point = points.emplace_back();
+      std::vector<double> point;
       for (const Node& number : items_of(item, "[0.05, 0.646]")) {
         read(number, {.range = about.range}, point.emplace_back());
       }
       if (point.size() != 2 && point.size() != 3) {
         reject(item, "is not a point", "It takes [x, y], or [x, y, error].");
       }
+      points.push_back(std::move(point));
     }
   }
 

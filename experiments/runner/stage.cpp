@@ -676,7 +676,7 @@ Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads,
     }
   }
   if (restore ? result.divergence.has_value() : !result.interrupted) replaying.record_outcome();
-  return std::move(result);
+  return result;
 }
 
 }  // namespace

@@ -28,10 +28,9 @@ inline LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& t
   const int code = process->wait();
   const std::string log = read_plain(folder.path() / "log", kLargestFile).value_or("");
   if (code != 0) throw ProgramError(fmt::format("LAMMPS ended with code {}: {}", code, log));
-  LammpsResult result{
-      read_lammps_frame(folder.path() / fmt::format("frame.{}", task.end),
-                        static_cast<std::size_t>(task.state.position.cols())),
-      0, process->peak_bytes()};
+  LammpsResult result{read_lammps_frame(folder.path() / fmt::format("frame.{}", task.end),
+                                        static_cast<std::size_t>(task.state.position.cols())),
+                      0, process->peak_bytes()};
   // "Loop time of T on P procs for S steps with A atoms", once for each run.
   constexpr std::string_view title = "Loop time of ";
   for (auto at = log.find(title); at != log.npos; at = log.find(title, at + 1)) {
