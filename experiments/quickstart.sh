@@ -17,6 +17,6 @@ $program figures walls --scale smoke --store "$store" --out "$out"
 $program report --experiment walls --scale smoke --store "$store" --out "$out/report.html"
 echo
 echo "Between smooth walls the grains crystallize within ten cycles of shear; rough walls delay this by more than a factor"
-echo "of two, and then crystallites grow away from the walls. See $PWD/$out/walls/smoke/walls_b.svg,"
+echo "of two. See $PWD/$out/walls/smoke/walls_b.svg,"
 echo "and turn the packings in 3D in $PWD/$out/report.html. Their checkpoints are in $store."
 echo "Next: $program --help, or the table of experiments in experiments/README.md."
