@@ -60,15 +60,13 @@ void add_missing(std::string& note, const Values& values, const Scalar& scalar) 
   }
 }
 
-/// One number of each run. A group is named by its variant.
+/// One number of each run.
 Entered entered_by(const Scalar& scalar, std::initializer_list<RunGroup> groups) {
-  Entered entered{run_columns()};
-  entered.columns.insert(entered.columns.end(), {"value", "missing"});
+  Entered entered = entered_with({"value", "missing"});
   for (const RunGroup group : groups) {
     for (const FigureRun* run : group) {
       const RunValue value = scalar.of(*run);
-      TableRow& row = entered.rows.emplace_back(run_values(*run));
-      row.insert(row.end(), {value.or_nan(), std::string(name_of(value.missing))});
+      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
     }
   }
   return entered;
@@ -279,12 +277,15 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
   return waits;
 }
 
-std::vector<std::string> run_columns() {
-  return {"group", "seed", "packing"};
+Entered entered_with(const std::vector<std::string>& columns) {
+  Entered entered{{"group", "seed", "packing"}};
+  entered.columns.insert(entered.columns.end(), columns.begin(), columns.end());
+  return entered;
 }
 
-TableRow run_values(const FigureRun& run) {
-  return {run.variant, run.seed, packing_of(run)};
+void enter(const FigureRun& run, const TableRow& values, Entered& entered) {
+  TableRow& row = entered.rows.emplace_back(TableRow{run.variant, run.seed, packing_of(run)});
+  row.insert(row.end(), values.begin(), values.end());
 }
 
 Verdict compare_waits(const Claim& claim, const std::string& event,
@@ -312,13 +313,11 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
     if (wait.empty()) return {0, Missing::checkpoint};
     return {wait.front().cycle, wait.front().observed ? Missing::nothing : Missing::too_short};
   };
-  verdict.entered = Entered{run_columns()};
-  verdict.entered.columns.insert(verdict.entered.columns.end(), {"cycle", "missing"});
+  verdict.entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {
     for (const FigureRun* run : group) {
       const RunValue cycle = cycle_of(*run);
-      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
-      row.insert(row.end(), {cycle.value, std::string(name_of(cycle.missing))});
+      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, verdict.entered);
     }
   }
   return verdict;

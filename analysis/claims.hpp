@@ -62,8 +62,10 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
 
-/// The first columns of what entered a verdict, and their values of one run.
-std::vector<std::string> run_columns();
-TableRow run_values(const FigureRun& run);
+/// A table of what entered a verdict, with these columns after the run's group (its variant), seed
+/// and packing.
+Entered entered_with(const std::vector<std::string>& columns);
+/// Adds a row: the values of the columns after the run's.
+void enter(const FigureRun& run, const TableRow& values, Entered& entered);
 
 }  // namespace shearcell

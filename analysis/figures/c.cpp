@@ -264,14 +264,13 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
               margin_critical_size},
              fmt::format("critical size, relative difference from {} grains", published), relative,
              one.runs.size(), note);
-  verdict.entered = Entered{run_columns()};
-  verdict.entered.columns.insert(verdict.entered.columns.end(),
-                                 {"size", "grew", "absorbed", "shrank", "vanished"});
+  verdict.entered = entered_with({"size", "grew", "absorbed", "shrank", "vanished"});
   for (const FigureRun* run : one.all_runs) {
     for (const auto& [size, count] : growth_of(*run, one.published->n_bin)) {
-      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
-      row.insert(row.end(), {std::int64_t{size}, count.grew - count.absorbed, count.absorbed,
-                             count.shrank - count.vanished, count.vanished});
+      enter(*run,
+            {std::int64_t{size}, count.grew - count.absorbed, count.absorbed,
+             count.shrank - count.vanished, count.vanished},
+            verdict.entered);
     }
   }
   return verdict;

@@ -136,15 +136,14 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
       excess ? excess->runs : all.size(),
       excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
              : "three runs, and runs of two sizes with onsets at the same phi, are needed");
-  verdict.entered = Entered{run_columns()};
-  verdict.entered.columns.insert(
-      verdict.entered.columns.end(),
-      {"amplitude_rad", "grains", "phi_low", "cycles", "grain_cycles", "onsets"});
+  verdict.entered =
+      entered_with({"amplitude_rad", "grains", "phi_low", "cycles", "grain_cycles", "onsets"});
   for (const FigureRun* run : all) {
     for (const Exposure& one : exposures_of(*run, region)) {
-      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
-      row.insert(row.end(), {number_of(*run, "amplitude_rad"), number_of(*run, "grains"),
-                             one.phi_low, one.cycles, one.grain_cycles, one.onsets});
+      enter(*run,
+            {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi_low, one.cycles,
+             one.grain_cycles, one.onsets},
+            verdict.entered);
     }
   }
   return {std::move(verdict)};

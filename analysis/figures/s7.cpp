@@ -128,14 +128,12 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   }
   Verdict verdict = decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
                            std::move(note));
-  verdict.entered = Entered{run_columns()};
-  verdict.entered.columns.insert(verdict.entered.columns.end(), {"place", "value"});
+  verdict.entered = entered_with({"place", "value"});
   for (const FigureRun* run : runs) {
     for (const double place : nucleus_places(*run, axis, Seen::first)) {
       const std::optional<int> counted = side(place);
       if (!counted) continue;
-      TableRow& row = verdict.entered.rows.emplace_back(run_values(*run));
-      row.insert(row.end(), {place, std::int64_t{*counted}});
+      enter(*run, {place, std::int64_t{*counted}}, verdict.entered);
     }
   }
   return verdict;
