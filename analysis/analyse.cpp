@@ -164,7 +164,8 @@ Provider grain_provider() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     const GrainMeasures& grains = input.analysis->grains;
     std::vector<double> pressure = grains.pressure;
-    for (double& one : pressure) one *= mechanical_units(input).stress_Pa;
+    const double unit_Pa = mechanical_units(input).stress_Pa;
+    for (double& one : pressure) one *= unit_Pa;
     std::vector<std::int32_t> crystallite = grains.crystallites.label;
     for (std::int32_t& label : crystallite) ++label;
     return {{"phi_local", grains.phi_local},     {"q6", grains.q6},

@@ -138,7 +138,8 @@ Provider profile_provider() {
   using enum MeasureKind;
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     Profiles found = profiles(*input.checkpoint, input.analysis->grains);
-    for (double& one : found.pressure) one *= mechanical_units(input).stress_Pa;
+    const double unit_Pa = mechanical_units(input).stress_Pa;
+    for (double& one : found.pressure) one *= unit_Pa;
     const auto against_height = [&](const std::vector<double>& values) {
       return to_json(MeasuredCurve{found.height, values});
     };
