@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/claims.hpp"
+#include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/onset.hpp"
 #include "analysis/own_figure.hpp"
@@ -57,12 +58,6 @@ Scalar scalar_of(const ClaimSpec& claim) {
   }
   scalar.relative = claim.relative;
   return scalar;
-}
-
-/// Whether waiting times are compared: a run may end before the event.
-bool compares_waits(const ClaimSpec& claim) {
-  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
-  return claim.reaches || (of_run != nullptr && of_run->waits && !claim.published);
 }
 
 /// What the runs of such a claim wait for.
@@ -149,7 +144,9 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 }
 
 FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {
-  const std::vector<FigureRun> runs = with_values(given, {claim.compare});
+  std::vector<FigureRun> computed;  // with the values of an expression
+  if (is_expression(claim.compare)) computed = with_values(given, {claim.compare});
+  const std::span<const FigureRun> runs = computed.empty() ? given : computed;
   std::array<std::vector<const FigureRun*>, 2> sides;
   std::array<std::size_t, 2> counts = {1, 1};
   std::array<std::string, 2> words;  // as people name the variants
@@ -182,6 +179,11 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
 }
 
 }  // namespace
+
+bool compares_waits(const ClaimSpec& claim) {
+  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+  return claim.reaches || (of_run != nullptr && of_run->waits && !claim.published);
+}
 
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
                                            const std::array<std::size_t, 2>& variants, bool same) {

@@ -169,6 +169,9 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// several variants share by what these have in common; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
+/// Whether the claim compares waiting times: a run may end before the event.
+bool compares_waits(const ClaimSpec& claim);
+
 /// Why the sides of a claim cannot be compared, a sentence each. `variants`: how many variants have
 /// the values of each side; `same`: whether both are the same runs.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim,

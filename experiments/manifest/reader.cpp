@@ -323,18 +323,15 @@ bool is_auto(const Field& field, const Node& node) {
 const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
     {{"friction", "mu", "rolling_friction"},
      "Grains are frictionless. `shearcell export --to lammps` writes a packing for LAMMPS, which "
-     "has "
-     "friction."},
+     "has friction."},
     {{"restitution", "damping", "viscosity"},
      "Contacts do not dissipate; only the drag of the fluid does: drag_kg_per_s."},
     {{"contact_law", "contact_model", "hertz", "youngs_modulus", "poisson_ratio"},
      "Contacts are linear springs: stiffness_N_per_m. `shearcell export --to lammps` writes a "
-     "packing "
-     "for LAMMPS, which has other laws."},
+     "packing for LAMMPS, which has other laws."},
     {{"polydispersity", "size_ratio", "bidisperse", "radii", "diameters"},
      "All grains are equal: diameter_m. `shearcell export --to lammps` writes a packing for "
-     "LAMMPS, "
-     "which has unequal grains."},
+     "LAMMPS, which has unequal grains."},
     {{"radius"}, "State the diameter: diameter_m."},
     {{"temperature", "thermostat"}, "Grains have no thermal motion; the walls move them."},
     {{"initial", "start", "positions"},
@@ -1019,10 +1016,9 @@ struct Reader {
     if (reaches != nullptr && between == nullptr) {
       reject(*reaches, "goes with between", "A waiting time is compared with another one.");
     }
-    const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
-    const bool waits = of_run != nullptr && of_run->waits && published == nullptr;
-    if (relative != nullptr && (waits || reaches != nullptr)) {
-      reject(*relative, fmt::format("does not go with {}", waits ? of_run->name : "reaches"),
+    if (relative != nullptr && compares_waits(claim)) {
+      reject(*relative,
+             fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
              "Take `margin`.");
     }
     if (relative != nullptr && claim.published && claim.published->value == 0.0) {
