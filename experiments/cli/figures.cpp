@@ -122,13 +122,22 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// Each figure with its title and the keys that it compares.
-std::string list_of_figures() {
-  std::string text;
+/// What the command does, and each figure with its title and the keys that it compares.
+std::string about_figures() {
+  std::string text =
+      R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
+manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
+NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
+DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. A table of all experiments
+goes into DIR/SCALE. Where the number of runs of a mean changes along a curve, the key of the
+drawing names the fewest and the most (the caption, if all curves have the same). Caches measures
+in the store's derived.sqlite. If you delete that file, they are measured again, except those of
+pruned checkpoints (see `regenerate`).
+Figures and the keys that they compare (some have a curve for each value of other keys too):)";
   for (const Figure& figure : all_figures()) {
-    text += fmt::format("  {:<10} {}\n", figure.name, figure.title);
+    text += fmt::format("\n  {:<10} {}", figure.name, figure.title);
     if (!figure.keys.empty()) {
-      text += fmt::format("             varies {}\n", fmt::join(figure.keys, ", "));
+      text += fmt::format("\n             varies {}", fmt::join(figure.keys, ", "));
     }
   }
   return text;
@@ -158,20 +167,10 @@ void add_figures(CLI::App& app, Context& context) {
           "Width of the drawings: one column of a journal (8.6 cm) or two (17.8 cm)")
       ->check(CLI::IsMember({"single", "double"}))
       ->default_str("single");
-  add_common_options(
-      *command, context,
-      R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
-manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
-NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
-DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. A table of all experiments
-goes into DIR/SCALE. Where the number of runs of a mean changes along a curve, the key of the
-drawing names the fewest and the most (the caption, if all curves have the same). Caches measures
-in the store's derived.sqlite. If you delete that file, they are measured again, except those of
-pruned checkpoints (see `regenerate`).
-Figures and the keys that they compare (some have a curve for each value of other keys too):
-)" + list_of_figures() +
-          "Examples:\n  shearcell figures S2 --out figures\n"
-          "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
+  add_common_options(*command, context,
+                     "Examples:\n  shearcell figures S2 --out figures\n"
+                     "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
+  command->footer(about_figures);  // only when help is asked for: it reads the shipped manifests
 }
 
 }  // namespace shearcell::cli
