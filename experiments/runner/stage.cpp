@@ -34,48 +34,48 @@ namespace {
 
 // --- A stage, made from its record and ready to be stepped ---
 
-Scene make_scene(const StageInputs& stage) {
-  switch (stage.stage) {
+Scene make_scene(const StageInputs& inputs) {
+  switch (inputs.stage) {
     case StageKind::shear:
-      return shear_scene(stage.parameters);
+      return shear_scene(inputs.parameters);
     case StageKind::stiffen:
-      return stiffen_scene(stage.parameters);
+      return stiffen_scene(inputs.parameters);
     case StageKind::prepare:
       break;
   }
-  return settle_scene(stage.parameters);
+  return settle_scene(inputs.parameters);
 }
 
-void require_memory(const StageInputs& stage) {
-  const double needed = run_bytes(geometry(stage.parameters));
+void require_memory(const StageInputs& inputs) {
+  const double needed = run_bytes(geometry(inputs.parameters));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
       "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
-      stage.parameters.grains, needed / 1e9, machine_memory() / 1e9));
+      inputs.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-std::unique_ptr<Protocol> make_protocol(const StageInputs& stage, const Stage& run) {
-  const Parameters& p = stage.parameters;
-  const std::uint64_t cycles = run.target_cycles;
-  if (stage.stage == StageKind::prepare) {
+std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& stage) {
+  const Parameters& p = inputs.parameters;
+  const std::uint64_t cycles = stage.target_cycles;
+  if (inputs.stage == StageKind::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
                          p.settle_time_limit_s, p.max_overlap_diameters},
         settle_scene(p));
   }
-  if (stage.stage == StageKind::stiffen) {
+  if (inputs.stage == StageKind::stiffen) {
     StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
     return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(run.asks, drive(p)));
+  return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(stage.asks, drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
 // manifest (campaign.cpp); for the other manifests it is `otherwise`.
-double overlap_limit(const Store& store, const Stage& run, double otherwise) {
-  double limit = run.asks.empty() ? otherwise : 0;
-  for (const Ask& ask : run.asks) {
+double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
+  double limit = stage.asks.empty() ? otherwise : 0;
+  for (const Ask& ask : stage.asks) {
     double stated = otherwise;
     for (const Event& event : store.events("manifest/" + ask.manifest)) {
       try {
@@ -93,25 +93,25 @@ double overlap_limit(const Store& store, const Stage& run, double otherwise) {
 
 /// The scene and the protocol of a stage.
 struct ReadyStage {
-  Stage run;
-  StageInputs stage;
+  Stage stage;
+  StageInputs inputs;
   Scene scene;
   std::unique_ptr<Protocol> protocol;
 };
 
 /// The watchdog's overlap limit is the largest that a manifest of the run states.
-ReadyStage ready_stage(const Store& store, Stage run) {
-  if (stage_key(run.resolved) != run.id) {
-    throw StoreDamaged("run " + run.id.substr(0, 12) +
+ReadyStage ready_stage(const Store& store, Stage stage) {
+  if (stage_key(stage.resolved) != stage.id) {
+    throw StoreDamaged("run " + stage.id.substr(0, 12) +
                        ": its recorded parameters are not those that it is named after");
   }
-  StageInputs stage = read_stage(run.resolved);
-  double& limit = stage.parameters.max_overlap_diameters;
-  limit = overlap_limit(store, run, limit);
-  require_memory(stage);
-  const Scene scene = make_scene(stage);
-  auto protocol = make_protocol(stage, run);
-  return {std::move(run), std::move(stage), scene, std::move(protocol)};
+  StageInputs inputs = read_stage(stage.resolved);
+  double& limit = inputs.parameters.max_overlap_diameters;
+  limit = overlap_limit(store, stage, limit);
+  require_memory(inputs);
+  const Scene scene = make_scene(inputs);
+  auto protocol = make_protocol(inputs, stage);
+  return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
 /// The state from which a stage is stepped on.
@@ -127,15 +127,15 @@ struct Beginning {
 /// Store::newest_valid_checkpoint.
 Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
                        std::uint64_t before_step = UINT64_MAX) {
-  const Stage& run = plan.run;
+  const Stage& run = plan.stage;
   if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record)};
   }
   if (run.parent.empty()) {
-    const Geometry shape = geometry(plan.stage.parameters);
-    Cell cell = make_cell(shape, plan.stage.seed, give_up_if_requested);
-    State state = fill_cell(cell, shape, plan.stage.seed, give_up_if_requested);
+    const Geometry shape = geometry(plan.inputs.parameters);
+    Cell cell = make_cell(shape, plan.inputs.seed, give_up_if_requested);
+    State state = fill_cell(cell, shape, plan.inputs.seed, give_up_if_requested);
     return {std::move(cell), std::move(state)};
   }
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
@@ -159,7 +159,7 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::st
 Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
   SimulationSettings settings;
   settings.threads = threads;
-  settings.limits.overlap = plan.stage.parameters.max_overlap_diameters;
+  settings.limits.overlap = plan.inputs.parameters.max_overlap_diameters;
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
 }
 
@@ -167,13 +167,13 @@ Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::s
 Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
-  checkpoint.run = plan.run.id;
+  checkpoint.run = plan.stage.id;
   checkpoint.cell = cell;
   checkpoint.state = state;
   checkpoint.cycle = cycle;
   checkpoint.time_s = static_cast<double>(state.step) * plan.scene.time_step;
   checkpoint.theta = tilt(plan.protocol->drive(), state.step).theta;
-  checkpoint.units = units(plan.stage.parameters);
+  checkpoint.units = units(plan.inputs.parameters);
   const WallPose pose = pose_of(checkpoint);
   const Diagnostics facts = diagnose(cell, scene, state, pose);
   checkpoint.observables = {{"kinetic_energy_per_grain_m_d2_per_s2", facts.kinetic_energy},
@@ -182,8 +182,8 @@ Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene
                             {"contacts_per_grain", facts.contacts_per_grain},
                             {"wall_force_imbalance", facts.wall_imbalance},
                             {"cell_height_d", pose.top - pose.bottom}};
-  if (plan.stage.stage == StageKind::stiffen) {
-    const Parameters& p = plan.stage.parameters;
+  if (plan.inputs.stage == StageKind::stiffen) {
+    const Parameters& p = plan.inputs.parameters;
     const double raised = scene.stiffness / plan.scene.stiffness;
     checkpoint.observables["stiffness_N_per_m"] = raised * p.stiffness_N_per_m;
     checkpoint.observables["force_residual_P_d2"] = force_residual(cell, scene, state);
@@ -265,7 +265,7 @@ class LammpsEngine final : public Engine {
   LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(checkpoint_cadence(plan.run.asks) * cycle_steps(plan.protocol->drive())),
+        stride_(checkpoint_cadence(plan.stage.asks) * cycle_steps(plan.protocol->drive())),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),
@@ -278,7 +278,7 @@ class LammpsEngine final : public Engine {
                           .state = state_,
                           .end = end,
                           .stride = stride_,
-                          .check_every = lammps_check_steps(plan.run.grains, parallel.ranks)};
+                          .check_every = lammps_check_steps(plan.stage.grains, parallel.ranks)};
     run_.emplace(program, task, parallel.ranks);
   }
 
@@ -350,7 +350,7 @@ class StageAttempt {
     const bool fresh = !beginning.from;
     nlohmann::json facts = host_facts();
     std::optional<LammpsProgram> lammps;
-    if (plan_.stage.parameters.engine == EngineKind::lammps) {
+    if (plan_.inputs.parameters.engine == EngineKind::lammps) {
       lammps = find_lammps(options_.parallel.ranks);
       facts["engine"] = {{"name", "LAMMPS"},
                          {"version", lammps->version},
@@ -370,7 +370,7 @@ class StageAttempt {
       }
       first_step_ = engine->step();
       // The settled packing is cycle 0 of what follows.
-      if (fresh && plan_.stage.stage != StageKind::prepare) record(*engine, 0);
+      if (fresh && plan_.inputs.stage != StageKind::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     });
@@ -379,11 +379,11 @@ class StageAttempt {
   // Records the checkpoints at these steps of a completed run, which lacks them.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = beginning_of(store_, plan_, nullptr, steps.front());
-    const nlohmann::json& ends = plan_.run.ends;
+    const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
     // The stage is completed for all that were declared since.
-    if (ended.contains("memberships")) ended["memberships"] = plan_.run.asks.size();
+    if (ended.contains("memberships")) ended["memberships"] = plan_.stage.asks.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
       first_step_ = engine.step();
@@ -455,7 +455,7 @@ class StageAttempt {
       if (stop && !progress.checkpoint_due) progress = engine.halt();
       if (progress.checkpoint_due) record(engine, progress.cycle);
       if (progress.finished) {
-        complete({{"by", plan_.stage.stage == StageKind::prepare ? "settled" : "cycles"}});
+        complete({{"by", plan_.inputs.stage == StageKind::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
       // `until` is checked at whole cycles only.
@@ -488,16 +488,16 @@ class StageAttempt {
   }
 
   void complete(const nlohmann::json& ended) {
-    store_.complete_stage(id(), {{"ended", ended}}, plan_.run.target_cycles);
+    store_.complete_stage(id(), {{"ended", ended}}, plan_.stage.target_cycles);
   }
 
-  const std::string& id() const { return plan_.run.id; }
+  const std::string& id() const { return plan_.stage.id; }
 
   void record(const Engine& engine, double cycle) {
     const Checkpoint checkpoint = engine.checkpoint(cycle);
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
     const CheckpointRecord recorded = store_.record_checkpoint(
-        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.run.grains)});
+        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.stage.grains)});
     computed_ = true;
     seen_.push_back({recorded});
     recorded_.restart();
@@ -509,11 +509,12 @@ class StageAttempt {
     if (!options_.report || since < 0.2) return;
     StageStatus status;
     status.cycle = cycle;
-    status.target_cycles =
-        plan_.stage.stage != StageKind::prepare ? static_cast<double>(plan_.run.target_cycles) : 0;
+    status.target_cycles = plan_.inputs.stage != StageKind::prepare
+                               ? static_cast<double>(plan_.stage.target_cycles)
+                               : 0;
     status.steps_per_second =
         static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
-    status.grains = plan_.run.grains;
+    status.grains = plan_.stage.grains;
     status.step = engine.step();
     const std::uint64_t end = plan_.protocol->last_step();
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();

@@ -130,7 +130,7 @@ TEST_F(MigrationTest, AnInterruptedMigrationKeepsTheOldVersion) {
   EXPECT_EQ(version(), kSchemaVersion);
 }
 
-// Whatever stands in the derived tables, they are derived again. Nothing else may be there.
+// Derived tables are rebuilt without a check of their contents. Any other table is refused.
 TEST_F(MigrationTest, OldDerivedTablesAreNotRead) {
   using Pair = std::pair<std::string, std::string>;
   for (const auto& [other, rest] :
