@@ -99,7 +99,7 @@ struct RunFacts {
 
 /// What measures of a checkpoint are computed from.
 struct MeasureInput {
-  const Analysis* analysis = nullptr;
+  const Analysis* analysis = nullptr;  ///< of the checkpoint; a simulation must not count on it
   const Checkpoint* checkpoint = nullptr;
   /// The same run's checkpoint so many cycles earlier, valid until the next call; null where the
   /// run has none.

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -114,12 +115,15 @@ class Measuring {
   void compute(std::size_t i) {
     const CheckpointRecord& record = *distinct_[i];
     const Checkpoint checkpoint = sources_.load(record);
-    const Analysis analysis = analyse_stored(record, checkpoint);
+    std::optional<Analysis> analysis;  // once, for the first that takes it
     std::vector<DerivedObject> objects;
     UnreadCheckpoints unread;
     for (std::size_t p = 0; p < providers_.size(); ++p) {
       if (!results_[i][p].is_null()) continue;
-      auto result = sources_.compute(*providers_[p], record, &checkpoint, &analysis, unread);
+      const bool analyses = providers_[p]->from != ComputedFrom::simulation;
+      if (analyses && !analysis) analysis = analyse_stored(record, checkpoint);
+      auto result = sources_.compute(*providers_[p], record, &checkpoint,
+                                     analysis ? &*analysis : nullptr, unread);
       if (!result) continue;
       objects.push_back({keys_[i * providers_.size() + p], encode_result(*result)});
       results_[i][p] = std::move(*result);
