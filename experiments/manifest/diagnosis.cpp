@@ -199,7 +199,8 @@ struct VariantCheck {
     };
     if (!start.is_stated()) {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
-        if (find(key) == nullptr) continue;
+        const Field& field = *find_field(key);
+        if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
                "State `start: {experiment: NAME}`, or leave it out.");
       }
