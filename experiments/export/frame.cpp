@@ -36,7 +36,7 @@ void add_columns(const Measures& measures, Frame& frame) {
 // A packing goes on settling under the forces of its scene.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   const auto kind = value_of<StageKind>(stage.kind);
-  if (!kind || kind == StageKind::stiffen) return std::nullopt;
+  if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;
   try {
     const Parameters p = read_stage(stage.resolved).parameters;
     const bool shears = kind == StageKind::shear;

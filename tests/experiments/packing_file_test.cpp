@@ -190,12 +190,6 @@ const std::vector<BadPacking> kBad = {
      "section out."},
     {"DataVelocityOfNone", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n"),
      "a.data:17:1: atom 3 has two velocities, or no position. Write the whole file."},
-    {"DataMassesUnequal", "a.data",
-     data(kBounds, "Masses\n\n1 1\n2 1.5\n\nAtoms\n\n1 1 1 1 1\n2 2 3 3 3\n"),
-     "a.data:17:1: the grains have masses from 1 (line 16) to 1.5, 50 % larger. All grains of this "
-     "program are equal. Continue such a packing in LAMMPS (`shearcell export --to lammps` writes "
-     "a "
-     "script for it)."},
     {"DataNotANumber", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3,5\n"),
      "a.data:12:9: z: is not a number (got 3,5). A number takes a decimal point: 3.5."},
     {"DumpScaled", "a.dump", dump("id type xs ys zs", "1 1 0.1 0.1 0.1\n2 1 0.3 0.3 0.3\n"),

@@ -96,6 +96,7 @@ class Deck {
     add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
     add(text_,
         "# Masses are raised by drag*dt/2: LAMMPS's explicit drag then equals an implicit one.");
+    add(text_, "# Give grains of another size their diameter and, so raised, their mass.");
     add(text_, "set group grains mass {:.17g}", (1 + added(scene_.drag_rate)) * m_);
     add(text_, "set group wall mass {:.17g}",
         area_ * (scene_.wall_mass + added(scene_.wall_drag)) * m_);
