@@ -26,9 +26,9 @@ using std::string;
 using std::string_view;
 
 /// What a column can hold. `wall`: 0 or the first type for a grain, more for a wall grain.
-enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kMass, kId, kWall, kQuantities };
-constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",    "vx", "vy",
-                                            "vz", "diameter", "mass", "id", "type"};
+enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
+constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
+                                            "vz", "diameter", "id", "type"};
 
 /// Names of columns in a header and of properties in extended XYZ.
 struct ColumnName {
@@ -52,8 +52,6 @@ constexpr auto kColumnNames = std::to_array<ColumnName>({{"x", kX, 1},
                                                          {"velocities", kVx, 3},
                                                          {"radius", kDiameter, 1},
                                                          {"diameter", kDiameter, 1},
-                                                         {"mass", kMass, 1},
-                                                         {"masses", kMass, 1},
                                                          {"id", kId, 1},
                                                          {"wall_side", kWall, 1}});
 
@@ -281,7 +279,7 @@ class PackingReader {
       const bool quoted = rest.starts_with('"') && rest.find('"', 1) != rest.npos;
       const std::size_t end = quoted ? rest.find('"', 1) + 1 : rest.find_first_of(" \t");
       const string_view value = rest.substr(0, end);
-      if (!keys.emplace(lower(name), unquoted(value)).second) {
+      if (!keys.emplace(name, unquoted(value)).second) {
         refuse_part(name, "", "is a key that stands there twice", "Keep one of them.");
       }
       rest.remove_prefix(value.size());
@@ -291,12 +289,12 @@ class PackingReader {
       if (!known) refuse_part(unit->second, "length_unit", "is not read", "It takes m or d.");
       set_unit(*known);
     }
-    if (const auto lattice = keys.find("lattice"); lattice != keys.end()) {
-      const auto origin = keys.find("origin");
+    if (const auto lattice = keys.find("Lattice"); lattice != keys.end()) {
+      const auto origin = keys.find("Origin");
       read_lattice(lattice->second, origin == keys.end() ? string_view() : origin->second);
     }
     Layout layout;
-    if (const auto properties = keys.find("properties"); properties != keys.end()) {
+    if (const auto properties = keys.find("Properties"); properties != keys.end()) {
       read_properties(properties->second, layout);
     } else {
       for (int k = 0; k < 3; ++k) layout.set(kX + k, static_cast<std::size_t>(k) + 1);
@@ -371,17 +369,13 @@ class PackingReader {
 
   // --- LAMMPS data ---
 
-  /// Whether one of the first lines is "500 atoms".
+  /// Whether the first lines hold one such as "500 atoms".
   bool states_atoms() const {
-    string_view text = rest_;
-    for (int k = 0; k < 100 && !text.empty(); ++k) {
-      const std::vector<string_view> words = split(trimmed(text.substr(0, text.find('\n'))), ' ');
-      if (words.size() >= 2 && words[1] == "atoms" && read_number<std::uint64_t>(words[0])) {
-        return true;
-      }
-      text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-    }
-    return false;
+    const string_view beginning = rest_.substr(0, 2000);
+    const std::size_t at = beginning.find(" atoms");
+    if (at == beginning.npos) return false;
+    const string_view before = trimmed(beginning.substr(0, at));
+    return !before.empty() && std::isdigit(static_cast<unsigned char>(before.back())) != 0;
   }
 
   void read_data() {
@@ -389,7 +383,6 @@ class PackingReader {
     read_title();
     std::uint64_t count = 0;
     int stated_in = 0;
-    std::map<double, double> masses;
     std::vector<GrainRow> velocities;
     Layout moving;
     for (const int q : {kId, kVx, kVy, kVz}) moving.set(q, q == kId ? 0 : q - kVx + 1);
@@ -415,10 +408,6 @@ class PackingReader {
         add_row(layout_, rows_);
       } else if (section == "Velocities") {
         add_row(moving, velocities);
-      } else if (section == "Masses") {
-        const std::vector<string_view> words = split(body, ' ');
-        if (words.size() != 2) refuse_line("is not a type and its mass", "As in `1 2.0e-5`.");
-        masses[number(words[0], "type")] = number(words[1], "mass");
       }
     }
     const std::uint64_t found = rows_.size() + wall_grains_;
@@ -427,7 +416,6 @@ class PackingReader {
                 "Write the whole file, or correct the number.");
     }
     take_velocities(std::move(velocities));
-    take_masses(masses);
   }
 
   /// Exports of this program state the unit and the planes of the cell.
@@ -484,7 +472,6 @@ class PackingReader {
       x = hybrid ? 2 : 4;
       layout.fields = 7;
       layout.set(kDiameter, hybrid ? 5 : 2);
-      layout.set(kMass, hybrid ? 6 : 3);
     } else {
       refuse_line(style.empty() ? fmt::format("an atom of {} fields is not read", fields)
                                 : fmt::format("the atom style {} is not read", printable(style)),
@@ -520,15 +507,6 @@ class PackingReader {
                 "Write a velocity for each atom, each once, or leave the section out.");
     }
     layout_.set(kVx, 0);  // known
-  }
-
-  void take_masses(const std::map<double, double>& masses) {
-    if (masses.empty() || layout_.has(kMass)) return;
-    for (GrainRow& row : rows_) {
-      const auto found = masses.find(row.value[kWall]);
-      row.value[kMass] = found == masses.end() ? 0 : found->second;
-    }
-    layout_.set(kMass, 0);  // known
   }
 
   // --- LAMMPS dumps ---
@@ -599,9 +577,13 @@ class PackingReader {
     return {name, std::nullopt};
   }
 
-  static bool names_a_column(string_view header) {
-    const std::size_t start = std::min(header.find_first_not_of("# \t"), header.size());
-    header.remove_prefix(start);  // numpy writes its header as a comment
+  /// The line without what numpy writes before it.
+  static string_view header_of(string_view line) {
+    return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
+  }
+
+  static bool names_a_column(string_view line) {
+    const string_view header = header_of(line);
     return std::ranges::any_of(split(header, separator_of(header)), [](string_view part) {
       return find_named(kColumnNames, name_and_unit(part).first) != nullptr;
     });
@@ -609,8 +591,7 @@ class PackingReader {
 
   void read_csv() {
     next_line();
-    string_view header = line_;
-    header.remove_prefix(std::min(header.find_first_not_of("# \t"), header.size()));
+    const string_view header = header_of(line_);
     Layout layout;
     layout.separator = separator_of(header);
     const std::vector<string_view> parts = split(header, layout.separator);
@@ -640,22 +621,19 @@ class PackingReader {
 
   // --- The packing ---
 
-  /// Requires that a quantity is the same for all grains.
-  void require_equal(Quantity q, const char* plural) const {
-    if (!layout_.has(q)) return;
-    const auto by_value = [q](const GrainRow& a, const GrainRow& b) {
-      return a.value[q] < b.value[q];
-    };
-    const auto [least, most] = std::minmax_element(rows_.begin(), rows_.end(), by_value);
-    const double small = least->value[q], large = most->value[q];
+  void require_equal_diameters() const {
+    if (!layout_.has(kDiameter)) return;
+    const auto diameter = [](const GrainRow& row) { return row.value[kDiameter]; };
+    const auto [least, most] = std::ranges::minmax_element(rows_, {}, diameter);
+    const double small = diameter(*least), large = diameter(*most);
     if (small <= 0) {
-      refuse_at(least->line, fmt::format("the {} is {:.6g}", kNamesInMessages[q], small),
-                "It must be positive.");
+      refuse_at(least->line, fmt::format("the diameter is {:.6g}", small), "It must be positive.");
     }
     if (large <= small * (1 + kTolerance)) return;
     refuse_at(most->line,
-              fmt::format("the grains have {} from {:.6g} (line {}) to {:.6g}, {:.2g} % larger",
-                          plural, small, least->line, large, 100 * (large / small - 1)),
+              fmt::format("the grains have diameters from {:.6g} (line {}) to {:.6g}, {:.2g} % "
+                          "larger",
+                          small, least->line, large, 100 * (large / small - 1)),
               "All grains of this program are equal. Continue such a packing in LAMMPS "
               "(`shearcell export --to lammps` writes a script for it).");
   }
@@ -703,8 +681,7 @@ class PackingReader {
 
   PackingFile packing() {
     if (rows_.empty()) refuse_line("the file holds no grains", kFormats);
-    require_equal(kDiameter, "diameters");
-    require_equal(kMass, "masses");
+    require_equal_diameters();
     sort_by_id();
     const double scale_to_d = scale();
     PackingFile packing;

@@ -213,7 +213,7 @@ TEST_F(Started, ThePruneKeepsItsStateOrSaysHowToRestoreIt) {
   EXPECT_NE(without.messages[0].find(remedy), std::string::npos) << without.messages[0];
   EXPECT_FALSE(regenerate_checkpoint(store_, at_cycle_1()).divergence);
   EXPECT_EQ(compute_here(clones("")).completed, 1U);
-  for (const CheckpointRecord& record : store_.prunable({.keep_every = 3})) {
+  for (const CheckpointRecord& record : store_.prunable({.runs = {}, .keep_every = 3})) {
     EXPECT_NE(record.sha256, at_cycle_1().sha256) << "a run began with it";
   }
 }
