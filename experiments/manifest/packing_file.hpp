@@ -39,7 +39,7 @@ struct PackingFacts {
 };
 
 /// Largest text [bytes].
-inline constexpr std::size_t kLargestPackingFile = std::size_t{256} << 20;
+inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
 /// Reads the text of a file of this name. The format is that of the content; the name decides what
 /// is said of a text that has none of the formats. Positions are not moved, except that z is

@@ -70,7 +70,7 @@ const std::vector<BadPacking> kBad = {
     {"Prose", "a.txt", "Dear reader\n",
      "a.txt: is none of the formats that can be read. " + kFormats},
     {"TooLarge", "a.xyz", std::string(kLargestPackingFile + 1, '1'),
-     "a.xyz: is larger than 256 MiB. Leave out columns that are not positions, velocities or "
+     "a.xyz: is larger than 32 MiB. Leave out columns that are not positions, velocities or "
      "radii."},
     {"UnitUnstated", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz: does not state the unit of its lengths. Write `unit: m` or `unit: d` (grain "
