@@ -95,10 +95,10 @@ TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
 TEST_F(EngineRun, FailsWhereTheWatchdogRefusesAFrame) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   expect(0, {"run", write("m.yaml", tiny_manifest()), "--cycles", "0", "-q"});  // the packing
-  // So slow that no grain exceeds the limit of speed, which is that of an overlap, first.
-  const std::string strict = write(
-      "strict.yaml", tiny_manifest("  max_overlap_diameters: 1e-4\n  amplitude_rad: 0.01\n"));
-  expect(3, {"run", strict, "--engine", "lammps"}, {"overlap [d] of", "over its limit of 0.0001"});
+  // Above the limit of speed that follows from it, 20 d/s, is no grain.
+  const std::string strict = write("strict.yaml", tiny_manifest("  max_overlap_diameters: 1e-3\n"));
+  expect(3, {"run", strict, "--engine", "lammps"},
+         {"overlap [d] of two grains", "over its limit of 0.001"});
   EXPECT_EQ(run_of("engine=lammps")["state"], "failed");
 }
 
