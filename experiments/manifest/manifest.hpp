@@ -167,10 +167,11 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< "" for that of the shear
-  std::string variant = {};  ///< swept values; "" if the experiment has one variant
-  std::string run = {};      ///< instead of these: the beginning of its id
-  Settings settings = {};    ///< start_seed, start_cycle, start_noise_d
+  std::string scale = {};       ///< "" for that of the shear
+  std::string variant = {};     ///< swept values; "" if the experiment has one variant
+  std::string checkpoint = {};  ///< instead of these, RUN@CYCLE
+  std::string run = {};         ///< the beginning of its id
+  Settings settings = {};       ///< start_seed, start_cycle, start_noise_d
   Position at = {};
 
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }

@@ -23,7 +23,6 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
-#include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
@@ -75,6 +74,29 @@ void fields(Sweep& sweep, const auto& visit) {
   visit(sweep.zip, {.name = "zip"});
 }
 
+void fields(Start& start, const auto& visit) {
+  visit(start.experiment, {.name = "experiment", .doc = "whose recorded run it is"});
+  visit(start.scale, {.name = "scale", .doc = "of that experiment; default: that of the shear"});
+  visit(start.variant, {.name = "variant",
+                        .doc = "swept values that single out a variant of that experiment",
+                        .example = "\"fluid=still\"",
+                        .longest = kLongestLabel});
+  visit(start.checkpoint, {.name = "checkpoint",
+                           .doc = "instead of experiment, seed and cycle: the beginning of the "
+                                  "run's id and a whole cycle",
+                           .example = "0123abcd@10",
+                           .longest = kLongestLabel});
+  visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
+  visit(start.settings, {.name = "cycle", .doc = "parameter start_cycle, default 0"});
+  visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
+  visit(start.file, {.name = "file",
+                     .doc = "instead of a recorded run: a file of grains, named from the folder of "
+                            "the manifest. They settle further if `settle` is stated, be it `{}`",
+                     .example = "packing.extxyz",
+                     .longest = kLongestPath});
+  visit(start.unit, {.name = "unit", .doc = "of a file that states none"});
+}
+
 void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
@@ -88,11 +110,8 @@ void fields(Scale& scale, const auto& visit) {
          .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "instead of settling: the shear begins with the state of a recorded run at a whole "
-                "cycle, with noise that each seed draws anew. `{checkpoint: RUN@CYCLE}` names the "
-                "run by its id; `sweep` may vary start_seed and start_cycle. `{file: "
-                "packing.extxyz}` takes the grains of a file (`unit: d` or `m` if that has none), "
-                "which settle further if `settle` is stated, be it `{}`",
+         .doc = "instead of loose grains that settle: the state of a recorded run, with noise that "
+                "each seed draws anew, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
@@ -738,8 +757,9 @@ struct Reader {
     }
   }
 
-  // Those of `base`, or of `settle`.
+  // Those of `base` or of `settle`, or one of `start`.
   void read(const Node& in, const Field& about, Settings& settings) {
+    if (about.name != "base" && about.name != "settle") return read_start(in, settings);
     settings.clear();
     read_settings(in, settings, {}, [](const Node&) { return false; });
     if (about.name == "base" || !in.is_map()) return;
@@ -752,77 +772,14 @@ struct Reader {
     }
   }
 
-  // The file; or the recorded run, and the parameters that begin with `start_`.
-  void read(const Node& in, const Field& about, Start& start) {
-    static constexpr string_view texts[] = {"experiment", "scale", "variant", "checkpoint", "file"};
-    static constexpr string_view numbers[] = {"seed", "cycle", "noise_d"};
-    start = {};
-    start.at = in.at;
-    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
-    string checkpoint;
-    for (const Node& part : in.parts) {
-      if (std::ranges::count(numbers, part.key) > 0) {
-        const string key = "start_" + part.key;
-        if (!part.is_scalar()) {
-          reject_type(part, "a single value", fmt::format("`sweep` takes lists of {}.", key));
-        } else if (auto value = read_scalar(part, *find_field(key))) {
-          start.settings[key] = {std::move(*value), part.at};
-        }
-      } else if (std::ranges::count(texts, part.key) > 0) {
-        string& text = part.key == "experiment" ? start.experiment
-                       : part.key == "scale"    ? start.scale
-                       : part.key == "variant"  ? start.variant
-                       : part.key == "file"     ? start.file
-                                                : checkpoint;
-        const bool is_name = part.key == "experiment" || part.key == "scale";
-        read(part, {.longest = is_name ? 0 : kLongestPath}, text);
-      } else if (part.key == "unit") {
-        read(part, with_type<LengthUnit>({}), start.unit.emplace());
-      } else {
-        Names known{std::begin(texts), std::end(texts)};
-        known.emplace_back("unit");
-        reject_unknown(part, joined(known, std::span(numbers)));
-      }
+  // `seed`, `cycle` or `noise_d`.
+  void read_start(const Node& in, Settings& settings) {
+    const string key = "start_" + in.key;
+    if (!in.is_scalar()) {
+      reject_type(in, "a single value", fmt::format("`sweep` takes lists of {}.", key));
+    } else if (auto value = read_scalar(in, *find_field(key))) {
+      settings[key] = {std::move(*value), in.at};
     }
-    std::size_t sources = 0;
-    for (const char* key : {"experiment", "checkpoint", "file"}) {
-      sources += in.find(key) != nullptr ? 1 : 0;
-    }
-    if (sources != 1) {
-      return reject(in, "does not name one of an experiment, a checkpoint and a file",
-                    remedy_of(about));
-    }
-    if (const Node* named = in.find("checkpoint")) read_checkpoint(*named, checkpoint, start);
-    const std::string_view source = in.find("file") != nullptr         ? "file"
-                                    : in.find("checkpoint") != nullptr ? "checkpoint"
-                                                                       : "experiment";
-    for (const Node& part : in.parts) {
-      const bool of_file = part.key == "unit",
-                 of_experiment = part.key == "scale" || part.key == "variant";
-      const bool of_any =
-          part.key == source || (source != "file" && std::ranges::count(numbers, part.key) > 0);
-      if (of_any || (of_file && source == "file") || (of_experiment && source == "experiment"))
-        continue;
-      reject_key(part, fmt::format("does not go with {}", source), "Leave it out.");
-    }
-  }
-
-  // RUN@CYCLE
-  void read_checkpoint(const Node& in, string_view text, Start& start) {
-    const std::size_t at = text.find('@');
-    start.run = text.substr(0, at);
-    const auto cycle =
-        at == text.npos ? std::nullopt : read_number<std::uint64_t>(text.substr(at + 1));
-    if (start.run.size() < 8 || start.run.size() > 64 ||
-        start.run.find_first_not_of("0123456789abcdef") != string::npos || !cycle) {
-      return reject_value(in, "is not a run and a whole cycle",
-                          "It takes `0123abcd@10`: at least eight digits of the run's id.");
-    }
-    const Field& field = *find_field("start_cycle");
-    if (const auto wrong = check_value(field, *cycle)) {
-      reject_value(in, wrong->problem, wrong->remedy);
-    }
-    start.settings["start_cycle"] = {*cycle, in.at};
   }
 
   void read(const Node& in, const Field&, std::vector<Scale>& scales) {
@@ -1001,6 +958,42 @@ struct Reader {
 
   void check(const Node& in, const Field&, Checkpoints& checkpoints) {
     if (const Node* phases = in.find("phases")) checkpoints.at = phases->at;
+  }
+
+  void check(const Node& in, const Field& about, Start& start) {
+    static const std::map<string_view, Names> go_together = {
+        {"experiment", {"scale", "variant", "seed", "cycle", "noise_d"}},
+        {"checkpoint", {"seed", "noise_d"}},
+        {"file", {"unit"}}};
+    Names sources;
+    for (const auto& [source, others] : go_together) {
+      if (in.find(source) != nullptr) sources.push_back(source);
+    }
+    if (sources.size() != 1) {
+      return reject(in, "does not name one of an experiment, a checkpoint and a file",
+                    remedy_of(about));
+    }
+    const Names& others = go_together.at(sources.front());
+    static const std::vector<Field> known = keys_of<Start>();
+    for (const Node& part : in.parts) {
+      if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
+      if (find_named(known, part.key) == nullptr) continue;  // reported already
+      reject_key(part, fmt::format("does not go with {}", sources.front()), "Leave it out.");
+    }
+    const Node* checkpoint = in.find("checkpoint");
+    if (checkpoint == nullptr) return;
+    const std::size_t at = start.checkpoint.find('@');
+    start.run = start.checkpoint.substr(0, at);
+    const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
+                       start.run.find_first_not_of("0123456789abcdef") == string::npos;
+    auto cycle =
+        read_value(*find_field("start_cycle"),
+                   at == string::npos ? "" : string_view(start.checkpoint).substr(at + 1), false);
+    if (!is_id || cycle.index() != 0) {
+      return reject_value(*checkpoint, "is not a run and a whole cycle",
+                          "It takes `0123abcd@10`: at least eight digits of the run's id.");
+    }
+    start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
   }
 
   void check(const Node&, const Field&, const auto&) {}
@@ -1229,8 +1222,8 @@ string keys_markdown(string_view head) {
 }  // namespace
 
 string manifest_markdown() {
-  return keys_markdown<Manifest>("example") + "\nOf a plot:\n\n" +
-         keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
+  return keys_markdown<Manifest>("example") + "\nOf a start:\n\n" + keys_markdown<Start>("takes") +
+         "\nOf a plot:\n\n" + keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
          keys_markdown<Placed<ClaimSpec>>("takes");
 }
 
