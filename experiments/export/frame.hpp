@@ -20,6 +20,15 @@ struct FrameColumn {
   std::variant<std::vector<double>, std::vector<std::int32_t>> values;
 };
 
+/// A contact of two particles, once, or of a grain with a plane.
+struct FrameContact {
+  std::size_t grain = 0, other = 0;  ///< numbers of the particles from 1; other 0: a plane
+  std::int32_t side = 0;             ///< of a wall contact, as Frame::type; 0 between grains
+  double overlap = 0;                ///< [d]
+  double force = 0;                  ///< [N]; NaN if the stiffness is unknown
+  Eigen::Vector3d normal;            ///< unit vector towards `grain`, the direction of its force
+};
+
 /// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
 /// grains have measures of zero, and classes of -1. They move with the
 /// shear (x of a wall point at y: (y - y_top) tan(theta)) and with the moving wall. Velocities of
@@ -50,6 +59,7 @@ struct Frame {
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
   /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
   std::vector<FrameColumn> columns;
+  std::vector<FrameContact> contacts;  ///< by `grain`
 
   std::size_t particles() const { return type.size(); }
 };

@@ -37,6 +37,13 @@ struct Node {
 /// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
+/// Whether a key is a number: what a decimal comma in braces leaves, as "05" in `{amplitude_rad:
+/// 0,05}`.
+bool is_number(std::string_view key);
+/// What to do about such a key.
+inline constexpr const char* kDecimalPoint =
+    "If it follows a comma: a number takes a decimal point, as in 0.05.";
+
 /// Makes a text fit for a one-line message. Escapes control characters, characters that change the
 /// direction of text, bytes that are not UTF-8, code points that are no characters, invisible ones,
 /// and blanks that look like a space, as \x1b or \u202e. Cuts it to `longest` bytes.
