@@ -189,12 +189,17 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
 /// The data of one curve: y against x of each trace, and the values of all traces at each x.
 struct Points {
   std::map<std::uint64_t, std::map<double, double>> traces;
-  std::map<double, std::vector<double>> values;
+  struct Values {
+    std::vector<const FigureRun*> runs;
+    std::vector<double> values;  // one per run
+  };
+  std::map<double, Values> values;
 
-  void add(std::uint64_t trace, double x, double y) {
+  void add(std::uint64_t trace, const FigureRun& run, double x, double y) {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     traces[trace][x] = y;
-    values[x].push_back(y);
+    values[x].runs.push_back(&run);
+    values[x].values.push_back(y);
   }
 };
 
@@ -206,19 +211,19 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
     if (of_curve == nullptr && is_parameter(plot.y)) {
-      points.add(run.seed, number_of(run, plot.x), number_of(run, plot.y));
+      points.add(run.seed, run, number_of(run, plot.x), number_of(run, plot.y));
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
     if (of_curve == nullptr) {
-      points.add(run.seed, number_of(run, plot.x), measures->number(plot.y));
+      points.add(run.seed, run, number_of(run, plot.x), measures->number(plot.y));
       continue;
     }
     const auto measured = measures->curves.find(plot.y);
     if (measured == measures->curves.end()) continue;
     const auto& [x, y] = measured->second;
-    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, x[i], y[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, run, x[i], y[i]);
   }
   return points;
 }
@@ -264,7 +269,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     }
     for (const auto& [at, values] : points.values) {
       TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
-      const RunStatistics over = over_runs(values);
+      const RunStatistics over = over_runs(over_packings(values.runs, values.values));
       add_values(over, row);
       row.emplace_back(over.runs);
       if (!of_whole_run) row.emplace_back(cycle);

@@ -226,8 +226,8 @@ void measure_where(const Store& store, std::span<const std::string> names,
 
 FigureRun history_of(const Run& selected, std::span<const Row> rows) {
   FigureRun history;
+  static_cast<Place&>(history) = selected.ask;
   history.run_id = selected.stage.id;
-  history.swept = selected.ask.swept;
   history.parameters = effective_parameters(selected.stage.resolved);
   for (const Row& row : rows) {
     if (!row.measures.numbers.contains("phi") ||
