@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/named.hpp"
 #include "core/simulation.hpp"
+#include "experiments/manifest/document.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/json_text.hpp"

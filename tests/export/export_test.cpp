@@ -18,6 +18,7 @@
 #include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/packing_file.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
@@ -339,6 +340,46 @@ TEST(Export, ContactsAreAllPairsThatTouch) {
       EXPECT_NEAR(on_bottom[name == "force_bottom_x_N" ? 0 : 1], value, 1e-12 * k * d) << name;
     }
     EXPECT_NE(on_bottom[1], 0);
+  }
+}
+
+/// An export as a start: the grains alone, with the planes of their cell.
+void expect_the_checkpoint(const fs::path& file, const PackingFacts& facts) {
+  SCOPED_TRACE(file);
+  const Checkpoint c = checkpoints().front();
+  const PackingFile packing = read_packing(read_bytes(file), file.string(), facts);
+  ASSERT_EQ(packing.position.cols(), c.state.position.cols());
+  Eigen::Matrix3Xd moved = packing.position - c.state.position;
+  const Eigen::RowVectorXd periods = moved.row(2) / c.cell.depth;  // z is wrapped
+  EXPECT_LT((periods.array() - periods.array().round()).abs().maxCoeff(), 1e-13);
+  moved.row(2).setZero();
+  EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-13);
+  ASSERT_TRUE(packing.velocity && packing.box);
+  EXPECT_LT((*packing.velocity - c.state.velocity).cwiseAbs().maxCoeff(), 1e-12);
+  const Eigen::Vector3d low(0, c.state.wall_height, 0);
+  EXPECT_LT((packing.box->low - low).norm(), 1e-13);
+  EXPECT_LT((packing.box->high - Eigen::Vector3d(c.cell.width, c.cell.top, c.cell.depth)).norm(),
+            1e-12);
+}
+
+TEST(Export, IsReadBackAsAStart) {
+  const TemporaryFolder folder;
+  const fs::path& at = folder.path();
+  const std::vector<Checkpoint> all = checkpoints();
+  const Frame upright = frame_of(all.front(), {}, about()),
+              tilted = frame_of(all.back(), {}, about());
+  extxyz_writer(at / "d.xyz", Lengths::diameters)(upright);
+  extxyz_writer(at / "m.xyz", Lengths::metres)(upright);
+  lammps_writer(at)(upright);
+  const PackingFacts facts{.diameter_m = upright.radius * 2, .largest_overlap = 0.25};
+  expect_the_checkpoint(at / "d.xyz", facts);
+  expect_the_checkpoint(at / "m.xyz", facts);
+  expect_the_checkpoint(at / "frame_3.data", facts);
+  extxyz_writer(at / "tilted.xyz", Lengths::metres)(tilted);
+  lammps_writer(at)(tilted);
+  for (const char* name : {"tilted.xyz", "frame_3.25.data"}) {
+    expect_refused<ManifestError>([&] { read_packing(read_bytes(at / name), name, facts); },
+                                  {"the box is not orthogonal", "at the end of a cycle"});
   }
 }
 
