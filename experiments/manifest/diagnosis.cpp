@@ -390,9 +390,11 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
 // Advice on several variants is one warning.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::vector<string>& warnings) {
+  const Start& start = scale.start;
+  const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
   std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
   for (const Variant& variant : variants) {
-    for (const string& one : advice_on(variant, !scale.start.is_stated())) {
+    for (const string& one : advice_on(variant, settles)) {
       auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
       if (known == advice.end()) known = advice.insert(known, {one, {}});
       known->second.push_back(variant.name());

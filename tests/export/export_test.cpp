@@ -334,7 +334,7 @@ TEST(Export, ContactsAreAllPairsThatTouch) {
     }
     EXPECT_EQ(pairs.size(), touching);
     EXPECT_GT(touching, 400U);
-    if (walls == WallTexture::smooth) EXPECT_GT(planes, 50U);
+    EXPECT_GE(planes, walls == WallTexture::smooth ? 50U : 0U);
     for (const auto& [name, value] : frame.scalars) {
       if (!name.starts_with("force_bottom_")) continue;
       EXPECT_NEAR(on_bottom[name == "force_bottom_x_N" ? 0 : 1], value, 1e-12 * k * d) << name;
