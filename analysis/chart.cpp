@@ -235,14 +235,23 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
-  std::vector<std::string> lines, notes, sources;
+  std::vector<std::string> lines, sources;
   std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
+  std::vector<std::pair<std::string, std::vector<std::string>>> notes;  // with their panels
+  const auto add_note = [&](const std::string& note, const std::string& letter) {
+    if (note.empty()) return;
+    auto known = std::ranges::find(notes, note, [](const auto& one) { return one.first; });
+    if (known == notes.end()) known = notes.insert(known, {note, {}});
+    known->second.push_back(letter);
+  };
+  std::size_t charts = 0;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
   };
   for (const FigureTable& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
+    ++charts;
     // Panels that show the same share a sentence.
     const std::string what = fmt::format("{} against {}{}.", axis_text(chart.y), axis_text(chart.x),
                                          chart.errors.empty() ? "" : "; " + chart.errors);
@@ -259,10 +268,10 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
         lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
     }
-    add_once(notes, chart.note);
+    add_note(chart.note, chart.letter);
     add_once(sources, chart.sources);
     if (lost > 0)
-      add_once(notes, fmt::format("Values that are not positive are not drawn: {}", lost));
+      add_note(fmt::format("Values that are not positive are not drawn: {}", lost), chart.letter);
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   for (const auto& [names, what] : panels) {
@@ -276,8 +285,12 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
                                       : "Bands",
                         own_errors ? ", except where stated" : "");
   }
-  std::ranges::move(sources, std::back_inserter(notes));
-  for (const std::string& note : notes) text += " " + note + ".";
+  for (const auto& [note, letters] : notes) {
+    const bool of_all = letters.size() == charts || letters.front().empty();
+    text += of_all ? " " : fmt::format(" ({}) ", fmt::join(letters, ", "));
+    text += note + ".";
+  }
+  for (const std::string& source : sources) text += " " + source + ".";
   if (!lines.empty()) text += fmt::format(" Reference lines: {}.", fmt::join(lines, "; "));
   return text;
 }

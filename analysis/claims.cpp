@@ -23,18 +23,20 @@ struct Values {
   std::map<const FigureRun*, double> found;
   std::size_t runs = 0;
   std::map<Missing, std::size_t> missing;
-  bool enough = true;  ///< three quarters of each group have a number
+  std::size_t not_positive = 0;  ///< numbers without a logarithm, which are left out
+  bool enough = true;            ///< three quarters of each group have a number
 
-  /// With `logarithms` a run has no number unless it is positive.
+  /// With `logarithms` only positive numbers count.
   void take(const Scalar& scalar, RunGroup group, bool logarithms = false) {
     std::size_t without = 0;
     for (const FigureRun* run : group) {
-      RunValue value = scalar.of(*run);
+      const RunValue value = scalar.of(*run);
       const bool found_one = value.missing == Missing::nothing;
-      if (found_one && logarithms && !(value.value > 0)) value.missing = Missing::undefined;
+      const bool counts = found_one && (!logarithms || value.value > 0);
       ++runs;
-      ++missing[value.missing];
-      if (value.missing == Missing::nothing) {
+      if (!found_one) ++missing[value.missing];
+      if (found_one && !counts) ++not_positive;
+      if (counts) {
         found[run] = value.value;
       } else {
         ++without;
@@ -49,8 +51,11 @@ void add(std::string& note, const std::string& text) {
 }
 
 void add_missing(std::string& note, const Values& values, const Scalar& scalar) {
+  if (values.not_positive > 0) {
+    add(note, fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
+                          values.not_positive, values.runs, scalar.reach));
+  }
   for (const auto& [why, count] : values.missing) {
-    if (why == Missing::nothing) continue;
     add(note, fmt::format("{} of {} runs {} {}", count, values.runs,
                           why == Missing::checkpoint  ? "lack a checkpoint of"
                           : why == Missing::too_short ? "end too early for"

@@ -207,12 +207,22 @@ class Script {
     const double high = std::max(data.high, axis.high.value_or(data.high));
     const double length = axis.clip && axis.low && axis.high ? *axis.high - *axis.low : high - low;
     if (!(length > 0) || !std::isfinite(length)) return;
-    // About five steps of 1, 2 or 5 times a power of ten; all ticks have the same number of
-    // decimals.
-    const double power = std::pow(10, std::floor(std::log10(length / 5)));
-    const double ratio = length / 5 / power;
-    const double step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
-    const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 9);
+    // About five steps of 1, 2 or 5 times a power of ten, fewer where the labels below the frame
+    // would touch; all ticks have the same number of decimals.
+    constexpr double letter = 6, gap = 8, margins = 65;  // [px]
+    double step = 0;
+    int decimals = 0;
+    for (double steps = 5; steps > 0; --steps) {
+      const double power = std::pow(10, std::floor(std::log10(length / steps)));
+      const double ratio = length / steps / power;
+      step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
+      decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 9);
+      const double letters =
+          static_cast<double>(std::max(fmt::formatted_size("{:.{}f}", low, decimals),
+                                       fmt::formatted_size("{:.{}f}", high, decimals)));
+      const double room = layout_of(chart_).width - margins;
+      if (name == std::string_view("y") || length / step * (letter * letters + gap) < room) break;
+    }
     if (step >= 1e6) return;
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }

@@ -124,10 +124,16 @@ json to_json(std::span<const Verdict> verdicts) {
 }
 
 std::string numbers_of(const Verdict& verdict) {
-  std::string text = verdict.estimate
-                         ? fmt::format("{:.3g}, 90 % interval {:.3g} to {:.3g}", *verdict.estimate,
-                                       verdict.interval.low, verdict.interval.high)
-                         : std::string("not measured");
+  const auto end = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("unbounded");
+  };
+  const auto [low, high] = verdict.interval;
+  const bool any_end = std::isfinite(low) || std::isfinite(high);
+  std::string text = "not measured";
+  if (verdict.estimate) {
+    text = std::isfinite(*verdict.estimate) ? end(*verdict.estimate) : "no finite value";
+    text += ", 90 % interval " + (any_end ? end(low) + " to " + end(high) : end(low));
+  }
   text += fmt::format(", margin {:.3g}, {}{}", verdict.margin,
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");

@@ -11,13 +11,19 @@ namespace shearcell {
 namespace {
 
 constexpr std::uint64_t kChecksPerCheckpoint = 20;
-constexpr double kDenseGrains = 1.2;  // per d^3, of a packing at phi = 0.63
 
 std::uint64_t steps_in(double seconds, const Scene& scene) {
   return static_cast<std::uint64_t>(std::min(seconds / scene.time_step, kMostSteps));
 }
 
 }  // namespace
+
+double pressing_time(const Scene& scene, double height, double per_area) {
+  constexpr double dense_grains = 1.2;  // per d^3, of a packing at phi = 0.63
+  const double way = std::max(0.0, height - per_area / dense_grains);
+  const double speed = scene.pressure / (scene.wall_drag + scene.drag_rate * per_area);
+  return way / speed + 0.5;
+}
 
 Settle::Settle(const SettleParameters& parameters, const Scene& scene)
     : parameters_(parameters),
@@ -36,9 +42,8 @@ std::uint64_t Settle::next_check(std::uint64_t step) const {
 std::uint64_t Settle::compaction_steps(const Cell& cell, std::size_t grains) const {
   if (scene_.pressure == 0) return 0;
   const double per_area = static_cast<double>(grains) / (cell.width * cell.depth);
-  const double way = std::max(0.0, cell.top - cell.bottom - per_area / kDenseGrains);
-  const double speed = scene_.pressure / (scene_.wall_drag + scene_.drag_rate * per_area);
-  const double checks = std::ceil((way / speed + 0.5) / kSettleCheckInterval);
+  const double time = pressing_time(scene_, cell.top - cell.bottom, per_area);
+  const double checks = std::ceil(time / kSettleCheckInterval);
   return check_steps_ * static_cast<std::uint64_t>(
                             std::min(checks, parameters_.time_limit / kSettleCheckInterval));
 }
@@ -78,7 +83,8 @@ bool Settle::finished(const Simulation& simulation) const {
                          static_cast<double>(step) * scene_.time_step, parameters_.time_limit, -1,
                          step,
                          "Raise that limit (settle_time_limit_s) or the settling tolerances, or "
-                         "check that the pressure can lift the grains");
+                         "check that the pressure can lift the grains and that the drag "
+                         "(drag_kg_per_s) neither leaves them moving nor holds the wall");
 }
 
 StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {

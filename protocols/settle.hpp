@@ -21,6 +21,11 @@ struct SettleParameters {
       WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
 };
 
+/// Time [s] in which the moving wall presses loose grains of this height [d] together, `per_area`
+/// grains per d^2: the time from there to a dense packing at the speed at which the drags of the
+/// wall and of all grains balance the pressure, and half a second more.
+double pressing_time(const Scene& scene, double height, double per_area);
+
 /// Gravity is switched on only after the moving wall has had time to press the grains together.
 /// Grains that fall first form a heap, and a heap nearly as heavy as P A_w (0.95 of it at N =
 /// 18200) jams between rough side walls before it reaches the top.
@@ -40,9 +45,8 @@ class Settle final : public Protocol {
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
   std::uint64_t last_step() const override { return 0; }
 
-  /// Steps, a multiple of the check interval, that the wall needs to press the grains together: the
-  /// time from the fill height to a dense packing at the speed at which the drags of the wall and
-  /// of all grains balance the pressure, and half a second more. 0 without pressure.
+  /// pressing_time() in steps, a multiple of the check interval, at most the time limit. 0 without
+  /// pressure.
   std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
   /// The part of them without gravity: all, but 0 if the scene has no gravity.

@@ -260,7 +260,8 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
   for (const Curve& curve : curves) {
     if (!titles.insert(plain_text(curve.style.title)).second) {
       throw AnalysisError("two curves of a figure have the label '" +
-                          plain_text(curve.style.title) + "'; give their variants other `labels`");
+                          plain_text(curve.style.title) +
+                          "'; give each its own, in the `series` of its plot or in `labels`");
     }
     series.push_back({.title = curve.style.title,
                       .colour = curve.style.colour,

@@ -87,38 +87,35 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
       "KEY=V");
 }
 
-/// First and last of "6-9" or "6".
-std::pair<std::string, std::string> ends_of(const std::string& seeds) {
-  const std::size_t dash = seeds.find('-');
-  const std::string first = seeds.substr(0, dash);
-  return {first, dash == std::string::npos ? first : seeds.substr(dash + 1)};
-}
-
-std::string unfit_seeds(const std::string& text) {
-  const auto [first, last] = ends_of(text);
-  for (const std::string& seed : {first, last}) {
-    if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) return why;
+/// Adds the seeds of "6,8" or "6-9". Throws CLI::ValidationError.
+void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
+  const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::string part = list.substr(begin, list.find(',', begin) - begin);
+    begin += part.size() + 1;
+    const std::size_t dash = part.find('-');
+    const std::string first = part.substr(0, dash);
+    const std::string last = dash == std::string::npos ? first : part.substr(dash + 1);
+    for (const std::string& seed : {first, last}) {
+      if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) refuse(why);
+    }
+    const std::uint64_t low = std::stoull(first), high = std::stoull(last);
+    if (high < low || high - low >= ManifestLimits::runs) {
+      refuse(fmt::format(
+          "a range of seeds goes from the lower to the higher, and has at most {} (got '{}')",
+          ManifestLimits::runs, part));
+    }
+    for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
   }
-  const std::uint64_t low = std::stoull(first), high = std::stoull(last);
-  if (high >= low && high - low < ManifestLimits::runs) return "";
-  return fmt::format(
-      "a range of seeds goes from the lower to the higher, and has at most {} (got '{}')",
-      ManifestLimits::runs, text);
 }
 
 void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
-  const auto take = [&seeds](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      const auto [first, last] = ends_of(text);
-      const std::uint64_t count = std::stoull(last) - std::stoull(first) + 1;
-      for (std::uint64_t k = 0; k < count; ++k) seeds.push_back(std::stoull(first) + k);
-    }
+  const auto take = [&seeds](const std::vector<std::string>& lists) {
+    for (const std::string& list : lists) add_seeds(list, seeds);
   };
   command
       .add_option_function<std::vector<std::string>>(
           "--seed", take, "Only runs with these seeds, as 6, 6,8 or 6-9; may be repeated")
-      ->delimiter(',')
-      ->check(unfit_seeds)
       ->allow_extra_args(false)
       ->type_name("N");
 }

@@ -56,6 +56,8 @@ const std::array kFormats = {
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
     ExportFormat{"lammps", "LAMMPS data with a script to continue, a folder: LAMMPS, OVITO; SI", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
+    ExportFormat{"contacts", "pairs with overlap and force, CSV and run.json, a folder: pandas", "",
+                 [](const auto& out, auto, auto) { return contacts_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
 

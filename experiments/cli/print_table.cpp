@@ -34,7 +34,7 @@ std::vector<Column> measure(const std::vector<Row>& rows) {
   std::vector<Column> columns(rows.front().size());
   for (const Row& row : rows) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      columns[c].width = std::max(columns[c].width, characters(row[c]));
+      columns[c].width = std::max(columns[c].width, columns_of(row[c]));
       columns[c].right = columns[c].right && (&row == &rows.front() || is_number(row[c]));
     }
   }
@@ -58,10 +58,10 @@ void narrow(std::vector<Column>& columns, std::size_t limit) {
 }
 
 std::string fitted(const std::string& cell, const Column& column) {
-  const std::size_t size = characters(cell);
-  if (size > column.width) return std::string(first_characters(cell, column.width - 1)) + "~";
-  const std::string room(column.width - size, ' ');
-  return column.right ? room + cell : cell + room;
+  const bool cut = columns_of(cell) > column.width;
+  const std::string shown = cut ? std::string(first_columns(cell, column.width - 1)) + "~" : cell;
+  const std::string room(column.width - columns_of(shown), ' ');
+  return column.right ? room + shown : shown + room;
 }
 
 /// Colours states and outcomes.

@@ -156,12 +156,9 @@ void resume_task(const RunOptions& options, Context& context) {
     fs::remove_all(folder);
   }
   print_result(result, context);
-  if (stop_requested()) {
-    // If work is left, the task continues later, whatever else happened.
-    const bool work_left = result.interrupted + result.blocked > 0;
-    if (work_left || context.exit_code == kInterrupted) {
-      context.exit_code = work_left ? kInterrupted : kDone;
-    }
+  // If work is left, the task continues later, whatever else happened.
+  if (stop_requested() && result.interrupted + result.blocked > 0) {
+    context.exit_code = kInterrupted;
   }
   if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
@@ -187,7 +184,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 void print_result(const CampaignResult& result, Context& context) {
-  const bool interrupted = result.interrupted > 0 || stop_requested();
+  const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
   context.exit_code = result.damaged > 0   ? kStoreDamaged
                       : result.failed > 0  ? kRunFailed
                       : interrupted        ? kInterrupted

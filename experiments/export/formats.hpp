@@ -39,6 +39,12 @@ FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 /// in.frame_CYCLE, the script with which LAMMPS continues it (lammps_script).
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
+/// A folder with contacts_CYCLE.csv for each frame, a row for each contact. The particles are
+/// numbered as in the other formats; `other` is 0 for a wall's plane. `wall_side` is that of the
+/// wall, as Frame::type, and 0 between grains. The force on `grain` is force_N along the normal;
+/// that on `other` is the opposite one.
+FrameWriter contacts_writer(const std::filesystem::path& folder);
+
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",
 /// scalars}]}, beside the files of the formats that are folders.
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t frames);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/diagnostics.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -71,6 +72,29 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
   }
 }
 
+/// After add_facts().
+void add_contacts(const Checkpoint& c, const WallPose& pose, const Measures& measures,
+                  Frame& frame) {
+  double stiffness = measures.number("raised_stiffness_N_per_m");  // only of a stiffening
+  for (const auto& [key, value] : frame.parameters) {
+    if (key == "stiffness_N_per_m" && std::isnan(stiffness)) stiffness = value.get<double>();
+  }
+  const auto add = [&](const Contact& contact) {
+    const auto other = static_cast<std::size_t>(contact.other) + 1;
+    const bool of_grains = contact.kind == Contact::Kind::grain;
+    frame.contacts.push_back({.grain = static_cast<std::size_t>(contact.grain) + 1,
+                              .other = of_grains ? other
+                                       : contact.kind == Contact::Kind::wall_grain
+                                           ? frame.grains + other
+                                           : 0,
+                              .side = of_grains ? 0 : 1 + static_cast<std::int32_t>(contact.side),
+                              .overlap = contact.overlap,
+                              .force = stiffness * contact.overlap * c.units.diameter_m,
+                              .normal = contact.normal});
+  };
+  for_each_contact(c.cell, c.state.position, pose, add);
+}
+
 }  // namespace
 
 std::string frame_name(const Frame& frame) {
@@ -95,6 +119,7 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   frame.theta = checkpoint.theta;
   add_facts(record, run, measures, frame);
   add_columns(measures, frame);
+  add_contacts(checkpoint, pose, measures, frame);
   frame.continued = continued(checkpoint, run.stage);
   return frame;
 }

@@ -22,6 +22,15 @@ struct FrameColumn {
   std::variant<std::vector<double>, std::vector<std::int32_t>> values;
 };
 
+/// A contact of two particles, once, or of a grain with a plane.
+struct FrameContact {
+  std::size_t grain = 0, other = 0;  ///< numbers of the particles from 1; other 0: a plane
+  std::int32_t side = 0;             ///< of a wall contact, as Frame::type; 0 between grains
+  double overlap = 0;                ///< [d]
+  double force = 0;                  ///< [N]; NaN if the stiffness is unknown
+  Eigen::Vector3d normal;            ///< unit vector towards `grain`, the direction of its force
+};
+
 /// Particles in SI units. Wall grains have measures of zero, and classes of -1. Velocities of
 /// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
 struct Frame : Particles {
@@ -39,6 +48,7 @@ struct Frame : Particles {
 
   /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
   std::vector<FrameColumn> columns;
+  std::vector<FrameContact> contacts;  ///< by `grain`
 
   /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
   std::optional<LammpsTask> continued;

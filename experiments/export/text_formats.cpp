@@ -110,6 +110,17 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
   };
 }
 
+FrameWriter contacts_writer(const std::filesystem::path& folder) {
+  return [folder](const Frame& f) {
+    std::string text = "grain,other,wall_side,overlap_d,force_N,normal_x,normal_y,normal_z\n";
+    for (const FrameContact& c : f.contacts) {
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.17g},{:.17g},{:.17g}\n", c.grain,
+                     c.other, c.side, c.overlap, c.force, fmt::join(c.normal, ","));
+    }
+    NewFile(folder / fmt::format("contacts_{}.csv", frame_name(f))).add(text);
+  };
+}
+
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t count) {
   using Json = nlohmann::ordered_json;
   return [folder, count, frames = std::make_shared<Json>(Json::array())](const Frame& f) {

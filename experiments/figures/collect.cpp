@@ -283,8 +283,12 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
                                unknown_name("figure", name, supplement));
     }
   }
+  // Beside figures of the supplement; with experiments of a user's own only by name.
+  const bool lists_any = std::ranges::any_of(
+      manifests, [](const RegisteredManifest& manifest) { return !manifest.figures.empty(); });
   for (const Figure& figure : all_figures()) {
     if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
+    if (names.empty() && !lists_any) continue;
     if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
   }
   for (const std::string& name : names) {

@@ -226,6 +226,13 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
     ++computed.runs_by_variant[run.name];
   }
   computed.result = figure.make(runs);
+  for (Verdict& verdict : computed.result.verdicts) {
+    // The runs that it compares may be among those that were not selected.
+    if (verdict.estimate || options.runs.variants.empty()) continue;
+    verdict.note =
+        fmt::format("only runs with {} are selected{}{}", fmt::join(options.runs.variants, ", "),
+                    verdict.note.empty() ? "" : ": ", verdict.note);
+  }
   for (FigureTable& table : computed.result.tables) name_run_counts(table);
   summary.verdicts = computed.result.verdicts;
   for (const FigureTable& table : computed.result.tables) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/figures/run_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -203,7 +206,19 @@ void measure_where(const Store& store, std::span<const std::string> names,
     }
     if (records.empty()) continue;
     MeasuredCheckpoints found = measure_checkpoints(store, records, names, with_cadence);
-    for (std::size_t n = 0; n < measures.size(); ++n) *measures[n] = std::move(found.measures[n]);
+    std::map<std::string, std::size_t> lacking;  // providers, and checkpoints with a file
+    for (std::size_t n = 0; n < measures.size(); ++n) {
+      *measures[n] = std::move(found.measures[n]);
+      if (records[n].state == CheckpointState::pruned) continue;
+      for (const std::string& name : found.lacking[n]) ++lacking[name];
+    }
+    for (const auto& [name, count] : lacking) {
+      if (provider(name).earlier.empty()) continue;
+      table.notes.push_back(
+          fmt::format("{} with a file: no {}, since a checkpoint before {} is pruned or damaged; "
+                      "`shearcell regenerate` restores it",
+                      counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
+    }
     add_unread(found, table);
     if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "analysis/packing_fraction.hpp"
+#include "protocols/settle.hpp"
 
 namespace shearcell {
 namespace {
@@ -151,6 +152,13 @@ double expected_overlap(const Parameters& p) {
 
 double damping_time_s(const Parameters& p) {
   return 18 * p.mass_kg / p.drag_kg_per_s;
+}
+
+double pressing_time_s(const Parameters& p) {
+  const Geometry shape = geometry(p);
+  const double width = cell_width(shape);
+  return pressing_time(settle_scene(p), fill_height(shape),
+                       static_cast<double>(p.grains) / (width * width));
 }
 
 double expected_interior_grains(const Parameters& p) {

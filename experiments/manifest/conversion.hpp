@@ -92,6 +92,10 @@ double expected_overlap(const Parameters& parameters);
 /// drag; there the energy only rises (twofold in 16 s).
 double damping_time_s(const Parameters& parameters);
 
+/// Time [s] in which the moving wall presses the loose grains together (protocols/settle.hpp):
+/// proportional to the drag if that is large. Settling cannot end earlier.
+double pressing_time_s(const Parameters& parameters);
+
 /// Expected number of interior grains (analysis/packing_fraction.hpp) at the nominal height; 0 in a
 /// cell that is too small for any.
 double expected_interior_grains(const Parameters& parameters);

@@ -333,7 +333,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 }
 
 // What is sound but unlikely to be meant.
-std::vector<string> advice_on(const Variant& variant) {
+std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
   if (!pressure_lifts_column(p)) {
@@ -355,34 +355,46 @@ std::vector<string> advice_on(const Variant& variant) {
                "({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                overlap, p.max_overlap_diameters));
   }
-  if (packing.drag_kg_per_s == 0) {
+  if (settles && packing.drag_kg_per_s == 0) {
     advice.push_back(
         format("without drag the grains do not come to rest, so settling fails at "
                "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
                p.settle_time_limit_s));
-  } else if (const double time = damping_time_s(packing); time > p.settle_time_limit_s) {
+  } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
     advice.push_back(format(
         "with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
         "settle_time_limit_s ({:g} s). Raise one of them.",
         packing.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
         p.settle_time_limit_s));
   }
+  if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
+    advice.push_back(format(
+        "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses the "
+        "grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower the drag, or "
+        "raise pressure_Pa or that limit.",
+        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s,
+        time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
+        p.settle_time_limit_s));
+  }
   if (p.protocol != ProtocolKind::stiffen) {
     if (auto step = time_step_advice(shear_time_step(p), "steps_per_cycle"))
       advice.push_back(*step);
   }
-  if (auto step = time_step_advice(settle_time_step(packing), "settle_time_step_s")) {
+  if (auto step = time_step_advice(settle_time_step(packing), "settle_time_step_s");
+      settles && step) {
     advice.push_back(*step);
   }
   return advice;
 }
 
 // Advice on several variants is one warning.
-void warn_of_parameters(const Manifest& manifest, std::span<const Variant> variants,
-                        std::vector<string>& warnings) {
+void warn_of_parameters(const Manifest& manifest, const Scale& scale,
+                        std::span<const Variant> variants, std::vector<string>& warnings) {
+  const Start& start = scale.start;
+  const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
   std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
   for (const Variant& variant : variants) {
-    for (const string& one : advice_on(variant)) {
+    for (const string& one : advice_on(variant, settles)) {
       auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
       if (known == advice.end()) known = advice.insert(known, {one, {}});
       known->second.push_back(variant.name());
@@ -522,7 +534,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
   return curves.size();
 }
 
-std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
+std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, const Scale& scale,
                                 std::span<const Variant> variants) {
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
@@ -541,11 +553,19 @@ std::vector<string> problems_of(const PlotSpec& plot, const Scale& scale,
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
   for (const SeriesSpec& one : plot.series) {
+    if (plot.listed) break;  // only of the manifest that states the plot
     const std::size_t curves = curves_of(one, plot, variants);
-    if (curves < 2) continue;
-    found.push_back(
-        format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
-               words_of(one.where), curves));
+    const bool of_another = std::ranges::any_of(scales_of(manifest), [&](const Scale& other) {
+      return curves_of(one, plot, variants_of(other)) > 0;
+    });
+    if (curves > 1) {
+      found.push_back(
+          format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
+                 words_of(one.where), curves));
+    } else if (curves == 0 && !of_another) {
+      found.push_back(format("the style of {} fits no curve at any scale. State swept values.",
+                             words_of(one.where)));
+    }
   }
   if (plot.cycle && is_of_run(plot)) {
     found.push_back(
@@ -593,6 +613,41 @@ ClaimProblems problems_of(const ClaimSpec& claim, const Scale& scale,
   return found;
 }
 
+/// Warns of the plots and claims that `stated` states: of its own ones if `figure` is "", else of
+/// those of a figure that the manifest lists.
+void warn_of_stated(const Manifest& stated, const string& figure, const Manifest& manifest,
+                    const Scale& scale, std::span<const Variant> variants, std::size_t seeds,
+                    std::vector<string>& warnings) {
+  const auto is_of = [&](const auto& one) {
+    return figure.empty() || (one.figure.empty() ? one.name : one.figure) == figure;
+  };
+  const auto warn_of = [&](const char* kind, const auto& one, const std::vector<string>& problems) {
+    const string place = figure.empty()
+                             ? format("{}:{}:{}", manifest.file, one.at.line, one.at.column)
+                             : format("{}: figure {}", manifest.file, figure);
+    for (const string& problem : problems) {
+      if (!problem.empty())
+        warnings.push_back(format("{}: {} {}: {}", place, kind, one.name, problem));
+    }
+  };
+  for (const auto& plot : stated.plots) {
+    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, manifest, scale, variants));
+  }
+  for (const auto& claim : stated.claims) {
+    if (!is_of(claim)) continue;
+    const ClaimProblems here = problems_of(claim, scale, variants, seeds);
+    if (claim.listed && !here.refusals.empty()) continue;  // of variants that it does not have
+    warn_of("claim", claim, here.refusals);
+    // A small scale is for trying: nothing is said where another one can decide the claim.
+    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
+      if (here.lacks.empty() || other.name == scale.name) return false;
+      const auto there = problems_of(claim, other, variants_of(other), other.seeds.values.size());
+      return there.refusals.empty() && there.lacks.empty();
+    });
+    if (!decided) warn_of("claim", claim, here.lacks);
+  }
+}
+
 void warn_of_figures(const Manifest& manifest, const Scale& scale,
                      std::span<const Variant> variants, std::size_t seeds,
                      std::vector<string>& warnings) {
@@ -606,25 +661,12 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale,
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
-  const auto warn_of = [&](const char* kind, const auto& own, const std::vector<string>& problems) {
-    for (const string& problem : problems) {
-      if (problem.empty()) continue;
-      warnings.push_back(format("{}:{}:{}: {} {}: {}", manifest.file, own.at.line, own.at.column,
-                                kind, own.name, problem));
+  for (const string& figure : manifest.figures) {
+    for (const Manifest& shipped : shipped_manifests()) {
+      warn_of_stated(shipped, figure, manifest, scale, variants, seeds, warnings);
     }
-  };
-  for (const auto& plot : manifest.plots) warn_of("plot", plot, problems_of(plot, scale, variants));
-  for (const auto& claim : manifest.claims) {
-    const ClaimProblems here = problems_of(claim, scale, variants, seeds);
-    warn_of("claim", claim, here.refusals);
-    // A small scale is for trying: nothing is said where another one can decide the claim.
-    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
-      if (here.lacks.empty() || other.name == scale.name) return false;
-      const auto there = problems_of(claim, other, variants_of(other), other.seeds.values.size());
-      return there.refusals.empty() && there.lacks.empty();
-    });
-    if (!decided) warn_of("claim", claim, here.lacks);
   }
+  warn_of_stated(manifest, "", manifest, scale, variants, seeds, warnings);
 }
 
 }  // namespace
@@ -641,6 +683,10 @@ void check_variants(const Manifest& manifest) {
   std::uint64_t runs = 0;
   for (const Scale& scale : scales) {
     const string path = scale.name.empty() ? "" : "scales." + scale.name;
+    if (scale.name == "base") {
+      problems.add(scale.at, path, "is the name of runs without a scale", "",
+                   "Choose another one, such as desk.");
+    }
     // What the scale itself states; a swept key of `base` is the sweep's default.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
@@ -672,7 +718,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::span<const Variant> all, std::span<const Variant> planned,
                                 std::size_t seeds) {
   std::vector<string> warnings;
-  warn_of_parameters(manifest, planned, warnings);
+  warn_of_parameters(manifest, scale, planned, warnings);
   warn_of_figures(manifest, scale, all, seeds, warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;

@@ -13,6 +13,8 @@
 #include <set>
 #include <sstream>
 
+#include "provenance/io/read_number.hpp"
+
 namespace shearcell {
 namespace {
 
@@ -236,7 +238,8 @@ class TreeBuilder : public YAML::EventHandler {
         refuse(file_, node.at, "", "a key must be a plain name", "", "");
       const std::string name = printable(node.text);
       if (!keys.insert(node.text).second) {
-        refuse(file_, node.at, name, "appears twice in one map", "", "Keep one of them.");
+        refuse(file_, node.at, name, "appears twice in one map", "",
+               is_number(name) ? kDecimalPoint : "Keep one of them.");
       }
       Node value{.at = node.at,  // an empty value is reported at its key
                  .key = std::move(node.text),
@@ -339,6 +342,10 @@ Node read_document(string_view text, string_view file) {
            syntax_remedy(text, error));
   }
   return builder.take();
+}
+
+bool is_number(string_view key) {
+  return read_number<double>(key).has_value();
 }
 
 std::string printable(string_view text, std::size_t longest) {

@@ -37,6 +37,13 @@ struct Node {
 /// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
+/// Whether a key is a number: what a decimal comma in braces leaves, as "05" in `{amplitude_rad:
+/// 0,05}`.
+bool is_number(std::string_view key);
+/// What to do about such a key.
+inline constexpr const char* kDecimalPoint =
+    "If it follows a comma: a number takes a decimal point, as in 0.05.";
+
 /// Throws a ManifestError, with the place and this remedy, unless the text is UTF-8 without control
 /// characters other than tabs and line ends.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);

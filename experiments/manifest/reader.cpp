@@ -132,7 +132,8 @@ void fields(Scale& scale, const auto& visit) {
 
 void fields(SeriesSpec& series, const auto& visit) {
   visit(series.label, {.name = "label", .longest = kLongestLabel});
-  visit(series.colour, {.name = "colour", .names = colour_names});
+  visit(series.colour,
+        {.name = "colour", .names = colour_names, .besides = ", or \"#rrggbb\" in quotes"});
   visit(series.marker, {.name = "marker"});
 }
 
@@ -348,6 +349,13 @@ string remedy_of(const Field& about) {
                                : fmt::format("It takes `{}`.", about.example);
 }
 
+// Whether the node is a colour such as "#0072b2".
+bool is_rgb(const Node& in) {
+  const string& text = in.text;
+  return in.is_scalar() && text.starts_with('#') && text.size() == 7 &&
+         text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos;
+}
+
 // Whether the node is the word `auto` and the parameter takes it.
 bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
@@ -397,11 +405,7 @@ struct Reader {
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
     if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
-    if (!in.key.empty() &&
-        std::ranges::all_of(in.key, [](unsigned char c) { return std::isdigit(c) != 0; })) {
-      return reject_key(in, "is a number where a key belongs",
-                        "If it follows a comma: a number takes a decimal point, as in 0.05.");
-    }
+    if (is_number(in.key)) return reject_key(in, "is a number where a key belongs", kDecimalPoint);
     for (const auto& [names, instead] : kNotModelled) {
       for (const string_view name : names) {
         if (in.key == name || in.key.starts_with(string(name) + "_")) {
@@ -571,11 +575,9 @@ struct Reader {
   // One of the names or an expression of terms, a text, or a name.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
-    const bool colour = about.names.data() == colour_names.data() && text.starts_with('#');
     if (in.is_scalar() && !about.terms.empty() && is_expression(text)) {
       if (check_expression(in, about)) value = text;
-    } else if (in.is_scalar() && colour && text.size() == 7 &&
-               text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos) {
+    } else if (!about.besides.empty() && is_rgb(in)) {
       value = text;
     } else if (about.is_choice()) {
       if (const auto read = read_scalar(in, about)) read->get_to(value);
@@ -598,6 +600,7 @@ struct Reader {
   // A first and a last cycle.
   void read(const Node& in, const Field& about, std::array<std::uint64_t, 2>& value) {
     const Field cycle = {.range = about.range, .whole = true};
+    const std::size_t problems_before = problems.size();
     value = {1, 1};
     if (about.example.empty()) {  // one cycle
       read(in, cycle, value[0]);
@@ -610,18 +613,21 @@ struct Reader {
       value[1] = value[0];
       read(ends[1], cycle, value[1]);
     }
-    if (ends.size() != 2 || value[1] < value[0]) {
+    const bool in_order = ends.size() == 2 && value[0] <= value[1];
+    if (!in_order && problems.size() == problems_before) {
       reject(in, "is not a first and a last cycle", fmt::format("It takes `{}`.", about.example));
     }
   }
 
   // The ends of a window.
   void read(const Node& in, const Field& about, std::array<double, 2>& window) {
+    const std::size_t problems_before = problems.size();
     const std::span<const Node> ends = items_of(in, about.example);
     for (std::size_t k = 0; k < std::min(ends.size(), window.size()); ++k) {
       read(ends[k], {.range = about.range}, window[k]);
     }
-    if (ends.size() != 2 || !(window[0] < window[1])) {
+    const bool in_order = ends.size() == 2 && window[0] < window[1];
+    if (!in_order && problems.size() == problems_before) {
       reject(in, "is not a window from a low to a high value",
              fmt::format("It takes `{}`.", about.example));
     }
@@ -661,11 +667,13 @@ struct Reader {
   // Points [x, y] or [x, y, error].
   void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
     for (const Node& item : items_of(in, about.example)) {
+      const std::size_t problems_before = problems.size();
       std::vector<double> point;
       for (const Node& number : items_of(item, "[0.05, 0.646]")) {
         read(number, {.range = about.range}, point.emplace_back());
       }
-      if (point.size() != 2 && point.size() != 3) {
+      const bool fits = point.size() == 2 || point.size() == 3;
+      if (!fits && problems.size() == problems_before) {
         reject(item, "is not a point", "It takes [x, y], or [x, y, error].");
       }
       points.push_back(std::move(point));
@@ -1145,10 +1153,12 @@ struct Reader {
         if (own == nullptr || !is_name(own->text)) continue;
         const string& text = own->text;
         const string of = its_figure == nullptr ? "" : its_figure->text;
+        bool restated = false;  // a listed figure that is stated here too
         const auto is_panel = [&](const Figure& figure) {
           const bool computed = find_named(computed_figures(), figure.name) != nullptr;
           const bool also_listed = std::ranges::find(listed, figure.name) != listed.end();
           if (!computed && !also_listed && of == figure.name) return false;
+          restated = !computed && of == figure.name;
           if (!text.starts_with(figure.name)) return false;
           const string_view rest = string_view(text).substr(figure.name.size());
           return rest.size() < 2 || rest.front() == '_';
@@ -1157,7 +1167,11 @@ struct Reader {
                                   ? !taken.emplace(text, of).second
                                   : taken.contains(text) && taken.at(text) != text;
         if (std::ranges::any_of(supplement, is_panel)) {
-          reject_value(*own, "is the name of a figure of the supplement", "Choose another one.");
+          reject_value(*own, "is the name of a figure of the supplement",
+                       restated ? fmt::format("Leave {} out of `figures`, since this manifest "
+                                              "states it, or choose another name.",
+                                              of)
+                                : "Choose another one.");
         } else if (is_taken || is_panel_of_own(text)) {
           reject_value(*own, "is the name of another plot or claim", "Choose another one.");
         }

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/named.hpp"
 #include "core/simulation.hpp"
+#include "experiments/manifest/document.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/json_text.hpp"
@@ -247,7 +249,9 @@ bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKin
 }
 
 std::string expected_values(const Field& field) {
-  if (field.is_choice()) return fmt::format("one of {}", fmt::join(field.names, ", "));
+  if (field.is_choice()) {
+    return fmt::format("one of {}{}", fmt::join(field.names, ", "), field.besides);
+  }
   if (field.whole) {
     return fmt::format("an integer from {:.0f} to {:.0f}", field.range.min, field.range.max);
   }
@@ -275,6 +279,10 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
       std::string point(text);
       std::ranges::replace(point, ',', '.');
       return ValueProblem{"is not a number", "A number takes a decimal point: " + point + "."};
+    }
+    if (real && !field.whole && text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
+      return ValueProblem{"begins with a zero",
+                          fmt::format("{} Else write {}.", kDecimalPoint, *real)};
     }
     if (!real || (field.whole && *real != std::floor(*real))) {
       return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};

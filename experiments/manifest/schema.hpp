@@ -55,6 +55,7 @@ struct Field {
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< of a choice: the values
+  std::string_view besides = {};                 ///< what a choice takes besides its names
   bool whole = false;                            ///< takes whole numbers alone
   std::span<const std::string_view> terms = {};  ///< numbers of which it takes expressions too
   std::string_view example = {};                 ///< as YAML

@@ -20,13 +20,23 @@ std::vector<Figure> stated_figures(const Manifest& manifest) {
   return own_figures(plots, claims, names, manifest.question);
 }
 
+std::span<const Manifest> shipped_manifests() {
+  static const std::vector<Manifest> all = [] {
+    std::vector<Manifest> manifests;
+    for (const auto& [file, text] : shipped_texts) {
+      Manifest& manifest = manifests.emplace_back(read_manifest(text, file, true));
+      for (PlotSpec& plot : manifest.plots) plot.listed = true;
+      for (ClaimSpec& claim : manifest.claims) claim.listed = true;
+    }
+    return manifests;
+  }();
+  return all;
+}
+
 std::span<const Figure> all_figures() {
   static const std::vector<Figure> all = [] {
     std::vector<Figure> figures(computed_figures().begin(), computed_figures().end());
-    for (const auto& [file, text] : shipped_texts) {
-      Manifest manifest = read_manifest(text, file, true);
-      for (PlotSpec& plot : manifest.plots) plot.listed = true;
-      for (ClaimSpec& claim : manifest.claims) claim.listed = true;
+    for (const Manifest& manifest : shipped_manifests()) {
       std::ranges::move(stated_figures(manifest), std::back_inserter(figures));
     }
     return figures;

@@ -13,6 +13,9 @@
 
 namespace shearcell {
 
+/// The manifests that state figures of the supplement, as read_manifest() gives them.
+std::span<const Manifest> shipped_manifests();
+
 /// Every figure of the supplement: the computed ones, then the stated ones.
 std::span<const Figure> all_figures();
 

@@ -197,11 +197,10 @@ class Campaign {
     return held_job;
   }
 
-  // Of a job that is not computed any more. Reads the log alone, because the user waits for the
-  // end.
+  // Of a job that is not computed any more. Measures nothing, because the user waits for the end.
   bool was_done(const StageJob& job) const {
     try {
-      return store_.stage(job.id).state == StageState::completed;
+      return look_at(store_, store_.stage(job.id)).done;
     } catch (const std::exception&) {
       return false;  // the next attempt to compute it reports why
     }

@@ -477,7 +477,7 @@ double checkpoint_bytes(const Geometry& shape) {
 double settling_time_s(const Parameters& p) {
   const double height = p.height_over_width * cell_width(geometry(p));
   const double time = 0.6 + 0.00175 * height * height;
-  return std::min(std::max(time, damping_time_s(p)), p.settle_time_limit_s);
+  return std::min(std::max({time, damping_time_s(p), pressing_time_s(p)}), p.settle_time_limit_s);
 }
 
 double minimization_evaluations(double grains) {

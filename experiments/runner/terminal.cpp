@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/terminal.hpp"
 
+#include <locale.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
+#include <cwchar>
 #include <memory>
 
 #include "experiments/manifest/document.hpp"
@@ -19,9 +20,22 @@ std::string_view environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Of the bytes of UTF-8, all but those that continue a character.
-bool begins_character(char byte) {
-  return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+struct Character {
+  std::size_t bytes = 1;
+  std::size_t columns = 1;
+};
+
+/// The first character of a UTF-8 text that is not empty, whatever the program's locale.
+Character first_character(std::string_view text) {
+  static const locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
+  const locale_t before = utf8 == nullptr ? nullptr : uselocale(utf8);
+  wchar_t character = 0;
+  std::mbstate_t state{};
+  const std::size_t bytes = std::mbrtowc(&character, text.data(), text.size(), &state);
+  const int columns = wcwidth(character);
+  if (before != nullptr) uselocale(before);
+  if (bytes == 0 || bytes > text.size()) return {};
+  return {bytes, columns < 0 ? 1 : static_cast<std::size_t>(columns)};
 }
 
 }  // namespace
@@ -53,14 +67,23 @@ std::string for_terminal(std::string_view text) {
   }
 }
 
-std::size_t characters(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+std::size_t columns_of(std::string_view text) {
+  std::size_t columns = 0;
+  while (!text.empty()) {
+    const Character first = first_character(text);
+    columns += first.columns;
+    text.remove_prefix(first.bytes);
+  }
+  return columns;
 }
 
-std::string_view first_characters(std::string_view text, std::size_t count) {
+std::string_view first_columns(std::string_view text, std::size_t count) {
   std::size_t end = 0;
-  for (; end < text.size(); ++end) {
-    if (begins_character(text[end]) && count-- == 0) break;
+  while (end < text.size()) {
+    const Character next = first_character(text.substr(end));
+    if (next.columns > count) break;
+    count -= next.columns;
+    end += next.bytes;
   }
   return text.substr(0, end);
 }

@@ -28,11 +28,12 @@ bool shows_colours(std::FILE* stream);
 /// line feed, and characters that change the direction of text are shown as \x1b or \u202e.
 std::string for_terminal(std::string_view text);
 
-/// Characters of a UTF-8 text: each code point counts as one column.
-std::size_t characters(std::string_view text);
+/// Columns of a terminal that a UTF-8 text takes: two for most Chinese, Japanese and Korean
+/// characters, none for accents that join the character before them.
+std::size_t columns_of(std::string_view text);
 
-/// The first `count` characters of a UTF-8 text, or all of it.
-std::string_view first_characters(std::string_view text, std::size_t count);
+/// The beginning of a UTF-8 text that takes at most `count` columns.
+std::string_view first_columns(std::string_view text, std::size_t count);
 
 /// fmt::print of untrusted texts.
 template <typename... Arguments>

@@ -113,6 +113,24 @@ TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
   EXPECT_TRUE(has(script_for(0, 20), "set xtics 5\nset format x '%.0f'"));
 }
 
+// A label takes 6 pixels a letter and a gap of 8, and the frame has 260.
+TEST(GnuplotScript, TickLabelsBelowTheFrameDoNotTouch) {
+  for (const double low : {0.636, 0.64013, -0.0021}) {
+    for (double length = 0.0011; length < 0.01; length *= 1.07) {
+      const std::string text =
+          gnuplot_script({.name = "t",
+                          .columns = {},
+                          .rows = {},
+                          .chart = {.series = {{.points = {{low, 1}, {low + length, 2}}}}}});
+      const double step = std::stod(text.substr(text.find("set xtics 0.") + 10));
+      const int decimals = std::stoi(text.substr(text.find("set format x '%.") + 16));
+      const double label = 6 * (2 + decimals + (low < 0 ? 1 : 0)) + 8;
+      EXPECT_LT(length / step * label, 260) << low << " " << length;
+      EXPECT_GE(length / step, 1) << low << " " << length;
+    }
+  }
+}
+
 // gnuplot alone would label none of these.
 TEST(GnuplotScript, LogarithmicAxesWithFewPowersOfTenHaveTicks) {
   const auto script_for = [](double low, double high) {
@@ -145,6 +163,18 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
   EXPECT_EQ(caption_of("A title", std::span(&table, 1)),
             "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Reference "
             "lines: the limit.");
+}
+
+TEST(Chart, TheCaptionSaysWhichPanelANoteIsOf) {
+  FigureTable a{
+      .name = "a", .columns = {}, .rows = {}, .chart = {.series = {{.points = {{1, 2}}}}}};
+  FigureTable b = a;
+  a.chart.letter = "a";
+  b.chart.letter = "b";
+  b.chart.note = "Means over 2 runs each";
+  EXPECT_TRUE(has(caption_of("T", std::vector{a, b}), " (b) Means over 2 runs each."));
+  a.chart.note = b.chart.note;
+  EXPECT_TRUE(has(caption_of("T", std::vector{a, b}), ". Means over 2 runs each."));
 }
 
 TEST(Chart, TheCaptionCountsWhatALogarithmicAxisLeavesOut) {

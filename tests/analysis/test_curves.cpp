@@ -203,7 +203,8 @@ TEST(Curves, KeepTheStylesOfTheSupplementForItsOwnVariants) {
 TEST(Curves, NeverShareALabel) {
   std::vector<FigureRun> runs = two_parameters();
   for (FigureRun& run : runs) run.name = "the same";
-  EXPECT_THROW(s2(runs), AnalysisError);
+  const std::string message = message_of<AnalysisError>([&] { s2(runs); });
+  EXPECT_TRUE(has(message, "in the `series` of its plot or in `labels`")) << message;
 }
 
 TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {

@@ -89,6 +89,18 @@ TEST(Verdict, WhatEnteredIsOneTable) {
             "claim,group,value,size,grew\n\"a, b\",x,1.5,,\n\"a, b\",y,,,\nc,z,,3,4\n");
 }
 
+TEST(Verdict, WordsHaveNoInfinities) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Verdict verdict;
+  verdict.margin = 1;
+  verdict.estimate = infinity;
+  verdict.interval = {-infinity, infinity};
+  EXPECT_EQ(numbers_of(verdict), "no finite value, 90 % interval unbounded, margin 1, 0 runs");
+  verdict.estimate = 2;
+  verdict.interval = {1.5, infinity};
+  EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs");
+}
+
 TEST(Verdict, JsonHasSixDigitsAndNull) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Estimate half = between(-1, 1, 5);

@@ -4,11 +4,13 @@
 
     python3 results_table.py README.md RESULTS_FOLDER [--write]
 
-README.md has one row for each claim of HEADLINES, RESULTS_FOLDER/README.md a row for every claim.
-Ends with code 1 if a table between the marks differs from the verdicts, which --write mends, or if published.txt
-lists other folders than there are.
+README.md has one row for each claim of HEADLINES, RESULTS_FOLDER/claims.csv a row for every claim.
+Ends with code 1 if a table (in README.md, between the marks) differs from the verdicts, which --write mends, or if
+published.txt lists other folders than there are.
 """
+import csv
 import difflib
+import io
 import json
 import math
 import pathlib
@@ -20,28 +22,15 @@ END = "<!-- end of results -->\n"
 
 # Figure, beginning of the claim in the verdict, and the cells "claim" and "supplement" of README.md.
 HEADLINES = [
-    ("S1", "B.2: phi_u falls by about 2 % over a hundredfold k", "fall of phi_u over a hundredfold k", "roughly 2 %"),
     ("S1", "B.2: phi (Eq. S4) stays the same over a hundredfold k", "change of phi over a hundredfold k", "no change"),
     ("S2", "B.3: phi is the same at cycles", "phi, moving minus still fluid", "similar"),
-    ("S2", "B.3: crystallization begins", "onset cycle, moving over still fluid", "phi(n) similar to n = 60"),
     ("S3", "B.4: phi is the same at cycles 1 to 15 for steps of 7.0e-5", "phi, time step 7.0e-5 s minus 4.4e-5 s", "similar"),
     ("S3", "B.4: at 4.4e-5 s the average overlap", "mean overlap [d]", "less than 0.001"),
-    ("S3", "time step: the onset is the same for steps of 1.0e-4", "phi at the onset, time step 1.0e-4 s minus 4.4e-5 s", "not asked"),
     ("B5", "B.5: at cycles", "phi with pauses minus phi without, after 0.1 s of rest", "grows more rapidly"),
-    ("S4", "B.6: phi is the same at cycles", "phi, moving top minus moving bottom wall", "nearly the same"),
-    ("C", "C: the critical size at A = 0.04", "critical size [grains], A = 0.04", "about 10"),
-    ("C", "C: the critical size at A = 0.05", "critical size [grains], A = 0.05", "about 10"),
-    ("C", "C: the critical size at A = 0.0667", "critical size [grains], A = 0.0667", "about 13"),
     ("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833", "about 16"),
-    ("C", "C: the critical size at A = 0.1", "critical size [grains], A = 0.1", "about 20"),
     ("S6", "D: the onset at A = 0.05 rad is the same", "phi at the onset, A = 0.05, without minus with gravity", "similar at A = 0.04, 0.05"),
-    ("S5a", "C: the onset at A = 0.04 rad", "phi at the onset, N = 7900, A = 0.04", "0.646 +- 0.001"),
-    ("S5a", "C: the onset at A = 0.05 rad", "phi at the onset, N = 7900, A = 0.05", "0.646 +- 0.001"),
-    ("S5b", "C: the onset at N = 11400", "phi at the onset, N = 11400, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "C: the onset at N = 18200", "phi at the onset, N = 18200, A = 0.05", "0.646 +- 0.001"),
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves", "1 (homogeneous)"),
-    ("nucleation_core", "title: at least 4 d", "the same at least 4 d from the walls, against the grains there", "1 (homogeneous)"),
-    ("S7", "E: crystallites are equally probable", "share of nuclei in the inner half of the accessible width minus that in the outer half", "roughly equal"),
     ("S7", "E: crystallites are more probable near the top", "share of nuclei in the upper third minus that in the lower third", "more near the top"),
 ]
 # Folders of results; a claim is shown as the first of them measured it.
@@ -155,21 +144,24 @@ def in_order(figure, claim):
 
 def all_claims(page, results):
     """A row for each claim; its last cell has what other folders' runs gave."""
-    text = header(["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict", "other runs"])
+    rows = [["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict", "folder",
+             "other folders: estimate, verdict (runs)"]]
     asked = {}  # by figure and claim
     for place, figure, drawing, claim in verdicts(results):
         asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
     for (figure, name), found in sorted(asked.items(), key=lambda item: in_order(*item[0])):
         best = best_of(found)
-        place, drawing, claim = best
+        place, _, claim = best
         low, high = claim["interval"] or (None, None)
         is_measured = claim["estimate"] is not None
         value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})" if is_measured else "not measured"
-        others = [f"{link(at, picture, page)}: {digits(one['estimate'])}, {one['verdict']} ({runs(one)})"
-                  for at, picture, one in found if (at, picture, one) != best and one["estimate"] is not None]
-        text += row([figure, name, claim["quantity"], value, digits(claim["margin"]), runs(claim),
-                     f"{claim['verdict']}, {link(place, drawing, page)}", "; ".join(others)])
-    return text
+        others = [f"{one[0]}: {digits(one[2]['estimate'])}, {one[2]['verdict']} ({runs(one[2])})"
+                  for one in found if one != best and one[2]["estimate"] is not None]
+        rows.append([figure, name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], place,
+                     "; ".join(others)])
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
 
 
 def unlisted(results):
@@ -183,9 +175,9 @@ def unlisted(results):
 def main():
     readme, results = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     faults = [f"published.txt does not fit the folder {folder}" for folder in unlisted(results)]
-    for page, make in ((readme, headlines), (results / "README.md", all_claims)):
+    for page, make in ((readme, headlines), (results / "claims.csv", all_claims)):
         text = page.read_text()
-        begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+        begin, end = (text.index(BEGIN) + len(BEGIN), text.index(END)) if make == headlines else (0, len(text))
         wanted = make(page, results)
         if "--write" in sys.argv[3:]:
             page.write_text(text[:begin] + wanted + text[end:])

@@ -3,11 +3,13 @@
 // only there.
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
 
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/runner/terminal.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
 
@@ -146,6 +148,29 @@ TEST_F(Convenience, TablesAreCutBetweenCharacters) {
     const std::size_t bytes = shown.find('\r', at) - line;
     EXPECT_LE(bytes - (end - at) / 2, static_cast<std::size_t>(columns)) << shown;
   }
+}
+
+TEST(Terminal, WideCharactersTakeTwoColumns) {
+  EXPECT_EQ(columns_of("fluid"), 5U);
+  EXPECT_EQ(columns_of("流体 ϕ"), 6U);
+  EXPECT_EQ(columns_of("e\u0301"), 1U) << "an accent of its own";
+  EXPECT_EQ(columns_of("\xff\xfe"), 2U) << "no UTF-8";
+  EXPECT_EQ(first_columns("流体", 3), "流");
+  EXPECT_EQ(first_columns("流体", 4), "流体");
+  EXPECT_EQ(first_columns("", 4), "");
+}
+
+TEST_F(Convenience, LabelsOfWideCharactersKeepColumnsInLine) {
+  campaign(
+      tiny_manifest("", kBothFluids + "labels: {\"fluid=still\": 静止流体, \"fluid=cell\": a}\n"),
+      {"--cycles", "1"});
+  std::set<std::size_t> places;  // of the column after the label
+  std::istringstream lines(expect(0, {"status"}).out);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t state = line.find("completed");
+    if (state != line.npos) places.insert(columns_of(line.substr(0, state)));
+  }
+  EXPECT_EQ(places.size(), 1U);
 }
 
 TEST_F(Convenience, ExportsTheRequestedCycles) {

@@ -129,7 +129,7 @@ TEST_F(Split, PlanAndSubmitHaveTheSeedsOfRun) {
   const nlohmann::json dry = json({"submit", "m.yaml", "--seed", "2,3", "--dry-run", "--json"});
   EXPECT_EQ(dry.at("tasks").size(), 2U) << "a packing for each seed";
   for (const char* seed : {"0", "a", "6-", "-6", "6-5", "1--2", "1.5", "1-99999999999", "7", "6-8",
-                           "18446744073709551616"}) {
+                           "18446744073709551616", "1,,2", "1,", ",1", ",", "", "1, 2"}) {
     for (const char* command : {"plan", "run", "submit"}) {
       expect_refused({command, "m.yaml", std::string("--seed=") + seed}, {"seed"});
     }

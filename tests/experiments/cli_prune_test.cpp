@@ -226,6 +226,18 @@ TEST_F(Prune, WithoutMeasuringIsSaidInTheDrawing) {
   EXPECT_EQ(key_says(), std::pair(false, in_report));
 }
 
+// The energies of a cycle are simulated from the checkpoint at its beginning.
+TEST_F(Prune, ATableSaysWhichSimulatedMeasuresLackAFile) {
+  campaign(tiny_manifest(), {"--cycles", "6"}, "own");
+  expect(0, {"prune", "--keep-every", "3", "--yes", "--store", "own"});
+  const Outcome table = expect(0, {"table", "--ledger", "--store", "own"});
+  EXPECT_TRUE(
+      has(table.err, "2 checkpoints with a file: no ledger, since a checkpoint before them"))
+      << table.err;
+  expect(0, {"regenerate", "--all", "--store", "own"});
+  EXPECT_FALSE(has(expect(0, {"table", "--ledger", "--store", "own"}).err, "no ledger"));
+}
+
 TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {
   start_again();
   const std::size_t files = objects();

@@ -196,6 +196,32 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
                 std::ceil(parameters.settle_time_limit_s / parameters.settle_time_step_s));
 }
 
+// Twice the time passes the limit; the estimate of the time in which the wall presses is a little
+// long, so that it warns of no run that settles.
+TEST_F(CostOfARun, CountsTheTimeThatAStrongDragTakesToSettle) {
+  const auto text = [](double limit_s) {
+    return tiny_manifest(fmt::format(
+        "  drag_kg_per_s: 5.0e-2\n  settle_time_step_s: 4.4e-5\n  settle_time_limit_s: {}\n",
+        limit_s));
+  };
+  const auto warnings = [](const std::string& manifest) {
+    return fmt::format("{}", fmt::join(expand(parse_manifest(manifest, "m"), {}).warnings, "\n"));
+  };
+  EXPECT_FALSE(has(warnings(text(60)), "presses the grains together"));
+  compute(store_, text(60));
+  const PlannedRun run = only_run(text(60));
+  const Stage settled = store_.stage(run.prepare->id);
+  const double seconds = static_cast<double>(settled.step) * run.parameters.settle_time_step_s;
+  const double expected = pressing_time_s(run.parameters);
+  std::printf("settled after %.3g s, pressed for %.3g s as expected\n", seconds, expected);
+  EXPECT_GT(seconds, expected);
+  EXPECT_LT(seconds, 2 * expected);
+  const std::string too_short = text(0.9 * expected);
+  EXPECT_TRUE(has(warnings(too_short), "drag_kg_per_s 0.05"));
+  EXPECT_TRUE(has(warnings(too_short), "Lower the drag"));
+  EXPECT_TRUE(has(warnings(tiny_manifest("  drag_kg_per_s: 1.28e3\n")), "drag_kg_per_s 1280"));
+}
+
 TEST(Cost, UsesTheRateMeasuredInTheStore) {
   Stage run;
   run.particle_steps = 3e8;

@@ -50,6 +50,9 @@ TEST_F(Interruption, BeforeTheFirstStageStartsNothing) {
   const CampaignResult again = compute(store_, text);
   EXPECT_EQ(again.already, 3U) << "they were done before";
   EXPECT_EQ(again.blocked, 0U);
+  const CampaignResult phases =
+      compute(store_, tiny_manifest("", kBothFluids + "checkpoints: {phases: [0.5]}\n"));
+  EXPECT_EQ(phases.blocked, 2U) << "they are completed, but lack checkpoints";
 }
 
 // Two seconds without a record, at a lease of a quarter of it.

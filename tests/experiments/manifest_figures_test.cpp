@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plan warns of plots and claims that the runs will give no value for.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -139,6 +141,38 @@ TEST(FigureWarnings, OfASeriesThatFitsSeveralCurves) {
   EXPECT_EQ(found("y: phi, by: fluid, panel: amplitude_rad" + series), Strings{});
   EXPECT_EQ(found("y: phi, series: {\"fluid=still,amplitude_rad=0.1\": {colour: black}}"),
             Strings{});
+}
+
+TEST(FigureWarnings, OfASeriesThatFitsNoCurve) {
+  const auto found = [](const std::string& series) {
+    return plan_of("cycles: 4", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n" +
+                                    plot("y: phi, by: amplitude_rad, series: " + series))
+        .warnings;
+  };
+  EXPECT_EQ(found("{0.05: {colour: black}}"), Strings{});
+  const Strings none = found("{0.06: {colour: black}}");
+  ASSERT_EQ(none.size(), 1U);
+  EXPECT_TRUE(has(none[0], "plot own: the style of amplitude_rad=0.06 fits no curve")) << none[0];
+  // It may be of another scale.
+  const std::string scales =
+      "scales: {a: {sweep: {grid: {fluid: [still, cell]}}}, desk: {sweep: {grid: {fluid: "
+      "[still]}}}}\n";
+  EXPECT_EQ(
+      plan_of("cycles: 4", scales + plot("y: phi, by: fluid, series: {cell: {colour: black}}"))
+          .warnings,
+      Strings{});
+}
+
+// As of plots and claims of its own.
+TEST(FigureWarnings, OfListedFigures) {
+  const auto found = [](const std::string& base, const std::string& more) {
+    return plan_of(base, "figures: [S2, B5]\n" + more).warnings;
+  };
+  const Strings short_runs = found("cycles: 4", kThreeSeeds);
+  ASSERT_FALSE(short_runs.empty());
+  EXPECT_TRUE(std::ranges::any_of(short_runs, [](const std::string& one) {
+    return has(one, "figure S2: claim") && has(one, "and the runs have 4.");
+  })) << fmt::format("{}", fmt::join(short_runs, "\n"));
 }
 
 TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {

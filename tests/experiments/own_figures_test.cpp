@@ -83,6 +83,39 @@ TEST_F(OwnFigures, AClaimOnRunsThatAreNotComputedIsUndecided) {
             "no run with fluid=still has a checkpoint of cycle 1");
 }
 
+// Table I is of the supplement, and a user's own experiments are not.
+TEST_F(OwnFigures, ComeWithoutTable1UnlessItIsNamed) {
+  std::string text = tiny_manifest("", "plots: [{name: own, y: phi}]\n");
+  text.erase(text.find("figures: [S2]\n"), 14);
+  declared(store_, text, {.cycles = 0});
+  const auto names = [&](const std::vector<std::string>& wanted) {
+    std::vector<std::string> found;
+    for (const WantedFigure& one : wanted_figures(store_, wanted).figures) {
+      found.push_back(one.figure.name);
+    }
+    return found;
+  };
+  const std::vector<std::string> own = names({});
+  EXPECT_EQ(std::ranges::count(own, "own"), 1);
+  EXPECT_EQ(std::ranges::count(own, "table1"), 0);
+  EXPECT_EQ(names({"table1"}), std::vector<std::string>{"table1"});
+}
+
+TEST_F(OwnFigures, AClaimSaysThatItsRunsAreNotSelected) {
+  compute(store_, tiny_manifest("", kBothFluids +
+                                        "claims: [{name: same, compare: phi, at_cycle: 1, margin: "
+                                        "1, between: [{fluid: still}, {fluid: cell}]}]\n"));
+  for (const char* figure : {"same", "S2"}) {
+    const WantedFigure wanted = wanted_figures(store_, {figure}).figures.at(0);
+    FigureOptions options;
+    options.runs.variants = {"fluid=cell"};
+    for (const Verdict& verdict : compute_figure(store_, wanted, options).summary.verdicts) {
+      EXPECT_TRUE(verdict.note.starts_with("only runs with fluid=cell are selected: "))
+          << verdict.note;
+    }
+  }
+}
+
 // Its scalars are cached for S2; its stress is unknown and not zero.
 TEST_F(OwnFigures, LeaveOutWhatAPrunedCheckpointCannotGive) {
   compute(store_, tiny_manifest("", "plots: [{name: xy, y: stress_xy_Pa}]\n"));

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -272,6 +275,72 @@ TEST(Export, OtherProgramsReadEveryNumber) {
   EXPECT_EQ(
       std::system((python + SHEARCELL_TEST_DATA "/../export/read_back.py " + at.string()).c_str()),
       0);
+}
+
+// Against all pairs of exported particles, and the forces on the bottom wall.
+TEST(Export, ContactsAreAllPairsThatTouch) {
+  const double d = 3e-3, k = 654;
+  for (const WallTexture walls : {WallTexture::rough, WallTexture::smooth}) {
+    const TemporaryFolder folder;
+    Checkpoint c = checkpoints().back();  // tilted
+    if (walls == WallTexture::smooth) {
+      const bench::Packing packing = bench::pressed_packing({.grains = 250, .walls = walls}, 1);
+      c = checkpoints().front();
+      c.cell = packing.cell;
+      c.state = packing.state;
+    }
+    const Frame frame = frame_of(c, record_of(c), about());
+    contacts_writer(folder.path())(frame);
+    std::ifstream file(folder.path() / fmt::format("contacts_{}.csv", frame_name(frame)));
+    std::string line;
+    std::getline(file, line);
+    EXPECT_EQ(line, "grain,other,wall_side,overlap_d,force_N,normal_x,normal_y,normal_z");
+    std::map<std::pair<std::size_t, std::size_t>, double> pairs;
+    std::array<double, 2> on_bottom{};
+    std::size_t planes = 0;
+    while (std::getline(file, line)) {
+      std::size_t i = 0, j = 0;
+      int side = 0;
+      double overlap = 0, force = 0;
+      Eigen::Vector3d n;
+      ASSERT_EQ(std::sscanf(line.c_str(), "%zu,%zu,%d,%lf,%lf,%lf,%lf,%lf", &i, &j, &side, &overlap,
+                            &force, &n[0], &n[1], &n[2]),
+                8)
+          << line;
+      EXPECT_DOUBLE_EQ(force, k * overlap * d);
+      EXPECT_NEAR(n.norm(), 1, 1e-12);
+      if (side == 3) on_bottom[0] -= force * n.x(), on_bottom[1] -= force * n.y();
+      if (j == 0) {
+        ++planes;
+        continue;
+      }
+      EXPECT_EQ(side, frame.type[j - 1]);
+      EXPECT_TRUE(pairs.emplace(std::pair(i, j), overlap).second) << line;
+      const auto at = [&](std::size_t p) {
+        return frame.position.col(static_cast<Eigen::Index>(p) - 1);
+      };
+      Eigen::Vector3d r = at(i) - at(j);
+      r.z() = std::remainder(r.z(), frame.edges(2, 2));
+      EXPECT_LT((r - (1 - overlap) * d * n).norm(), 1e-12 * d) << line;
+    }
+    std::size_t touching = 0;
+    for (std::size_t i = 0; i < frame.grains; ++i) {
+      for (std::size_t j = i + 1; j < frame.particles(); ++j) {
+        Eigen::Vector3d r = frame.position.col(static_cast<Eigen::Index>(i)) -
+                            frame.position.col(static_cast<Eigen::Index>(j));
+        r.z() = std::remainder(r.z(), frame.edges(2, 2));
+        if (r.norm() < d) ++touching;
+      }
+    }
+    EXPECT_EQ(pairs.size(), touching);
+    EXPECT_GT(touching, 400U);
+    EXPECT_GE(planes, walls == WallTexture::smooth ? 50U : 0U);
+    for (const auto& [name, value] : frame.scalars) {
+      if (!name.starts_with("force_bottom_")) continue;
+      EXPECT_NEAR(on_bottom[name == "force_bottom_x_N" ? 0 : 1], value, 1e-12 * k * d) << name;
+    }
+    EXPECT_NE(on_bottom[1], 0);
+  }
 }
 
 /// An export as a start: the grains alone, with the planes of their cell.

@@ -32,6 +32,9 @@ function misfits() {
       found.push(`'${text.textContent}' leaves its plot`);
     }
   }
+  for (const bar of document.querySelectorAll(".legend .scrollbar")) {
+    if (bar.getBoundingClientRect().height > 0) found.push("a legend is cut");
+  }
   return found;
 }
 

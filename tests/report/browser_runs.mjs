@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of the tables of runs, of two variants side by side, and of the workflow.
 import {join} from "node:path";
+import {chartsOfVariants} from "../../experiments/report/web/src/charts.js";
 
 // The first table with more than one run, as the page shows it.
 async function openTable(page) {
@@ -200,6 +201,15 @@ export function runChecks({open, expect, shots}) {
       const facts = await side.locator(".small").textContent();
       await side.locator("select").selectOption({index: 2});
       expect(await side.locator(".small").textContent() !== facts, "compare: the choice is not followed");
+    },
+
+    // Of a variant with many seeds.
+    async styles() {
+      const runs = Array.from({length: 20}, (_, k) => ({variant: "still", seed: k + 1, cycle: [0], phi: [0.6],
+        crystalline_percent: [0]}));
+      const {series} = chartsOfVariants([{runs}, {runs}])[0].chart;
+      const looks = new Set(series.map(({colour, point, dashed}) => `${colour} ${point} ${dashed}`));
+      expect(looks.size === 40, `styles: ${looks.size} of 40 curves`);
     },
 
     async workflow() {

@@ -12,10 +12,13 @@ const colours = [
   "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#6b4c2a"
 ];
 const points = [7, 5, 9, 11, 13, 6, 4, 8, 10, 12];
-const grey = {colour: "#8f98a3", point: 0};
+const grey = {colour: "#8f98a3", point: 0, dashed: false};
 
-const styleOf = (colour, point) =>
-  ({colour: colours[colour % colours.length], point: points[point % points.length]});
+// Of one colour there are twenty styles: ten markers with a solid line, then with a dashed one.
+const styleOf = (colour, point) => ({
+  colour: colours[colour % colours.length], point: points[point % points.length],
+  dashed: Math.floor(point / points.length) % 2 === 1
+});
 
 // The checkpoints of a stiffening are counted, and have no cycles.
 const axisOf = (key, runs) => ({
@@ -28,7 +31,7 @@ const chartOf = (x, y, list) => ({
   x: axisOf(x, list.map(({run}) => run)), y: axisOf(y, list.map(({run}) => run)), title: [], lines: [],
   series: list.map((one) => ({
     title: plain(one.title).filter(([text]) => text), name: plain(`${one.run.variant}, seed ${one.run.seed}`),
-    ...one.style, line: one.line, dashed: false, band: false, shift: 0,
+    ...one.style, line: one.line, band: false, shift: 0,
     points: one.points.filter(([a, b]) => Number.isFinite(a) && Number.isFinite(b))
   }))
 });

@@ -89,10 +89,12 @@ function axisOf(axis, values, color) {
 }
 
 function layoutOf(chart, width, color) {
+  const [left, right] = [62, 14];
   const titles = chart.series.map(({title}) => plainText(title)).filter(Boolean);
   const letters = Math.max(0, ...titles.map((title) => title.length));
   const entry = 7.4 * Math.min(letters, lettersIn(width));
-  const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - 20) / (entry + 45))));
+  // Plotly gives the legend the width of the frame.
+  const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - left - right) / (entry + 45))));
   const key = 20 * rows * Math.ceil(letters / lettersIn(width)) + 6;
   const points = chart.series.flatMap((one) => one.points);
   const flat = chart.lines.filter(({vertical}) => !vertical).map(({at}) => at);
@@ -104,7 +106,7 @@ function layoutOf(chart, width, color) {
   const height = Math.round(Math.min(430, Math.max(310, width * 0.7))) + key;
   return {
     width, height, font: {...font, color}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#8a8f98", activecolor: color}, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-    margin: {l: 62, r: 14, t: chart.title.length > 0 ? 52 : 30, b: 44 + key}, hovermode: "closest",
+    margin: {l: left, r: right, t: chart.title.length > 0 ? 52 : 30, b: 44 + key}, hovermode: "closest",
     title: {text: markup(chart.title), font: {size: 13}, y: 1, yref: "container", yanchor: "top", pad: {t: 8}},
     legend: {orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: entry,
       traceorder: "normal", tracegroupgap: 0},
