@@ -86,11 +86,6 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   return decide(claim, quantity, estimate, runs, std::move(note));
 }
 
-/// Whether one stage prepared the packing that both runs begin with.
-bool share_packing(const FigureRun& a, const FigureRun& b) {
-  return !a.parent.empty() && a.parent == b.parent;
-}
-
 /// Differences a - b of the runs that share packings.
 struct Pairs {
   std::vector<double> differences;
@@ -186,6 +181,10 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
   estimate.value = increasing(estimate.value);
   estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
   return estimate;
+}
+
+bool share_packing(const FigureRun& a, const FigureRun& b) {
+  return !a.parent.empty() && a.parent == b.parent;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {

@@ -42,6 +42,9 @@ Scalar onset_phi();
 /// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
+/// Whether one stage prepared the packing that both runs begin with.
+bool share_packing(const FigureRun& a, const FigureRun& b);
+
 /// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
 /// left out. Otherwise Welch's interval. A verdict needs least_runs runs or pairs. So that runs
 /// that end early do not bias it, three quarters of each group must have the number, and with pairs

@@ -2,6 +2,7 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct CollectedRun : Run {
   std::string name = {};                           ///< of its variant, for people
   bool named = false;                              ///< by a label of the manifest
   double end = 0;                                  ///< end_for()
+  double core_time_s = std::nan("");               ///< FigureRun::core_time_s
 };
 
 /// The run without its checkpoints. Its parameters say `pressure_at: top` where P acts equally on

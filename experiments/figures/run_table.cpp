@@ -14,6 +14,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/lineage.hpp"
 
 namespace shearcell {
 namespace {
@@ -209,8 +210,10 @@ void measure_where(const Store& store, std::span<const std::string> names,
   }
 }
 
-FigureRun history_of(const Run& selected, std::span<const Row> rows) {
+FigureRun history_of(const Store& store, const Run& selected, std::span<const Row> rows) {
   FigureRun history;
+  const double last = rows.empty() ? 0 : rows.back().checkpoint->cycle;
+  history.core_time_s = computing_time(store, selected.stage.id, last).core_seconds;
   history.run_id = selected.stage.id;
   history.swept = selected.ask.swept;
   history.parameters = effective_parameters(selected.stage.resolved);
@@ -271,7 +274,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
       for (const Row& row : rows) add(row);
       continue;
     }
-    const FigureRun& history = table.histories.emplace_back(history_of(run, rows));
+    const FigureRun& history = table.histories.emplace_back(history_of(store, run, rows));
     Row last = rows.empty() ? Row{&run} : rows.back();
     if (run.stage.kind == name_of(StageKind::shear)) last.history = &history;
     add(last);

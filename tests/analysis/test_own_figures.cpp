@@ -332,6 +332,134 @@ TEST(OwnPlot, HasFurtherColumnsWithNamesOfTheirOwn) {
       << to_csv(table);
 }
 
+/// Packings 1 to 3 with 100 (the reference), 10 and 20 steps of our engine and 20 of LAMMPS. phi of
+/// the reference depends on the packing; that of other steps differs from it by 0.4/steps^2, in
+/// packing 2 in the other direction. A run takes a second for each step and packing.
+std::vector<FigureRun> runs_of_steps() {
+  std::vector<FigureRun> runs;
+  for (const auto& [engine, steps] :
+       {std::pair("shearcell", 100), {"shearcell", 10}, {"shearcell", 20}, {"lammps", 20}}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const double error = steps == 100 ? 0 : (seed == 2 ? -0.4 : 0.4) / (steps * steps);
+      FigureRun run =
+          made_up_run("steps_per_cycle", steps, seed, 2, [&, of = steps](int n, Measures& m) {
+            m.numbers["phi"] = 0.6 + 0.01 * static_cast<double>(seed) + n * error;
+            m.numbers["mean_overlap_d"] = of;
+          });
+      run.swept["engine"] = engine;
+      run.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
+      run.run_id = fmt::format("{}/{}", run.variant, seed);
+      run.parent = fmt::format("packing {}", seed);
+      run.core_time_s =
+          steps * static_cast<double>(seed) * (engine == std::string("lammps") ? 9 : 1);
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
+}
+
+const PlotSpec kErrors = {.name = "own",
+                          .y = "phi",
+                          .minus = {{"steps_per_cycle", 100}},
+                          .x = "core_time_s",
+                          .by = "engine",
+                          .show = Show::rms,
+                          .log = LogAxes::xy,
+                          .cycle = 1};
+
+FigureTable errors_of(const std::vector<FigureRun>& runs, const PlotSpec& plot = kErrors) {
+  return plot_figure(plot).make(runs).tables.at(0);
+}
+
+TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
+  const FigureTable table = errors_of(runs_of_steps());
+  EXPECT_EQ(to_csv(table),
+            "variant,core_time_s,phi_rms,phi_standard_error,runs,cycle\n"
+            "engine=lammps,360,0.001,0,3,1\n"
+            "engine=shearcell,20,0.004,0,3,1\n"
+            "engine=shearcell,40,0.001,0,3,1\n")
+      << "without the reference";
+  EXPECT_EQ(plain_text(table.chart.y.name), "rms difference in volume fraction");
+  EXPECT_EQ(plain_text(table.chart.x.name), "core time");
+  EXPECT_EQ(plain_text(table.chart.x.unit), "s");
+  EXPECT_EQ(table.chart.note,
+            "At cycle 1. Differences from steps_per_cycle=100 with the same packing");
+  EXPECT_EQ(plot_figure(kErrors).needs, (std::vector<std::string>{"cost", "packing"}));
+  PlotSpec against_cycle = kErrors;
+  against_cycle.x = "cycle";
+  against_cycle.by.clear();
+  EXPECT_TRUE(has(to_csv(errors_of(runs_of_steps(), against_cycle)),
+                  "\nengine=shearcell;steps_per_cycle=10,2,0.008,0,3\n"));
+  against_cycle.show = Show::mean;
+  EXPECT_TRUE(has(to_csv(errors_of(runs_of_steps(), against_cycle)),
+                  "\nengine=shearcell;steps_per_cycle=10,2,0.00266666667,0.00533333333,3\n"));
+  PlotSpec of_runs = kErrors;
+  of_runs.show = Show::scatter;
+  const FigureTable scatter = errors_of(runs_of_steps(), of_runs);
+  std::size_t points = 0;
+  for (const Series& series : scatter.chart.series) points += series.points.size();
+  EXPECT_EQ(points, 9U) << "each run at its own core time";
+  PlotSpec of_costs = kErrors;
+  of_costs.y = "core_time_s";
+  of_costs.x = "steps_per_cycle";
+  EXPECT_TRUE(
+      has(to_csv(errors_of(runs_of_steps(), of_costs)), "\nengine=shearcell,10,194.422221,"))
+      << "90, 180 and 270 s less";
+}
+
+TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
+  std::vector<FigureRun> runs = runs_of_steps();
+  runs.erase(runs.begin());  // the reference of packing 1
+  const FigureTable table = errors_of(runs);
+  EXPECT_TRUE(has(to_csv(table), "\nengine=shearcell,25,0.004,0,2,1\n")) << to_csv(table);
+  EXPECT_TRUE(table.chart.note.ends_with("with the same packing, which 3 of 9 runs lack"))
+      << table.chart.note;
+  for (FigureRun& run : runs) run.parent.clear();
+  EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
+  runs = runs_of_steps();
+  runs.erase(runs.begin(), runs.begin() + 3);
+  EXPECT_TRUE(errors_of(runs).rows.empty());
+  EXPECT_EQ(errors_of(runs).chart.note, "No run has steps_per_cycle=100");
+}
+
+TEST(OwnPlot, ComparesUnfinishedRunsAtTheCyclesOfBoth) {
+  PlotSpec last = kErrors;
+  last.cycle.reset();
+  std::vector<FigureRun> runs = runs_of_steps();
+  runs[1].checkpoints.pop_back();  // the reference of packing 2 has not reached cycle 2
+  EXPECT_TRUE(has(to_csv(errors_of(runs, last)), "\nengine=shearcell,20,0.004,0,3,1\n"))
+      << "cycle 1, the last that all have";
+  last.cycle = 2;
+  EXPECT_TRUE(has(to_csv(errors_of(runs, last)), "\nengine=shearcell,20,0.008,0,2,2\n"))
+      << "packings 1 and 3, also in the mean of the core time";
+  runs = runs_of_steps();
+  runs[3].checkpoints.pop_back();  // 10 steps, packing 1
+  EXPECT_TRUE(has(to_csv(errors_of(runs, last)), "\nengine=shearcell,25,0.008,0,2,2\n"));
+  for (FigureRun& run : runs) run.checkpoints.clear();
+  EXPECT_TRUE(errors_of(runs, last).rows.empty());
+}
+
+TEST(OwnPlot, SaysThatADifferenceOfZeroIsNotOnALogarithmicAxis) {
+  PlotSpec at_start = kErrors;
+  at_start.cycle = 0;
+  const std::vector<FigureTable> tables = {errors_of(runs_of_steps(), at_start)};
+  EXPECT_EQ(tables[0].rows.size(), 3U);
+  const std::string caption = caption_of("Errors", tables);
+  EXPECT_TRUE(has(caption, "Values that are not positive are not drawn: 3.")) << caption;
+  EXPECT_NO_THROW(gnuplot_script(tables[0]));
+}
+
+TEST(OwnPlot, RefusesAReferenceOfSeveralVariants) {
+  PlotSpec of_engine = kErrors;
+  of_engine.minus = {{"engine", "shearcell"}};
+  EXPECT_EQ(message_of<UsageError>([&] { errors_of(runs_of_steps(), of_engine); }),
+            "plot own: 3 variants have engine=shearcell; `minus` must name one.");
+  of_engine.listed = true;
+  EXPECT_TRUE(errors_of(runs_of_steps(), of_engine).rows.empty());
+  EXPECT_EQ(errors_of(runs_of_steps(), of_engine).chart.note,
+            "Several variants have engine=shearcell");
+}
+
 /// phi rises by 0.001 a cycle; the percentage by one point a cycle from `first` on.
 FigureRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
   return made_up_run("fluid", fluid, seed, 60, [=](int n, Measures& m) {

@@ -20,8 +20,17 @@ class Prune : public ProgramTest {
       "  - {name: pairs, y: pair_correlation, at_cycle: 3}\n";
 
   void SetUp() override {
-    campaign(tiny_manifest("", kBothFluids + "seeds: 2\n" + plots_), {"--cycles", "5"});
-    keep_a_copy();
+    const std::string manifest = tiny_manifest("", kBothFluids + "seeds: 2\n" + plots_);
+    campaign(manifest, {"--cycles", "5"});
+    // Measured once for all tests, with what it shows.
+    shared("measured " + manifest, "whole", [&](const std::string& folder) {
+      fs::copy(path("shearcell-store"), folder, fs::copy_options::recursive);
+      const std::string all = shown(folder);
+      std::ofstream(fs::path(folder) / "shown", std::ios::binary) << all;
+    });
+    shown_ = read_bytes(path("whole/shown"));
+    ASSERT_FALSE(shown_.empty());
+    fs::remove(path("whole/shown"));
   }
 
   void keep_a_copy() {

@@ -1,7 +1,9 @@
 #!/bin/sh
-# Runs two cycles of every manifest at scale smoke, and one whose texts are hostile, and writes the report of all:
+# Runs two cycles of every manifest at scale smoke, and one whose texts are hostile, and writes the report of all,
+# all.html:
 #   sh tests/report/campaign.sh PROGRAM FOLDER
-# The store, the log and report.html stay in FOLDER, where browser.sh looks at them.
+# The report of the experiments that differ in what a page shows, report.html, is for browser.sh: each of its checks
+# opens the page. Both stay in FOLDER, with the store and the log.
 set -eu
 program=$1 folder=$2
 cd "$(dirname "$0")/../.."
@@ -25,4 +27,11 @@ scales: {smoke: {}}
 MANIFEST
 "$program" run "$hostile" --scale smoke --store "$folder/store" >/dev/null 2>>"$folder/run.log"
 
-"$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"
+"$program" report --scale smoke --store "$folder/store" --out "$folder/all.html"
+size=$(wc -c <"$folder/all.html")
+[ "$size" -lt 15000000 ] || { echo "the report of all experiments has $size bytes" >&2; exit 1; }
+set --
+for experiment in critical_size drag gravity nucleation_sites onset_amplitude spring_constant system_size hostile; do
+  set -- "$@" --experiment "$experiment"
+done
+"$program" report --scale smoke "$@" --store "$folder/store" --out "$folder/report.html"
