@@ -86,28 +86,37 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   return decide(claim, quantity, estimate, runs, std::move(note));
 }
 
-/// Differences a - b of the runs that share packings.
+/// The number of each run; not a number where it has none.
+std::vector<double> numbers_of(RunGroup group, const Values& values,
+                               const std::function<double(double)>& number) {
+  std::vector<double> numbers;
+  for (const FigureRun* run : group) {
+    const auto found = values.found.find(run);
+    numbers.push_back(found == values.found.end() ? std::nan("") : number(found->second));
+  }
+  return numbers;
+}
+
+/// Differences a - b of the packings that both groups have: each of the mean over its runs.
 struct Pairs {
   std::vector<double> differences;
-  bool any = false;  ///< some runs share packings, with numbers or without
-
-  bool enough(RunGroup a, RunGroup b) const {
-    return 4 * differences.size() >= 3 * std::max(a.size(), b.size());
-  }
+  bool any = false;    ///< different runs share a packing, with numbers or without
+  bool enough = true;  ///< three quarters of the packings of each group
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values,
              const std::function<double(double)>& number) {
   Pairs pairs;
-  for (const FigureRun* first : a) {
-    for (const FigureRun* second : b) {
-      if (first == second || !share_packing(*first, *second)) continue;
-      pairs.any = true;
-      const auto x = values.found.find(first);
-      const auto y = values.found.find(second);
-      if (x == values.found.end() || y == values.found.end()) continue;
-      pairs.differences.push_back(number(x->second) - number(y->second));
-    }
+  const auto first = by_packing(a), second = by_packing(b);
+  for (const auto& [packing, runs] : first) {
+    const auto same = std::ranges::find(second, packing, [](const auto& of) { return of.first; });
+    if (same == second.end() || same->second == runs) continue;
+    pairs.any = true;
+    const std::vector<double> x = over_packings(runs, numbers_of(runs, values, number));
+    const std::vector<double> y =
+        over_packings(same->second, numbers_of(same->second, values, number));
+    if (!x.empty() && !y.empty()) pairs.differences.push_back(x.front() - y.front());
   }
+  pairs.enough = 4 * pairs.differences.size() >= 3 * std::max(first.size(), second.size());
   return pairs;
 }
 
@@ -183,8 +192,15 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
   return estimate;
 }
 
-bool share_packing(const FigureRun& a, const FigureRun& b) {
-  return !a.parent.empty() && a.parent == b.parent;
+PackingGroups by_packing(RunGroup group) {
+  PackingGroups packings;
+  for (const FigureRun* run : group) {
+    auto same =
+        std::ranges::find(packings, packing_of(*run), [](const auto& of) { return of.first; });
+    if (same == packings.end()) same = packings.insert(same, {packing_of(*run), {}});
+    same->second.push_back(run);
+  }
+  return packings;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
@@ -201,19 +217,13 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
     runs = pairs.differences.size();
     note = fmt::format("{} of runs that share{} a packing", counted(runs, "pair"),
                        runs == 1 ? "s" : "");
-    if (estimate && !pairs.enough(a, b)) {
+    if (estimate && !pairs.enough) {
       note += "; more than a quarter of the runs have no partner";
       estimate.reset();
     }
   } else {
-    const auto numbers = [&](RunGroup group) {
-      std::vector<double> found;
-      for (const FigureRun* run : group) {
-        if (all.found.contains(run)) found.push_back(number(all.found.at(run)));
-      }
-      return found;
-    };
-    const std::vector<double> x = numbers(a), y = numbers(b);
+    const std::vector<double> x = over_packings(a, numbers_of(a, all, number));
+    const std::vector<double> y = over_packings(b, numbers_of(b, all, number));
     estimate = difference_of_means(x, y);
     runs = std::min(x.size(), y.size());
     note = fmt::format("{} and {} independent runs", x.size(), y.size());
@@ -233,11 +243,11 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
   Values all;
   all.take(scalar, runs);
-  std::vector<double> values;
   const double sign = published < 0 ? -1 : 1;  // a higher value has a positive difference
-  for (const auto& [run, value] : all.found) {
-    values.push_back(scalar.relative ? sign * (value / published - 1) : value - published);
-  }
+  const auto number = [&](double value) {
+    return scalar.relative ? sign * (value / published - 1) : value - published;
+  };
+  std::vector<double> values = over_packings(runs, numbers_of(runs, all, number));
   std::sort(values.begin(), values.end());  // not in the order of addresses
   std::string quantity = scalar.name;
   if (scalar.relative) {

@@ -45,7 +45,23 @@ bool sweeps_engine(const FigureRun& run) {
 }
 
 const std::string& packing_of(const FigureRun& run) {
-  return run.parent.empty() ? run.run_id : run.parent;
+  return run.packing.empty() ? run.run_id : run.packing;
+}
+
+std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
+  std::map<std::string_view, std::size_t> places;
+  std::vector<std::pair<double, double>> sums;  // with their counts
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!std::isfinite(values[k])) continue;
+    const auto [place, fresh] = places.try_emplace(packing_of(*runs[k]), sums.size());
+    if (fresh) sums.emplace_back();
+    auto& [sum, count] = sums[place->second];
+    sum += values[k];
+    ++count;
+  }
+  std::vector<double> means;
+  for (const auto& [sum, count] : sums) means.push_back(sum / count);
+  return means;
 }
 
 double number_of(const FigureRun& run, const std::string& key) {

@@ -16,6 +16,7 @@
 #include "analysis/chart.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/verdict.hpp"
+#include "provenance/records.hpp"
 
 namespace shearcell {
 
@@ -26,16 +27,13 @@ struct CheckpointMeasures {
 };
 
 /// One run as a figure sees it.
-struct FigureRun {
+struct FigureRun : Place {
   std::string run_id;
-  std::string parent;  ///< id of the stage that prepared its packing
-  std::string experiment;
-  std::string variant;        ///< its curve, as the manifest expands it: "fluid=cell"
-  std::string name;           ///< of the variant, for people; "" for `variant`
-  bool named = false;         ///< by a label of the manifest
-  nlohmann::json swept;       ///< the swept parameters of the run and their values
-  nlohmann::json parameters;  ///< of all its stages, by their keys in a manifest
-  std::uint64_t seed = 0;
+  /// Id of the stage that settled the packing that it descends from; "" if there is none.
+  std::string packing;
+  std::string name;                             ///< of the variant, for people; "" for `variant`
+  bool named = false;                           ///< by a label of the manifest
+  nlohmann::json parameters;                    ///< of all its stages, by their keys in a manifest
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
   double end = 0;  ///< its last cycle so far, whether the figure takes that or not
   /// Computing time up to its end; known to figures that need the provider "cost".
@@ -95,9 +93,12 @@ struct Figure {
 
 /// The value of a parameter, swept or not; null if the run has no such key.
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
-/// The id of the packing that the run begins with; the run's own if it has none. Runs of one
+/// The id of the packing that the run descends from; the run's own if it has none. Runs of one
 /// packing are not independent.
 const std::string& packing_of(const FigureRun& run);
+/// One number for each packing, in the order of the runs: the mean of those of its runs, one value
+/// per run. Values that are not finite are left out.
+std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// The same as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 

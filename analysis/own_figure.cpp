@@ -165,21 +165,32 @@ std::string subtract(const PlotSpec& plot, std::vector<FigureRun>& runs) {
     return fmt::format("{} {}", variants == 0 ? "No run has" : "Several variants have",
                        words_of(plot.minus));
   }
+  const PackingGroups packings = by_packing(others);
   for (const FigureRun& run : all) {
-    const auto is_partner = [&](const FigureRun* other) { return share_packing(run, *other); };
-    const auto partner = std::ranges::find_if(others, is_partner);
-    if (partner == others.end() || std::ranges::count(others, &run) > 0) continue;
+    const auto same =
+        std::ranges::find(packings, packing_of(run), &PackingGroups::value_type::first);
+    if (same == packings.end() || std::ranges::count(others, &run) > 0) continue;
+    // The mean over its partners: several where the runs of a packing differ by noise.
+    const auto of_partners = [&partners = same->second](const auto& number) {
+      std::vector<double> values;
+      for (const FigureRun* partner : partners) values.push_back(number(*partner));
+      return over_runs(values).mean.value_or(std::nan(""));
+    };
     FigureRun& one = runs.emplace_back(run);
     if (is_parameter(plot.y)) {
-      one.parameters[plot.y] = number_of(run, plot.y) - number_of(**partner, plot.y);
+      one.parameters[plot.y] = number_of(run, plot.y) - of_partners([&](const FigureRun& partner) {
+                                 return number_of(partner, plot.y);
+                               });
       continue;
     }
     std::erase_if(one.checkpoints, [&](CheckpointMeasures& checkpoint) {
-      const Measures* other = measures_at(**partner, checkpoint.cycle);
-      if (other == nullptr) return true;
-      checkpoint.measures.numbers[plot.y] =
-          checkpoint.measures.number(plot.y) - other->number(plot.y);
-      return false;
+      const double other = of_partners([&](const FigureRun& partner) {
+        const Measures* measures = measures_at(partner, checkpoint.cycle);
+        return measures == nullptr ? std::nan("") : measures->number(plot.y);
+      });
+      double& value = checkpoint.measures.numbers[plot.y];
+      value = checkpoint.measures.number(plot.y) - other;
+      return std::isnan(other);
     });
   }
   const std::size_t alone = all.size() - others.size() - runs.size();
@@ -269,12 +280,17 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
 /// The data of one curve: y against x of each trace, and the values of all traces at each x.
 struct Points {
   std::map<std::uint64_t, std::map<double, double>> traces;
-  std::map<double, std::vector<double>> values;
+  struct Values {
+    std::vector<const FigureRun*> runs;
+    std::vector<double> values;  // one per run
+  };
+  std::map<double, Values> values;
 
-  void add(std::uint64_t trace, double x, double y) {
+  void add(std::uint64_t trace, const FigureRun& run, double x, double y) {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     traces[trace][x] = y;
-    values[x].push_back(y);
+    values[x].runs.push_back(&run);
+    values[x].values.push_back(y);
   }
 };
 
@@ -286,19 +302,19 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
     if (of_curve == nullptr && is_parameter(plot.y)) {
-      points.add(run.seed, number_of(run, plot.x), number_of(run, plot.y));
+      points.add(run.seed, run, number_of(run, plot.x), number_of(run, plot.y));
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
     if (of_curve == nullptr) {
-      points.add(run.seed, number_of(run, plot.x), measures->number(plot.y));
+      points.add(run.seed, run, number_of(run, plot.x), measures->number(plot.y));
       continue;
     }
     const auto measured = measures->curves.find(plot.y);
     if (measured == measures->curves.end()) continue;
     const auto& [x, y] = measured->second;
-    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, x[i], y[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) points.add(r, run, x[i], y[i]);
   }
   return points;
 }
@@ -343,7 +359,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     }
     for (const auto& [at, values] : points.values) {
       TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
-      const RunStatistics over = y.over(values);
+      const RunStatistics over = y.over(over_packings(values.runs, values.values));
       add_values(over, row);
       row.emplace_back(over.runs);
       if (!of_whole_run) row.emplace_back(cycle);

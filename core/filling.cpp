@@ -204,4 +204,14 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
   return state;
 }
 
+void add_noise(State& state, double noise, std::uint64_t seed) {
+  if (noise == 0) return;
+  for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const auto grain = static_cast<std::uint32_t>(i), axis = static_cast<std::uint32_t>(k);
+      state.position(k, i) += noise * normal_number({grain, axis, 0, 0}, seed);
+    }
+  }
+}
+
 }  // namespace shearcell

@@ -57,4 +57,8 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll = 
 State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed,
                 const Poll& poll = {});
 
+/// Moves each grain by independent normal noise of standard deviation `noise` [d] along x, y and z.
+/// It depends on seed and number of the grain only.
+void add_noise(State& state, double noise, std::uint64_t seed);
+
 }  // namespace shearcell

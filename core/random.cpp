@@ -30,4 +30,13 @@ std::array<double, 2> uniform_pair(std::array<std::uint32_t, 4> counter, std::ui
   return {to_unit(bits[0], bits[1]), to_unit(bits[2], bits[3])};
 }
 
+double normal_number(std::array<std::uint32_t, 4> counter, std::uint64_t seed) {
+  double sum = -6;
+  for (counter[3] = 0; counter[3] < 6; ++counter[3]) {
+    const auto [first, second] = uniform_pair(counter, seed);
+    sum += first + second;
+  }
+  return sum;
+}
+
 }  // namespace shearcell

@@ -7,27 +7,32 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "core/named.hpp"
 
 namespace shearcell {
 
-/// The place of a run in an experiment. A run that two experiments share has two memberships.
-struct Ask {
-  std::string experiment;
-  std::string scale;                                ///< "" if the manifest has no scales
-  std::string variant;                              ///< the swept values: "drag=still"
+/// Where a stage stands in an experiment. A stage that two experiments share has two places.
+struct Place {
+  std::string experiment = {};
+  std::string scale = {};                           ///< "" if the manifest has no scales
+  std::string variant = {};                         ///< the swept values: "drag=still"
   nlohmann::json swept = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
-  std::string manifest;                        ///< SHA-256 of the manifest's text
-  std::uint64_t checkpoint_every = 1;          ///< requested cycles between checkpoints
-  std::uint64_t target_cycles = 0;             ///< requested length of the run
-  nlohmann::json until = nullptr;              ///< measure that may end the run earlier
+  std::string manifest = {};  ///< SHA-256 of the manifest's text
+
+  bool operator==(const Place&) const = default;
+};
+
+/// What the experiment of a place asks of the stage.
+struct Ask : Place {
+  std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
+  std::uint64_t target_cycles = 0;             ///< length
+  nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
-  /// Whether its manifest is the version registered last of those that declared a run at the scale;
-  /// set by the store.
+  /// Whether its manifest is the version registered last of those that declared a stage at the
+  /// scale; set by the store.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -40,11 +45,6 @@ struct Ask {
     field("until", m.until), field("checkpoint_phases", m.checkpoint_phases);
   }
 };
-
-/// What distinguishes the memberships of a run.
-inline auto place_of(const Ask& m) {
-  return std::tie(m.experiment, m.scale, m.variant, m.seed, m.manifest);
-}
 
 /// The name to show: "base" if the manifest has no scales.
 inline std::string scale_name(const std::string& scale) {
@@ -88,6 +88,15 @@ struct Stage {
   std::string error;       ///< why it failed or was interrupted; "" otherwise
   std::string updated_at;  ///< time of its last event, UTC
   std::vector<Ask> asks;   ///< in the order in which they were declared
+};
+
+/// What a user counts, lists and averages: a stage in one of its places, with the packing that it
+/// begins from. A stage of two experiments is a run of each.
+struct Run {
+  Stage stage = {};  ///< the last one: shear or stiffening
+  Ask ask = {};
+  std::string name = {};  ///< of its variant, for people
+  bool named = false;     ///< by a label of the manifest
 };
 
 /// Whether two stages with one id describe the same computation.

@@ -87,7 +87,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
 
 bool adds_something(const Stage& known, const Ask& m) {
   return std::ranges::none_of(known.asks, [&](const Ask& old) {
-    return place_of(old) == place_of(m) && old.checkpoint_every == m.checkpoint_every &&
+    return static_cast<const Place&>(old) == m && old.checkpoint_every == m.checkpoint_every &&
            old.target_cycles >= m.target_cycles;
   });
 }

@@ -79,7 +79,7 @@ class StylesOfOthers {
 };
 
 std::vector<CurvePoint> points_of(RunGroup runs) {
-  std::map<std::int64_t, std::vector<const Measures*>> found;
+  std::map<std::int64_t, CurvePoint> found;
   for (const FigureRun* run : runs) {
     std::set<std::int64_t> seen;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
@@ -89,18 +89,21 @@ std::vector<CurvePoint> points_of(RunGroup runs) {
         throw AnalysisError("run " + run->run_id + " has two checkpoints of cycle " +
                             std::to_string(cycle));
       }
-      found[cycle].push_back(&checkpoint.measures);
+      CurvePoint& point = found[cycle];
+      point.cycle = cycle;
+      point.runs.push_back(run);
+      point.measures.push_back(&checkpoint.measures);
     }
   }
   std::vector<CurvePoint> points;
-  for (auto& [cycle, measures] : found) points.push_back({cycle, std::move(measures)});
+  for (auto& [cycle, point] : found) points.push_back(std::move(point));
   return points;
 }
 
 RunStatistics over(const CurvePoint& point, const MeasureColumn& measure) {
   std::vector<double> values;
-  for (const Measures* measures : point.runs) values.push_back(measure.of(*measures));
-  return measure.over(values);
+  for (const Measures* measures : point.measures) values.push_back(measure.of(*measures));
+  return measure.over(over_packings(point.runs, values));
 }
 
 /// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where

@@ -33,7 +33,8 @@ struct CurveStyle {
 /// All checkpoints of one variant at the end of one cycle, one per run.
 struct CurvePoint {
   std::int64_t cycle;
-  std::vector<const Measures*> runs;
+  std::vector<const FigureRun*> runs;
+  std::vector<const Measures*> measures;  ///< of the same runs
 };
 
 struct Curve {

@@ -155,10 +155,10 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   std::vector<PlacedRun> runs;
   std::map<std::string, std::size_t> known;  // index in `runs`, by id
-  for (const auto& [run, place] : selected) {
-    const auto [at, fresh] = known.try_emplace(run.id, runs.size());
-    if (fresh) runs.push_back({run, {}});
-    runs[at->second].places.push_back(place);
+  for (const Run& run : selected) {
+    const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
+    if (fresh) runs.push_back({run.stage, {}});
+    runs[at->second].places.push_back(run.ask);
   }
   return runs;
 }
@@ -196,7 +196,7 @@ std::vector<Stage> known_runs(const Context& context) {
 void warn_of_other_version(const Manifest& manifest, const Plan& plan,
                            const std::vector<Stage>& known, Context& context) {
   std::set<std::string> planned;
-  for (const PlannedRun& run : plan.runs) planned.insert(run.last.id);
+  for (const PlannedRun& run : plan.runs) planned.insert(run.stage.id);
   const std::string own = sha256_hex(manifest.text);
   const auto left_out = std::ranges::count_if(known, [&](const Stage& run) {
     if (run.kind == name_of(StageKind::prepare) || planned.contains(run.id)) return false;

@@ -24,10 +24,11 @@ struct Shown {
 };
 
 void add_shown(const Store& store, Shown& all) {
-  for (const auto& [run, place] : select_runs(store, {})) {
+  for (const Run& run : select_runs(store, {})) {
+    const Ask& place = run.ask;
     Runs& runs = place.newest ? all.shown[{place.experiment, place.scale, place.manifest}]
                               : all.left_out[{place.experiment, place.scale}];
-    runs.insert(run.id);
+    runs.insert(run.stage.id);
   }
 }
 

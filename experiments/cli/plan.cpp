@@ -34,7 +34,7 @@ std::string state_of(const Line& line) {
 
 // The number of cycles that the stage gets at most.
 double cycles_of(const Line& line) {
-  return std::max(static_cast<double>(line.run->target_cycles), line.look.end);
+  return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
 
 // Other experiments that have the stage.
@@ -42,14 +42,19 @@ std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
   for (const Ask& m : line.stage.asks) {
     const bool known = std::ranges::count(others, m.experiment) > 0;
-    if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
+    if (m.experiment != line.run->ask.experiment && !known) others.push_back(m.experiment);
   }
   return others;
 }
 
+const Parameters& parameters_of(const Line& line) {
+  const bool packing = line.stage.kind == name_of(StageKind::prepare);
+  return packing ? line.run->packing : line.run->parameters;
+}
+
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
-  const Parameters& p = line.run->parameters;
+  const Parameters& p = parameters_of(line);
   if (line.stage.kind == name_of(StageKind::prepare)) return settle_time_step(p);
   if (line.stage.kind == name_of(StageKind::stiffen)) return std::nullopt;
   return shear_time_step(p);
@@ -66,7 +71,7 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 void print_numerics(const std::vector<Line>& lines) {
   std::vector<Facts> rows;
   for (const Line& line : lines) {
-    const Parameters& p = line.run->parameters;
+    const Parameters& p = parameters_of(line);
     const std::string& kind = line.stage.kind;
     const auto step = time_step_of(line);
     Facts row = {
@@ -164,9 +169,9 @@ Facts facts(const Line& line, bool of_several_experiments) {
   const std::vector<std::string> others = shared_with(line);
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
-               {"experiment", run.experiment},
-               {"variant", run.variant, "variant", prepare ? "" : run.name},
-               {"seed", run.seed, "seed"},
+               {"experiment", run.ask.experiment},
+               {"variant", run.ask.variant, "variant", prepare ? "" : run.name},
+               {"seed", run.ask.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
                 prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
@@ -176,7 +181,7 @@ Facts facts(const Line& line, bool of_several_experiments) {
                {"parent", line.stage.parent},
                {"parameters", effective_parameters(line.stage.resolved)},
                {"time_step", facts(time_step_of(line))},
-               {"expected_overlap_d", expected_overlap(run.parameters)},
+               {"expected_overlap_d", expected_overlap(parameters_of(line))},
                {"particle_steps_left", line.look.particle_steps},
                {"checkpoints_left", line.look.checkpoints},
                {"bytes_left", line.look.bytes},
@@ -204,7 +209,7 @@ void plan(const PlanOptions& options, Context& context) {
   std::size_t longer = 0;
   for (const Line& line : lines) {
     if (!line.look.done) left_runs.insert(line.run);
-    longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
+    longer += cycles_of(line) > static_cast<double>(line.run->ask.target_cycles) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.seconds(cores);

@@ -136,6 +136,18 @@ void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   }
 }
 
+/// The stage that settled the packing from which the stage descends; "" if there is none.
+std::string packing_of(const Store& store, const Stage& stage) {
+  std::string packing = stage.parent;
+  std::set<std::string> seen;  // a forged record may name itself
+  while (!packing.empty() && seen.insert(packing).second) {
+    const std::string before = store.stage(packing).parent;
+    if (before.empty()) break;
+    packing = before;
+  }
+  return packing;
+}
+
 std::string unknown_name(const char* what, const std::string& name,
                          const std::vector<std::string_view>& known) {
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
@@ -228,15 +240,12 @@ FigureRun unmeasured(const CollectedRun& input) {
   }
   nlohmann::json parameters = effective_parameters(resolved);
   parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
-  return {input.stage.id,
-          input.stage.parent,
-          input.ask.experiment,
-          input.ask.variant,
+  return {input.ask,
+          input.stage.id,
+          input.packing,
           input.name,
           input.named,
-          input.ask.swept,
           std::move(parameters),
-          input.ask.seed,
           {},
           std::min(input.end, input.stage.cycle),
           input.core_time_s};
@@ -322,7 +331,10 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
         wanted.path()));
   }
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
-  for (Run& run : newest.runs) collected.runs.push_back({std::move(run)});
+  for (Run& run : newest.runs) {
+    CollectedRun& one = collected.runs.emplace_back(CollectedRun{std::move(run)});
+    one.packing = packing_of(store, one.stage);
+  }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);

@@ -41,9 +41,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 /// One run of a figure.
 struct CollectedRun : Run {
   std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
-  std::string name = {};                           ///< of its variant, for people
-  bool named = false;                              ///< by a label of the manifest
   double end = 0;                                  ///< end_for()
+  std::string packing = {};                        ///< FigureRun::packing
   double core_time_s = std::nan("");               ///< FigureRun::core_time_s
 };
 

@@ -212,10 +212,10 @@ void measure_where(const Store& store, std::span<const std::string> names,
 
 FigureRun history_of(const Store& store, const Run& selected, std::span<const Row> rows) {
   FigureRun history;
+  static_cast<Place&>(history) = selected.ask;
   const double last = rows.empty() ? 0 : rows.back().checkpoint->cycle;
   history.core_time_s = computing_time(store, selected.stage.id, last).core_seconds;
   history.run_id = selected.stage.id;
-  history.swept = selected.ask.swept;
   history.parameters = effective_parameters(selected.stage.resolved);
   for (const Row& row : rows) {
     if (!row.measures.numbers.contains("phi") ||

@@ -28,11 +28,11 @@ void require_found(const char* what, const Filter& filter) {
 }
 
 /// The same of all versions of a manifest.
-auto place(const Ask& m) {
+auto place(const Place& m) {
   return std::tie(m.experiment, m.scale, m.variant, m.seed);
 }
 
-bool at_same_scale(const Ask& a, const Ask& b) {
+bool at_same_scale(const Place& a, const Place& b) {
   return a.experiment == b.experiment && a.scale == b.scale;
 }
 
@@ -61,7 +61,7 @@ bool in_order(const Run& a, const Run& b) {
 }
 
 using ExperimentScale = std::pair<std::string, std::string>;
-ExperimentScale experiment_scale(const Ask& m) {
+ExperimentScale experiment_scale(const Place& m) {
   return {m.experiment, m.scale};
 }
 
@@ -72,14 +72,15 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
     double had = 0;
   };
   std::map<ExperimentScale, Shortened> shortened;
-  for (const auto& [run, m] : runs) {
-    const bool asked_for_more = std::ranges::any_of(run.asks, [&m = m](const Ask& older) {
+  for (const Run& run : runs) {
+    const Ask& m = run.ask;
+    const bool asked_for_more = std::ranges::any_of(run.stage.asks, [&](const Ask& older) {
       return place(older) == place(m) && older.target_cycles > m.target_cycles;
     });
-    if (!asked_for_more || run.cycle <= static_cast<double>(m.target_cycles)) continue;
+    if (!asked_for_more || run.stage.cycle <= static_cast<double>(m.target_cycles)) continue;
     Shortened& found = shortened[experiment_scale(m)];
     ++found.runs;
-    found.had = std::max(found.had, run.cycle);
+    found.had = std::max(found.had, run.stage.cycle);
   }
   for (const auto& [where, found] : shortened) {
     notes.push_back(fmt::format(

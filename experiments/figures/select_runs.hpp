@@ -21,15 +21,9 @@ struct RunSelection {
   bool packings = false;                 ///< settled packings too, whose variant is "packing"
 };
 
-/// A run in one of its places: a run of two experiments is selected once for each.
-struct Run {
-  Stage stage;
-  /// `newest` is false also where the manifest was later declared with another run in this place.
-  Ask ask;
-};
-
-/// In the order of declaration. Throws NotFound for an experiment, scale, variant or seed that the
-/// store does not have, and names those that it has.
+/// In the order of declaration, without names. Of a run whose manifest was later declared with
+/// another one in its place, `newest` is false. Throws NotFound for an experiment, scale, variant
+/// or seed that the store does not have, and names those that it has.
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {

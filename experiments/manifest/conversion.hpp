@@ -65,6 +65,10 @@ struct TimeStep {
 TimeStep shear_time_step(const Parameters& parameters);
 TimeStep settle_time_step(const Parameters& parameters);
 
+/// Whether `settle` may state the parameter for the packing alone: it acts on the grains or on the
+/// moving wall, and is not part of the cell, the grains or their units.
+bool may_differ_in_settling(std::string_view key);
+
 /// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
 bool takes_auto(std::string_view key);
 

@@ -71,19 +71,27 @@ struct VariantCheck {
     if (!autos_are_in_range()) return;
     check_time_steps();
     check_cell();
+    check_start();
     if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
       report("engine", why, "Leave `engine` out, or use a protocol that shears.");
     }
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value of a parameter and where it is stated; null if it is a default.
+  // The value of a parameter, or of "settle.KEY", and where it is stated; null if it is a default.
   const Setting* find(string_view key) const {
+    if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
+      const auto found = scale.settle.find(key.substr(of_packing.size()));
+      return found == scale.settle.end() ? nullptr : &found->second;
+    }
     for (const auto& [name, setting] : variant.swept) {
       if (name == key) return setting;
     }
-    const auto found = scale.settings.find(key);
-    return found == scale.settings.end() ? nullptr : &found->second;
+    for (const Settings* settings : {&scale.settings, &scale.start.settings}) {
+      const auto found = settings->find(key);
+      if (found != settings->end()) return &found->second;
+    }
+    return nullptr;
   }
 
   // `cause`: a key to blame if this one is a default.
@@ -120,22 +128,25 @@ struct VariantCheck {
   }
 
   void check_time_steps() {
-    const double limit = stability_limit_s(p);
-    const double step = shear_time_step_s(p), settle_step = p.settle_time_step_s;
-    const string over = format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", limit);
+    const double limit = stability_limit_s(p), settle_limit = stability_limit_s(variant.packing);
+    const double step = shear_time_step_s(p), settle_step = variant.packing.settle_time_step_s;
+    const auto over = [](double of) {
+      return format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", of);
+    };
     if (p.protocol != ProtocolKind::stiffen && step >= limit) {
       const double enough = std::floor(p.period_s / limit) + 1;
       report("steps_per_cycle",
-             format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over),
+             format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over(limit)),
              find_field("steps_per_cycle")->range.contains(enough)
                  ? format("Use at least {:.0f} steps per cycle, or `auto`.", enough)
                  : "Lower period_s or stiffness_N_per_m.",
              last_stated({"mass_kg", "stiffness_N_per_m", "period_s"}));
     }
-    if (settle_step >= limit) {
-      report("settle_time_step_s", format("the time step {:.4g} s {}", settle_step, over),
-             format("Use less than {:.4g} s, or `auto`.", limit),
-             last_stated({"mass_kg", "stiffness_N_per_m"}));
+    if (settle_step >= settle_limit) {
+      report("settle_time_step_s",
+             format("the time step {:.4g} s {}", settle_step, over(settle_limit)),
+             format("Use less than {:.4g} s, or `auto`.", settle_limit),
+             last_stated({"mass_kg", "stiffness_N_per_m", "settle.stiffness_N_per_m"}));
     }
     const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / settle_step > kMostSteps) {
@@ -179,6 +190,34 @@ struct VariantCheck {
         loose_stated
             ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
             : format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
+  }
+
+  void check_start() {
+    const Start& start = scale.start;
+    const auto refuse = [&](const Position& at, const char* key, string problem, string remedy) {
+      problems.add(at, key, std::move(problem), "", std::move(remedy));
+    };
+    if (!start.is_stated()) {
+      for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
+        if (find(key) == nullptr) continue;
+        report(key, "has no effect without start",
+               "State `start: {experiment: NAME}`, or leave it out.");
+      }
+      return;
+    }
+    if (p.protocol == ProtocolKind::stiffen) {
+      refuse(start.at, "start", "does not go with protocol stiffen",
+             "A recorded state is sheared on.");
+    }
+    if (start.run.empty() && find("start_seed") == nullptr) {
+      refuse(start.at, "start", "lacks seed", "State that of the recorded run: `seed: 3`.");
+    }
+    if (!start.run.empty() && find("start_seed") != nullptr) {
+      report("start_seed", "does not go with checkpoint, which names one run", "Leave it out.");
+    }
+    for (const auto& [key, setting] : scale.settle) {
+      refuse(setting.at, "settle", "has no effect with start: nothing settles", "Leave it out.");
+    }
   }
 
   void check_phases() {
@@ -292,7 +331,8 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 }
 
 // What is sound but unlikely to be meant.
-std::vector<string> advice_on(const Parameters& p) {
+std::vector<string> advice_on(const Variant& variant) {
+  const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
   if (!pressure_lifts_column(p)) {
     advice.push_back(
@@ -313,23 +353,23 @@ std::vector<string> advice_on(const Parameters& p) {
                "({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                overlap, p.max_overlap_diameters));
   }
-  if (p.drag_kg_per_s == 0) {
+  if (packing.drag_kg_per_s == 0) {
     advice.push_back(
         format("without drag the grains do not come to rest, so settling fails at "
                "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
                p.settle_time_limit_s));
-  } else if (const double time = damping_time_s(p); time > p.settle_time_limit_s) {
-    advice.push_back(
-        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-               "settle_time_limit_s ({:g} s). Raise one of them.",
-               p.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
-               p.settle_time_limit_s));
+  } else if (const double time = damping_time_s(packing); time > p.settle_time_limit_s) {
+    advice.push_back(format(
+        "with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
+        "settle_time_limit_s ({:g} s). Raise one of them.",
+        packing.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
+        p.settle_time_limit_s));
   }
   if (p.protocol != ProtocolKind::stiffen) {
     if (auto step = time_step_advice(shear_time_step(p), "steps_per_cycle"))
       advice.push_back(*step);
   }
-  if (auto step = time_step_advice(settle_time_step(p), "settle_time_step_s")) {
+  if (auto step = time_step_advice(settle_time_step(packing), "settle_time_step_s")) {
     advice.push_back(*step);
   }
   return advice;
@@ -340,7 +380,7 @@ void warn_of_parameters(const Manifest& manifest, std::span<const Variant> varia
                         std::vector<string>& warnings) {
   std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
   for (const Variant& variant : variants) {
-    for (const string& one : advice_on(variant.parameters)) {
+    for (const string& one : advice_on(variant)) {
       auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
       if (known == advice.end()) known = advice.insert(known, {one, {}});
       known->second.push_back(variant.name());
@@ -535,7 +575,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const Scale& scale,
   const bool lacks_one = sides[0].empty() || (sides[1].empty() && !claim.published);
   if (claim.optional && lacks_one) return {};
   const auto run_of = [](const Variant& variant) {
-    return last_stage(variant.parameters, 1, prepare_stage(variant.parameters, 1)).id;
+    return last_stage(variant.parameters, 1, prepare_stage(variant.packing, 1)).id;
   };
   const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
   ClaimProblems found = {

@@ -78,27 +78,95 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: the facts that all runs of the scale share.
-PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& variant,
-                       std::uint64_t seed) {
-  PlannedRun run;
-  static_cast<Ask&>(run) = common;
-  run.variant = variant.name();
-  run.swept = variant.swept_values();
-  run.seed = seed;
-  run.parameters = variant.parameters;
-  run.target_cycles = target_cycles(run.parameters);
-  run.prepare = prepare_stage(run.parameters, seed);
-  run.last = last_stage(run.parameters, seed, run.prepare);
-  if (run.last.kind == name_of(StageKind::shear) && scale.until.until) {
-    run.until = to_json(*scale.until.until);
+bool has_swept_values(const std::string& variant, const std::string& wanted) {
+  return wanted.empty() || Filter(std::vector{wanted}).passes(variant);
+}
+
+/// The recorded run whose state the variant begins with.
+const Stage& run_to_start_from(const Manifest& manifest, const Scale& scale, const Variant& variant,
+                               std::span<const Stage> known) {
+  const Start& start = scale.start;
+  const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
+  std::vector<const Stage*> found;
+  for (const Stage& stage : known) {
+    if (stage.kind != name_of(StageKind::shear)) continue;
+    const auto is_it = [&](const Ask& ask) {
+      return ask.newest && ask.experiment == start.experiment &&
+             scale_name(ask.scale) == scale_name(at_scale) &&
+             ask.seed == variant.parameters.start_seed &&
+             has_swept_values(ask.variant, start.variant);
+    };
+    const bool fits = start.run.empty() ? std::ranges::any_of(stage.asks, is_it)
+                                        : stage.id.starts_with(start.run);
+    if (fits) found.push_back(&stage);
   }
-  run.asks = {run};
+  const std::string what =
+      start.run.empty()
+          ? fmt::format("run of {} at scale {} with seed {}{}", start.experiment,
+                        scale_name(at_scale), variant.parameters.start_seed,
+                        start.variant.empty() ? "" : " and " + printable(start.variant))
+          : fmt::format("shear whose id begins with {}", start.run);
+  if (found.empty()) {
+    refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
+           "Compute it first, or name the store that has it with --store.");
+  }
+  if (found.size() > 1) {
+    refuse(manifest.file, start.at, "start", fmt::format("the store has more than one {}", what),
+           "",
+           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`."
+                             : "State more digits of the id.");
+  }
+  const double cycle = static_cast<double>(variant.parameters.start_cycle);
+  if (found.front()->cycle < cycle) {
+    refuse(manifest.file, start.at, "start",
+           fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
+           fmt::format("cycle {}", found.front()->cycle), "Extend it first.");
+  }
+  return *found.front();
+}
+
+/// The parameters of the packing that the cell, its grains and their units depend on are those of
+/// the recorded run.
+void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
+                       const Stage& recorded) {
+  const Parameters had = read_stage(recorded.resolved).parameters;
+  for (const Field& field : schema()) {
+    const bool of_packing = field.identity.stage == StageKind::prepare &&
+                            field.identity.distinguishes_runs() &&
+                            !field.name.starts_with("settle_");
+    if (!of_packing || may_differ_in_settling(field.name)) continue;
+    const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
+    if (mine == its) continue;
+    refuse(manifest.file, scale.start.at, std::string(field.name),
+           fmt::format("differs from that of run {:.8}, whose state this one begins with",
+                       recorded.id),
+           value_text(mine), fmt::format("State {}.", value_text(its)));
+  }
+}
+
+// `common`: the facts that all runs of the scale share; `recorded`: the run whose state it begins
+// with, or null.
+PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& variant,
+                       std::uint64_t seed, const Stage* recorded) {
+  PlannedRun run;
+  run.ask = common;
+  run.ask.variant = variant.name();
+  run.ask.swept = variant.swept_values();
+  run.ask.seed = seed;
+  run.parameters = variant.parameters;
+  run.ask.target_cycles = target_cycles(run.parameters);
+  run.packing = variant.packing;
+  if (recorded == nullptr) run.prepare = prepare_stage(run.packing, seed);
+  run.stage = last_stage(run.parameters, seed, recorded == nullptr ? *run.prepare : *recorded);
+  if (run.stage.kind == name_of(StageKind::shear) && scale.until.until) {
+    run.ask.until = to_json(*scale.until.until);
+  }
+  run.stage.asks = {run.ask};
   return run;
 }
 
 // `place`: manifest, experiment and scale.
-void take_declared_lengths(const Ask& place, std::span<const Stage> known,
+void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
   std::map<std::string, std::uint64_t> longest;  // by variant
   for (const Stage& run : known) {
@@ -115,9 +183,9 @@ void take_declared_lengths(const Ask& place, std::span<const Stage> known,
 
 void name_variants(const Manifest& manifest, Plan& plan) {
   std::vector<nlohmann::json> variants;
-  for (const PlannedRun& run : plan.runs) variants.push_back(run.swept);
+  for (const PlannedRun& run : plan.runs) variants.push_back(run.ask.swept);
   const auto names = variant_names(variants, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.swept);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
 }
 
 }  // namespace
@@ -139,12 +207,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
   std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest.experiment, scale.name, {}, {}};
-  const Ask common = {.experiment = plan.experiment,
-                      .scale = plan.scale,
-                      .variant = {},
-                      .manifest = sha256_hex(manifest.text),
-                      .checkpoint_every = scale.checkpoints.every_cycles,
-                      .checkpoint_phases = scale.checkpoints.phases};
+  Ask common{
+      {.experiment = plan.experiment, .scale = plan.scale, .manifest = sha256_hex(manifest.text)}};
+  common.checkpoint_every = scale.checkpoints.every_cycles;
+  common.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds;
@@ -164,12 +230,18 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       refuse(manifest.file, {}, "engine", why, "lammps",
              "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");
     }
+    const Stage* recorded = nullptr;
+    if (scale.start.is_stated()) {
+      recorded = &run_to_start_from(manifest, scale, variant, options.known);
+      require_same_cell(manifest, scale, variant, *recorded);
+    }
     for (const std::uint64_t seed : chosen_seeds) {
-      const PlannedRun& run = plan.runs.emplace_back(planned_run(common, scale, variant, seed));
-      const std::string& same = variant_of.emplace(run.last.id, run.variant).first->second;
-      if (same == run.variant || seed != chosen_seeds.front()) continue;
+      const PlannedRun& run =
+          plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded));
+      const std::string& same = variant_of.emplace(run.stage.id, run.ask.variant).first->second;
+      if (same == run.ask.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
-                                          manifest.file, same, run.variant));
+                                          manifest.file, same, run.ask.variant));
     }
   }
   if (const std::string* missing = wanted.unfound()) {
@@ -200,13 +272,13 @@ Plan joined(std::span<const Plan> plans) {
       scales.push_back(scale_name(plan.scale));
     }
     for (const PlannedRun& run : plan.runs) {
-      const auto [place, fresh] = places.try_emplace(run.last.id, all.runs.size());
+      const auto [place, fresh] = places.try_emplace(run.stage.id, all.runs.size());
       if (fresh) {
         all.runs.push_back(run);
         continue;
       }
-      std::vector<Ask>& asks = all.runs[place->second].asks;
-      std::ranges::copy(run.asks, std::back_inserter(asks));
+      std::vector<Ask>& asks = all.runs[place->second].stage.asks;
+      std::ranges::copy(run.stage.asks, std::back_inserter(asks));
     }
   }
   all.experiment = fmt::format("{}", fmt::join(experiments, ", "));

@@ -27,13 +27,12 @@ struct ExpandOptions {
   std::span<const Stage> known = {};
 };
 
-/// Its scale is empty when the manifest has none, and its variant "base" when nothing is swept.
-struct PlannedRun : Ask {
-  std::string name;  ///< of the variant, for people (variants.hpp)
-  Stage prepare;
-  Stage last;  ///< shear or stiffening of the packing
+/// A run that no store has yet. Its stage has the asks of all joined plans, its own first; its
+/// scale is empty when the manifest has none, and its variant "base" when nothing is swept.
+struct PlannedRun : Run {
+  std::optional<Stage> prepare;  ///< the packing; none where it begins with a recorded state
   Parameters parameters;
-  std::vector<Ask> asks;  ///< of each of the joined plans; its own first
+  Parameters packing;  ///< those with which it settles
 };
 
 struct Plan {

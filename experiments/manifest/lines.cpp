@@ -65,6 +65,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   if (const auto cycles = stated.settings.find("cycles"); cycles != stated.settings.end()) {
     add(stated.own.contains("cycles") ? path_of("cycles") : "base.cycles", cycles->second.at);
   }
+  for (const auto& [key, setting] : stated.settle) add(path_of("settle") + "." + key, setting.at);
   for (const auto& [key, at] : {std::pair("seeds", stated.seeds.at),
                                 {"checkpoints", stated.checkpoints.at},
                                 {"until", stated.until.at}}) {

@@ -160,12 +160,26 @@ struct Placed : Spec {
   Position at;
 };
 
+/// `start`: the recorded run whose state a shear begins with; default: a packing that it settles.
+struct Start {
+  std::string experiment = {};
+  std::string scale = {};    ///< "" for that of the shear
+  std::string variant = {};  ///< swept values; "" if the experiment has one variant
+  std::string run = {};      ///< instead of these: the beginning of its id
+  Settings settings = {};    ///< start_seed, start_cycle, start_noise_d
+  Position at = {};
+
+  bool is_stated() const { return at.line > 0; }
+};
+
 /// An entry of `scales` with what it takes from the manifest, or what the manifest states for all
 /// scales.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
   Position at = {};
   Settings settings = {};
+  Settings settle = {};  ///< parameters of the packing that differ from those of the shear
+  Start start = {};
   Sweep sweep = {};
   Seeds seeds = {};
   Checkpoints checkpoints = {};

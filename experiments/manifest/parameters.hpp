@@ -75,6 +75,11 @@ struct Parameters {
   PauseWalls pause_walls = PauseWalls::held;
   EngineKind engine = EngineKind::shearcell;
 
+  // A shear that begins with a recorded state: which one, and the noise on its positions.
+  std::uint64_t start_seed = 0;
+  std::uint64_t start_cycle = 0;
+  double start_noise_d = 0;
+
   // Stiffening.
   std::uint64_t stiffness_steps_per_decade = 4;
   double minimize_force_tolerance = 1e-4;

@@ -23,6 +23,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
@@ -80,6 +81,18 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "parameters that vary: `grid` takes every combination, keys of `zip` advance "
                 "together",
          .example = "{grid: {fluid: [still, cell]}}"});
+  visit(scale.settle,
+        {.name = "settle",
+         .doc = "parameters of the packing that differ from those of the shear: what acts on the "
+                "grains and on the moving wall. Variants of the shear alone then share a packing",
+         .example = "{drag_kg_per_s: 1.28e-3}"});
+  visit(scale.start,
+        {.name = "start",
+         .doc = "instead of settling: the shear begins with the state of a recorded run at a whole "
+                "cycle, with noise that each seed draws anew. `{checkpoint: RUN@CYCLE}` names the "
+                "run by its id; `sweep` may vary start_seed and start_cycle",
+         .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
+                    "1.0e-13}"});
   visit(scale.seeds,
         {.name = "seeds", .doc = "seeds 1 to 6, or a list; default 1", .example = "6"});
   visit(scale.checkpoints,
@@ -342,8 +355,9 @@ const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
      "LAMMPS, which has unequal grains."},
     {{"radius"}, "State the diameter: diameter_m."},
     {{"temperature", "thermostat"}, "Grains have no thermal motion; the walls move them."},
-    {{"initial", "start", "positions"},
-     "Each run settles its own packing from loose grains; `seeds` draw them."}};
+    {{"initial", "positions"},
+     "Each run settles its own packing from loose grains, which `seeds` draw, or begins with a "
+     "recorded state: `start: {experiment: NAME, seed: 1, cycle: 10}`."}};
 
 // Reads values into members of their types. Problems are reported, and reading continues.
 struct Reader {
@@ -730,8 +744,70 @@ struct Reader {
     }
   }
 
-  void read(const Node& in, const Field&, Settings& settings) {
+  // Those of `base`, or of `settle`.
+  void read(const Node& in, const Field& about, Settings& settings) {
+    settings.clear();
     read_settings(in, settings, {}, [](const Node&) { return false; });
+    if (about.name == "base" || !in.is_map()) return;
+    for (const Node& part : in.parts) {
+      const Field* field = find_field(part.key);
+      if (field == nullptr || may_differ_in_settling(part.key)) continue;
+      const bool of_shear = field->identity.stage != StageKind::prepare;
+      reject_key(part, of_shear ? "has no effect on a packing" : "is one for packing and shear",
+                 "State it in `base` or in a scale.");
+    }
+  }
+
+  // The recorded run, and the parameters that begin with `start_`.
+  void read(const Node& in, const Field& about, Start& start) {
+    static constexpr string_view texts[] = {"experiment", "scale", "variant", "checkpoint"};
+    static constexpr string_view numbers[] = {"seed", "cycle", "noise_d"};
+    start = {};
+    start.at = in.at;
+    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
+    string checkpoint;
+    for (const Node& part : in.parts) {
+      if (std::ranges::count(numbers, part.key) > 0) {
+        const string key = "start_" + part.key;
+        if (!part.is_scalar()) {
+          reject_type(part, "a single value", fmt::format("`sweep` takes lists of {}.", key));
+        } else if (auto value = read_scalar(part, *find_field(key))) {
+          start.settings[key] = {std::move(*value), part.at};
+        }
+      } else if (std::ranges::count(texts, part.key) > 0) {
+        string& text = part.key == "experiment" ? start.experiment
+                       : part.key == "scale"    ? start.scale
+                       : part.key == "variant"  ? start.variant
+                                                : checkpoint;
+        const bool is_text = part.key == "variant" || part.key == "checkpoint";
+        read(part, {.longest = is_text ? kLongestLabel : 0}, text);
+      } else {
+        reject_unknown(part, joined({std::begin(texts), std::end(texts)}, std::span(numbers)));
+      }
+    }
+    const Node* named = in.find("checkpoint");
+    if ((named != nullptr) == (in.find("experiment") != nullptr)) {
+      return reject(in, "does not have either an experiment or a checkpoint", remedy_of(about));
+    }
+    if (named != nullptr) read_checkpoint(*named, checkpoint, start);
+  }
+
+  // RUN@CYCLE
+  void read_checkpoint(const Node& in, string_view text, Start& start) {
+    const std::size_t at = text.find('@');
+    start.run = text.substr(0, at);
+    const auto cycle =
+        at == text.npos ? std::nullopt : read_number<std::uint64_t>(text.substr(at + 1));
+    if (start.run.size() < 8 || start.run.size() > 64 ||
+        start.run.find_first_not_of("0123456789abcdef") != string::npos || !cycle) {
+      return reject_value(in, "is not a run and a whole cycle",
+                          "It takes `0123abcd@10`: at least eight digits of the run's id.");
+    }
+    const Field& field = *find_field("start_cycle");
+    if (const auto wrong = check_value(field, *cycle)) {
+      reject_value(in, wrong->problem, wrong->remedy);
+    }
+    start.settings["start_cycle"] = {*cycle, in.at};
   }
 
   void read(const Node& in, const Field&, std::vector<Scale>& scales) {

@@ -91,6 +91,7 @@ std::string range_markdown(const Field& field) {
 
 std::string identity_markdown(const Identity& identity) {
   if (!identity.stage) return "none";
+  if (identity.selects_parent) return "parent";
   std::string text(name_of(*identity.stage));
   if (identity.under) text += fmt::format(", if {}", name_of(*identity.under));
   if (!identity.recorded_as.empty())
@@ -206,6 +207,17 @@ std::span<const Field> schema() {
           "engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
           "what computes the shear: this program, or LAMMPS (another run, equal up to rounding; "
           "settling is always ours)"),
+      // A shear that begins with a recorded state.
+      row<&P::start_seed>("start_seed", "", "1", from(0, 9007199254740991),
+                          {.stage = StageKind::shear, .selects_parent = true},
+                          "with `start`: the seed of the recorded run"),
+      row<&P::start_cycle>("start_cycle", "", "1", from(0, 1e6),
+                           {.stage = StageKind::shear, .omitted_at = "0"},
+                           "with `start`: the whole cycle of the recorded run whose state is cycle "
+                           "0 of this one"),
+      row<&P::start_noise_d>(
+          "start_noise_d", "", "d", from(0, 0.1), {.stage = StageKind::shear, .omitted_at = "0"},
+          "with `start`: standard deviation of normal noise on the positions, drawn by the seed"),
       // Stiffening.
       row<&P::stiffness_decades>(
           "stiffness_decades", "", "1", from(0, 6), kNoKey,
@@ -228,8 +240,8 @@ const Field* find_field(string_view name) {
 
 bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKind> protocol,
             const json& value) {
-  if (!identity.stage || (*identity.stage != StageKind::prepare && *identity.stage != stage))
-    return false;
+  if (!identity.stage || identity.selects_parent) return false;
+  if (*identity.stage != StageKind::prepare && *identity.stage != stage) return false;
   if (identity.under && identity.under != protocol) return false;
   return identity.omitted_at.empty() || value_text(value) != identity.omitted_at;
 }

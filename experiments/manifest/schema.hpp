@@ -28,6 +28,8 @@ struct Identity {
   /// Every record holds this value, whatever the parameter is. For a parameter that is no longer
   /// part of the identity; the records of older runs may hold other values.
   std::string_view recorded_as = {};
+  /// No record holds the parameter: it selects the stage before, whose id is in the record.
+  bool selects_parent = false;
 
   /// Whether another value makes another run.
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }

@@ -203,6 +203,7 @@ std::uint64_t variant_count(const Sweep& sweep) {
 std::vector<Variant> variants_of(const Scale& scale) {
   Parameters base;
   std::vector<std::string> autos;
+  for (const auto& [key, setting] : scale.start.settings) apply(key, setting, base);
   for (const auto& [key, setting] : scale.settings) {
     if (is_auto(setting)) {
       autos.push_back(key);
@@ -213,9 +214,9 @@ std::vector<Variant> variants_of(const Scale& scale) {
   const std::vector<SweepAxis>& grid = scale.sweep.grid;
   const std::vector<SweepAxis>& zip = scale.sweep.zip;
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
-  std::vector<Variant> variants(variant_count(scale.sweep), Variant{{}, base});
+  std::vector<Variant> variants(variant_count(scale.sweep), Variant{{}, base, {}});
   for (std::uint64_t index = 0; index < variants.size(); ++index) {
-    auto& [swept, parameters] = variants[index];
+    auto& [swept, parameters, packing] = variants[index];
     // Number of grid points that have equal values on the axes before this one.
     std::uint64_t block = variants.size() / rows;
     for (const SweepAxis& axis : grid) {
@@ -232,8 +233,12 @@ std::vector<Variant> variants_of(const Scale& scale) {
       }
     }
     for (const auto& [key, setting] : swept) apply(key, *setting, parameters);
+    packing = parameters;
+    for (const auto& [key, setting] : scale.settle) apply(key, setting, packing);
     for (const std::string& key : autos) {
-      if (find_axis(scale.sweep, key) == nullptr) resolve_auto(key, parameters);
+      if (find_axis(scale.sweep, key) != nullptr) continue;
+      resolve_auto(key, parameters);
+      resolve_auto(key, packing);
     }
   }
   return variants;

@@ -28,6 +28,7 @@ struct Variant {
   /// In the order of the manifest, without the length of the run.
   std::vector<std::pair<std::string, const Setting*>> swept;
   Parameters parameters;
+  Parameters packing;  ///< the same with what `settle` states
 
   std::string name() const;             ///< "fluid=cell", "base" when nothing is swept
   nlohmann::json swept_values() const;  ///< swept keys and values

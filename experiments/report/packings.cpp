@@ -71,7 +71,9 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
-  for (const auto& [run, member] : runs) {
+  for (const Run& one : runs) {
+    const Stage& run = one.stage;
+    const Ask& member = one.ask;
     if (member.experiment != experiment) continue;
     std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, run.asks);
     std::erase_if(checkpoints,

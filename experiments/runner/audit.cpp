@@ -88,17 +88,17 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// A run must start from the state at which the stage before it was completed. States that the
-/// store lacks are not checked: a merge leaves out files that another HDF5 library wrote.
-void check_beginning(const Store& store, const Stage& run,
-                     const std::set<std::uint64_t>& completed) {
+/// A run must start from the state at which its packing was completed, or from the recorded one
+/// that it names: from one of `steps` of the stage before it. States that the store lacks are not
+/// checked: a merge leaves out files that another HDF5 library wrote.
+void check_beginning(const Store& store, const Stage& run, const std::set<std::uint64_t>& steps) {
   for (const Event& event : store.events(run_stream(run.id), events::RunStarted::kType)) {
     const auto started = std::get<events::RunStarted>(events::decode(event));
     for (const CheckpointRecord& record : store.checkpoints(run.parent, Listed::all)) {
-      if (record.sha256 != started.parent_checkpoint || completed.contains(record.step)) continue;
+      if (record.sha256 != started.parent_checkpoint || steps.contains(record.step)) continue;
       throw StoreDamaged(fmt::format(
-          "event {} started it from checkpoint {:.12} (step {}) of run {:.12}, which was not "
-          "completed there; do not use its states, and compute it again in a new store",
+          "event {} started it from checkpoint {:.12} (step {}) of run {:.12}, which is not the "
+          "state that it begins with; do not use its states, and compute it again in a new store",
           event.seq, record.sha256, record.step, run.parent));
     }
   }
@@ -233,6 +233,11 @@ std::vector<Finding> check_runs(const Store& store) {
     try {
       check_run(run);
       if (run.parent.empty()) continue;
+      if (store.stage(run.parent).kind != name_of(StageKind::prepare)) {
+        const auto start = recorded_start(store, run, read_stage(run.resolved).parameters);
+        check_beginning(store, run, start ? std::set{start->step} : std::set<std::uint64_t>{});
+        continue;
+      }
       const auto [ends, fresh] = completed.try_emplace(run.parent);
       if (fresh) ends->second = completed_steps(store, run.parent);
       check_beginning(store, run, ends->second);

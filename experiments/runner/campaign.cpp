@@ -433,19 +433,22 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
   std::vector<Stage> stages;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {
-    for (Stage stage : {run.prepare, run.last}) {
+    for (const Stage* planned : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
+      if (planned == nullptr) continue;
+      Stage stage = *planned;
       const bool prepare = stage.kind == name_of(StageKind::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      stage.asks = {run};
+      stage.asks = {run.ask};
       if (prepare) {
         // Variants that start from one packing share it, so its place says no variant.
-        stage.asks = {{.experiment = run.experiment,
-                       .scale = run.scale,
-                       .variant = "packing",
-                       .seed = run.seed,
-                       .manifest = run.manifest,
-                       .checkpoint_every = run.checkpoint_every}};
+        Ask& packing = stage.asks.front();
+        packing = {{.experiment = run.ask.experiment,
+                    .scale = run.ask.scale,
+                    .variant = "packing",
+                    .seed = run.ask.seed,
+                    .manifest = run.ask.manifest}};
+        packing.checkpoint_every = run.ask.checkpoint_every;
       }
       store.declare_stage(stage);
       if (first) stages.push_back(std::move(stage));

@@ -329,8 +329,8 @@ std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
   std::vector<PlannedStage> stages;
   std::set<std::string> seen;
   for (const PlannedRun& run : plan.runs) {
-    for (const Stage* planned : {&run.prepare, &run.last}) {
-      if (!seen.insert(planned->id).second) continue;
+    for (const Stage* planned : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
+      if (planned == nullptr || !seen.insert(planned->id).second) continue;
       PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
       if (const auto found = known.find(planned->id); found != known.end()) {
         one.stage = std::move(found->second);
@@ -338,7 +338,7 @@ std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
         one.asks = one.stage.asks;
         one.checkpoints = seen_checkpoints(*store, one.stage.id);
       }
-      if (planned == &run.last) std::ranges::copy(run.asks, std::back_inserter(one.asks));
+      std::ranges::copy(planned->asks, std::back_inserter(one.asks));
       one.look = outlook(one.stage, one.asks, one.checkpoints);
     }
   }

@@ -73,19 +73,19 @@ VariantNames::VariantNames(const Store& store) {
 }
 
 std::string VariantNames::find(const Group& group, const nlohmann::json& values,
-                               const Ask& place) const {
+                               const Place& place) const {
   const auto names = names_.find(group);
   if (names == names_.end()) return place.variant;
   const auto name = names->second.find(values);
   return name == names->second.end() ? place.variant : name->second;
 }
 
-std::string VariantNames::of(const Stage& run, const Ask& m) const {
+std::string VariantNames::of(const Stage& run, const Place& m) const {
   if (!is_packing(run)) return of(m);
   return find({m.experiment, kPackings, m.scale}, effective_parameters(run.resolved), m);
 }
 
-std::string VariantNames::of(const Ask& m) const {
+std::string VariantNames::of(const Place& m) const {
   return find({m.experiment, m.manifest, m.scale}, m.swept, m);
 }
 

@@ -38,13 +38,13 @@ class VariantNames {
   VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
   /// In this place of the run; if unknown, the variant itself.
-  std::string of(const Stage& run, const Ask& place) const;
+  std::string of(const Stage& run, const Place& place) const;
   /// The same; not of a packing.
-  std::string of(const Ask& place) const;
+  std::string of(const Place& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
-  std::string find(const Group& group, const nlohmann::json& values, const Ask& place) const;
+  std::string find(const Group& group, const nlohmann::json& values, const Place& place) const;
 
   std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by values that vary
 };

@@ -122,6 +122,31 @@ struct Beginning {
   std::string parent_checkpoint = {};         ///< that the stage begins from, or ""
 };
 
+/// The recorded state of a shear that the stage's parameters name, with their noise.
+Beginning recorded_beginning(const Store& store, const ReadyStage& plan) {
+  const Parameters& p = plan.inputs.parameters;
+  const auto record = recorded_start(store, plan.stage, p);
+  const std::string what = fmt::format(
+      "run {:.12}: its state at cycle {}, from which run {:.12} "
+      "starts, ",
+      plan.stage.parent, p.start_cycle, plan.stage.id);
+  if (!record) {
+    throw StoreDamaged(what +
+                       "was never recorded; name a cycle of its checkpoints, or ask for more "
+                       "of them");
+  }
+  auto checkpoint = store.load_if_readable(*record);
+  if (!checkpoint) {
+    throw StoreDamaged(
+        fmt::format("{}is pruned or damaged; `shearcell regenerate {:.12}` restores "
+                    "its file",
+                    what, record->sha256));
+  }
+  checkpoint->state.step = 0;
+  add_noise(checkpoint->state, p.start_noise_d, plan.inputs.seed);
+  return {std::move(checkpoint->cell), std::move(checkpoint->state), std::nullopt, record->sha256};
+}
+
 /// The newest valid checkpoint before a step. Without one, the beginning of the stage. Throws
 /// Interrupted when a stop is requested during the filling. `damage` as in
 /// Store::newest_valid_checkpoint.
@@ -138,9 +163,10 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::st
     State state = fill_cell(cell, shape, plan.inputs.seed, give_up_if_requested);
     return {std::move(cell), std::move(state)};
   }
+  const Stage ended = store.stage(run.parent);
+  if (ended.kind != name_of(StageKind::prepare)) return recorded_beginning(store, plan);
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
-  const Stage ended = store.stage(run.parent);
   if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
     const bool recorded = ended.state == StageState::completed && !ended.state_hash.empty();
     throw StoreDamaged(fmt::format(
@@ -727,6 +753,15 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 bool is_done(const Store& store, const Stage& stage) {
   return outlook(stage, stage.asks, seen_checkpoints(store, stage.id)).done &&
          newest_is_sound(store, stage);
+}
+
+std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
+                                               const Parameters& parameters) {
+  const double cycle = static_cast<double>(parameters.start_cycle);
+  for (CheckpointRecord& record : store.checkpoints(stage.parent, Listed::and_pruned)) {
+    if (record.cycle == cycle) return std::move(record);
+  }
+  return std::nullopt;
 }
 
 nlohmann::json to_json(const Divergence& divergence) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "experiments/manifest/parameters.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -54,6 +55,11 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 
 /// Whether the stage is done and its last state can be read.
 bool is_done(const Store& store, const Stage& stage);
+
+/// The checkpoint, recorded or pruned, with whose state a shear of these parameters begins, if the
+/// stage before it is a shear too: that at `start_cycle`. Nothing if it was never recorded.
+std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
+                                               const Parameters& parameters);
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {

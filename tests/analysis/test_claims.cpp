@@ -32,7 +32,7 @@ FigureRun rising(std::uint64_t seed, double start, double gain = 0, double exces
     m.numbers["mean_overlap_d"] = 0.002 * (1 + excess);
     m.numbers["largest_crystallite"] = n;
   });
-  run.parent = std::to_string(seed);
+  run.packing = std::to_string(seed);
   return run;
 }
 

@@ -103,7 +103,7 @@ std::vector<FigureRun> with_copies(std::vector<FigureRun> runs, double amplitude
     FigureRun copy = runs[k];
     copy.run_id += " again";
     copy.parameters["amplitude_rad"] = amplitude;
-    if (shared) runs[k].parent = copy.parent = "packing of " + runs[k].run_id;
+    if (shared) runs[k].packing = copy.packing = "packing of " + runs[k].run_id;
     runs.push_back(std::move(copy));
   }
   return runs;
@@ -269,7 +269,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
     }
     const auto apart = size_exponent(pointers(runs), Region::interior);
     for (FigureRun& run : runs)
-      run.parent = fmt::format("{} {}", run.parameters["grains"].dump(), run.seed);
+      run.packing = fmt::format("{} {}", run.parameters["grains"].dump(), run.seed);
     const auto shared = size_exponent(pointers(runs), Region::interior);
     ASSERT_TRUE(apart && shared);
     covered += shared->interval.low <= 1 && shared->interval.high >= 1 ? 1 : 0;

@@ -349,7 +349,7 @@ std::vector<FigureRun> runs_of_steps() {
       run.swept["engine"] = engine;
       run.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
       run.run_id = fmt::format("{}/{}", run.variant, seed);
-      run.parent = fmt::format("packing {}", seed);
+      run.packing = fmt::format("packing {}", seed);
       run.core_time_s =
           steps * static_cast<double>(seed) * (engine == std::string("lammps") ? 9 : 1);
       runs.push_back(std::move(run));
@@ -414,7 +414,7 @@ TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
   EXPECT_TRUE(has(to_csv(table), "\nengine=shearcell,25,0.004,0,2,1\n")) << to_csv(table);
   EXPECT_TRUE(table.chart.note.ends_with("with the same packing, which 3 of 9 runs lack"))
       << table.chart.note;
-  for (FigureRun& run : runs) run.parent.clear();
+  for (FigureRun& run : runs) run.packing.clear();
   EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
   runs = runs_of_steps();
   runs.erase(runs.begin(), runs.begin() + 3);

@@ -189,7 +189,7 @@ TEST(FigureB5, PausesCompactFaster) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);
     for (FigureRun& run : runs) {
       run.seed %= 20;
-      run.parent = std::to_string(run.seed);
+      run.packing = std::to_string(run.seed);
       for (CheckpointMeasures& c : run.checkpoints)
         c.measures.numbers["phi_at_rest"] = c.measures.numbers["phi"];
       run.parameters["protocol"] = run.swept["protocol"];

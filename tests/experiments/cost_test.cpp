@@ -32,11 +32,11 @@ Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) 
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
     seen.emplace_back();
-    for (const std::uint64_t step : asked_steps(stage, run, 0, cycle)) {
+    for (const std::uint64_t step : asked_steps(stage, run.ask, 0, cycle)) {
       seen.emplace_back().record.step = step;
     }
   }
-  return outlook(stage, run.asks, seen);
+  return outlook(stage, run.stage.asks, seen);
 }
 
 double bytes_of(const Store& store, const std::string& run) {
@@ -50,33 +50,33 @@ double bytes_of(const Store& store, const std::string& run) {
 
 TEST(Cost, CountsParticleSteps) {
   const PlannedRun run = only_run(tiny_manifest());
-  EXPECT_EQ(left_of(run, run.last).particle_steps, 2.0 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(left_of(run, run.last, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
-  EXPECT_EQ(left_of(run, run.last, 7).particle_steps, 0);
-  EXPECT_EQ(left_of(run, run.last, 7).bytes, 0);
-  EXPECT_GT(left_of(run, run.prepare).particle_steps, 0);
+  EXPECT_EQ(left_of(run, run.stage).particle_steps, 2.0 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(left_of(run, run.stage, 0.5).particle_steps, 1.5 * kGrains * kStepsPerCycle);
+  EXPECT_EQ(left_of(run, run.stage, 7).particle_steps, 0);
+  EXPECT_EQ(left_of(run, run.stage, 7).bytes, 0);
+  EXPECT_GT(left_of(run, *run.prepare).particle_steps, 0);
 }
 
 TEST(Cost, CountsCheckpoints) {
   const PlannedRun run = only_run(tiny_manifest());
-  const double both = left_of(run, run.last).bytes;  // cycles 0, 1, 2
-  const double file = both - left_of(run, run.last, 1).bytes * 2;
+  const double both = left_of(run, run.stage).bytes;  // cycles 0, 1, 2
+  const double file = both - left_of(run, run.stage, 1).bytes * 2;
   EXPECT_GT(file, 0);
-  EXPECT_NEAR(left_of(run, run.last, 1).bytes, file, 1e-6 * file);
+  EXPECT_NEAR(left_of(run, run.stage, 1).bytes, file, 1e-6 * file);
   const PlannedRun loops = only_run(tiny_manifest("", "checkpoints: {phases: [0.25, 0.5]}\n"));
   const PlannedRun rare = only_run(tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
-  EXPECT_NEAR(left_of(rare, rare.last).bytes, 2 * file, 1e-6 * file);
-  EXPECT_NEAR(left_of(loops, loops.last).bytes, 7 * file, 1e-6 * file);
-  EXPECT_NEAR(left_of(loops, loops.last, 1).bytes, 3 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(rare, rare.stage).bytes, 2 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(loops, loops.stage).bytes, 7 * file, 1e-6 * file);
+  EXPECT_NEAR(left_of(loops, loops.stage, 1).bytes, 3 * file, 1e-6 * file);
 }
 
 TEST(Cost, OfStiffeningCountsTheRemainingSpringConstants) {
   const PlannedRun run = only_run(tiny_manifest("  protocol: stiffen\n"));
-  const Outlook all = left_of(run, run.last);
+  const Outlook all = left_of(run, run.stage);
   EXPECT_GT(all.particle_steps, 0);
-  EXPECT_NEAR(left_of(run, run.last, 6).particle_steps, all.particle_steps / 3, 1);
-  EXPECT_NEAR(left_of(run, run.last, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
-  EXPECT_EQ(left_of(run, run.last, 9).particle_steps, 0);
+  EXPECT_NEAR(left_of(run, run.stage, 6).particle_steps, all.particle_steps / 3, 1);
+  EXPECT_NEAR(left_of(run, run.stage, 6).bytes, all.bytes * 3 / 10, 1) << "cycles 0 to 9";
+  EXPECT_EQ(left_of(run, run.stage, 9).particle_steps, 0);
 }
 
 /// Texts of values of a number: both ends of its range, and many inside.
@@ -110,13 +110,14 @@ void expect_bounded(const std::string& text) {
       const Geometry shape = geometry(p);
       EXPECT_FALSE(too_large(shape));
       EXPECT_LE(p.settle_time_limit_s / p.settle_time_step_s, kMostSteps);
-      EXPECT_LE(static_cast<double>(run.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
-                2 * kMostSteps);
+      EXPECT_LE(
+          static_cast<double>(run.ask.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
+          2 * kMostSteps);
       EXPECT_TRUE(std::isfinite(expected_overlap(p)));
       for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
       }
-      for (const Stage* stage : {&run.prepare, &run.last}) {
+      for (const Stage* stage : {&*run.prepare, &run.stage}) {
         const Outlook cost = left_of(run, *stage);
         EXPECT_TRUE(cost.particle_steps >= 0 && cost.particle_steps < 1e25) << cost.particle_steps;
         EXPECT_TRUE(cost.bytes >= 0 && cost.bytes < 1e20) << cost.bytes;
@@ -167,7 +168,7 @@ TEST_F(CostOfARun, IsNearTheMeasuredDiskSpaceAndSettlingTime) {
         tiny_manifest("  grains: 600\n  walls: " + std::string(texture) + "\n");
     compute(store_, text);
     const PlannedRun run = only_run(text);
-    for (const Stage* stage : {&run.prepare, &run.last}) {
+    for (const Stage* stage : {&*run.prepare, &run.stage}) {
       const Outlook expected = left_of(run, *stage);
       const double bytes = bytes_of(store_, stage->id);
       const double steps = store_.stage(stage->id).particle_steps;
@@ -184,13 +185,13 @@ TEST_F(CostOfARun, CountsTheTimeThatAWeakDragTakesToSettle) {
       tiny_manifest("  drag_kg_per_s: 1.28e-4\n  settle_time_step_s: 4.4e-5\n");
   compute(store_, text);
   const PlannedRun run = only_run(text);
-  const double steps = store_.stage(run.prepare.id).particle_steps;
-  const double expected = left_of(run, run.prepare).particle_steps;
+  const double steps = store_.stage(run.prepare->id).particle_steps;
+  const double expected = left_of(run, *run.prepare).particle_steps;
   std::printf("%.4g particle-steps, expected %.4g\n", steps, expected);
   EXPECT_NEAR(expected / steps, 1, 0.3);
   const PlannedRun undamped = only_run(tiny_manifest("  drag_kg_per_s: 0\n"));
   const Parameters& parameters = undamped.parameters;
-  EXPECT_EQ(left_of(undamped, undamped.prepare).particle_steps,
+  EXPECT_EQ(left_of(undamped, *undamped.prepare).particle_steps,
             static_cast<double>(parameters.grains) *
                 std::ceil(parameters.settle_time_limit_s / parameters.settle_time_step_s));
 }

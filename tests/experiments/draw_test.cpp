@@ -89,8 +89,8 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1, .variants = {"fluid=still"}});
   compute(store_, text, {.cycles = 1});
   std::string order;
-  for (const auto& [run, ask] : newest_runs(select_runs(store_, {})).runs)
-    order += ask.variant + std::to_string(ask.seed) + " ";
+  for (const shearcell::Run& run : newest_runs(select_runs(store_, {})).runs)
+    order += run.ask.variant + std::to_string(run.ask.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
 

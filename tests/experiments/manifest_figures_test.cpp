@@ -94,12 +94,10 @@ TEST(FigureWarnings, TakeTheLengthThatTheStoreHas) {
   EXPECT_EQ(warned({}), 1U);
   std::vector<Stage> known;
   for (const char* variant : {"fluid=still", "fluid=cell"}) {
-    known.emplace_back().asks = {{.experiment = "a",
-                                  .scale = "",
-                                  .variant = variant,
-                                  .seed = 1,
-                                  .manifest = sha256_hex(text),
-                                  .target_cycles = 5}};
+    Ask& ask = known.emplace_back().asks.emplace_back();
+    static_cast<Place&>(ask) = {
+        .experiment = "a", .variant = variant, .seed = 1, .manifest = sha256_hex(text)};
+    ask.target_cycles = 5;
   }
   EXPECT_EQ(warned(known), 0U);
   known[0].asks[0].manifest = sha256_hex("another text");

@@ -172,7 +172,7 @@ TEST(TimeStep, FollowsTheStiffnessIfAuto) {
   };
   const std::string autos = "steps_per_cycle: auto, settle_time_step_s: auto";
   // Table I's own numbers, and so the ids of runs that state them.
-  EXPECT_EQ(runs_of(autos).front().last.id, runs_of("cycles: 200").front().last.id);
+  EXPECT_EQ(runs_of(autos).front().stage.id, runs_of("cycles: 200").front().stage.id);
   const auto swept =
       runs_of(autos, "sweep: {grid: {stiffness_N_per_m: [654, 2616, 65400], period_s: [2, 4]}}");
   ASSERT_EQ(swept.size(), 6U);
@@ -182,7 +182,7 @@ TEST(TimeStep, FollowsTheStiffnessIfAuto) {
     EXPECT_EQ(p.steps_per_cycle, steps[i]);
     EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
     EXPECT_NEAR(shear_time_step(p).over_stability_limit, 0.3547, 1e-4);
-    EXPECT_FALSE(has(swept[i].variant, "steps_per_cycle"));
+    EXPECT_FALSE(has(swept[i].ask.variant, "steps_per_cycle"));
   }
   // A swept key and a scale's number override it.
   EXPECT_EQ(runs_of(autos, "sweep: {grid: {steps_per_cycle: [91200, 45600]}}")

@@ -130,8 +130,8 @@ std::vector<std::string> combinations(const Written& written) {
 
 // The same of what it expands to, from the parameters that will be computed.
 std::string described(const PlannedRun& run) {
-  Strings parts = {fmt::format("seed={}", run.seed)};
-  for (const auto& [key, label] : run.swept.items()) {
+  Strings parts = {fmt::format("seed={}", run.ask.seed)};
+  for (const auto& [key, label] : run.ask.swept.items()) {
     const json value = find_field(key)->get(run.parameters);
     RC_ASSERT(value == label);
     parts.push_back(key + "=" + value_text(value.is_string() ? std::string(value) : value.dump()));
@@ -147,7 +147,7 @@ PROPERTY(Expand, GivesEveryCombinationAndSeedOnce, 400) {
   std::set<std::string> ids;
   for (const PlannedRun& run : plan.runs) {
     found.push_back(described(run));
-    ids.insert(run.last.id);
+    ids.insert(run.stage.id);
   }
   std::sort(expected.begin(), expected.end());
   std::sort(found.begin(), found.end());
@@ -159,7 +159,7 @@ PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 300) {
   const auto ids = [](const Written& written) {
     std::multiset<std::string> found;
     for (const PlannedRun& run : expand(parse_manifest(written.text(), "any.yaml")).runs) {
-      found.insert(fmt::format("{} {} {}", run.seed, run.prepare.id, run.last.id));
+      found.insert(fmt::format("{} {} {}", run.ask.seed, run.prepare->id, run.stage.id));
     }
     return found;
   };
@@ -270,7 +270,7 @@ PROPERTY(Identity, IgnoresHowAManifestIsWrittenAndHowLongARunIs, 500) {
   const auto ids = [](const std::string& text) {
     const Plan plan = expand(parse_manifest(text, "any.yaml"));
     RC_ASSERT(plan.runs.size() == 1U);
-    return plan.runs[0].prepare.id + plan.runs[0].last.id;
+    return plan.runs[0].prepare->id + plan.runs[0].stage.id;
   };
   const std::string sweep =
       in_sweep.empty() ? "" : fmt::format("sweep: {{grid: {{{}}}}}\n", fmt::join(in_sweep, ", "));
@@ -304,7 +304,7 @@ Parameters any_parameters() {
 bool has_effect(const Field& field, const Parameters& before, const Parameters& after) {
   if (field.name == "protocol") return true;
   if (before.protocol == ProtocolKind::stiffen) return field.identity.stage == StageKind::stiffen;
-  return field.identity.stage == StageKind::shear &&
+  return field.identity.stage == StageKind::shear && !field.identity.selects_parent &&
          (!field.identity.under || field.identity.under == after.protocol);
 }
 

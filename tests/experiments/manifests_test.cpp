@@ -29,13 +29,13 @@ Plan plan(const std::string& experiment, const std::string& scale) {
 
 std::set<std::string> last_stages(const Plan& plan) {
   std::set<std::string> keys;
-  for (const PlannedRun& run : plan.runs) keys.insert(run.last.id);
+  for (const PlannedRun& run : plan.runs) keys.insert(run.stage.id);
   return keys;
 }
 
 std::map<std::string, std::size_t> runs_of_variants(const Plan& plan) {
   std::map<std::string, std::size_t> count;
-  for (const PlannedRun& run : plan.runs) ++count[run.variant];
+  for (const PlannedRun& run : plan.runs) ++count[run.ask.variant];
   return count;
 }
 
@@ -109,7 +109,7 @@ TEST(Manifests, OfPublishedResultsExpand) {
 // Still fluid, bottom wall moving, continuous shear, A = 0.0833, time step of Table I, first seed.
 TEST(Manifests, ShareTheirCommonRun) {
   for (const std::string& scale : kScales) {
-    const std::string base = plan("drag", scale).runs.front().last.id;
+    const std::string base = plan("drag", scale).runs.front().stage.id;
     for (const char* experiment :
          {"timestep", "relaxation", "moving_wall", "critical_size", "onset_amplitude", "walls"}) {
       // At scale smoke the walls have runs that crystallize.
@@ -121,7 +121,7 @@ TEST(Manifests, ShareTheirCommonRun) {
   }
   // At its own desk scale, N = 2000, the choices share no run.
   for (const char* scale : {"smoke", "paper"}) {
-    EXPECT_TRUE(last_stages(plan("choices", scale)).contains(plan("drag", scale).runs[0].last.id));
+    EXPECT_TRUE(last_stages(plan("choices", scale)).contains(plan("drag", scale).runs[0].stage.id));
   }
   // With gravity, S6 has two of the amplitudes of C.
   const std::set<std::string> amplitudes = last_stages(plan("critical_size", "paper"));
@@ -189,7 +189,8 @@ TEST(Manifests, TimeStepsOfFigureS3GiveWholeCycles) {
 TEST(Manifests, PausedShearRestsAsLongAsACycle) {
   for (const PlannedRun& run : plan("relaxation", "paper").runs) {
     const Drive walls = drive(run.parameters);
-    EXPECT_EQ(walls.pause_steps, run.variant == "protocol=paused" ? 45600U : 0U) << run.variant;
+    EXPECT_EQ(walls.pause_steps, run.ask.variant == "protocol=paused" ? 45600U : 0U)
+        << run.ask.variant;
   }
 }
 

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a shear begins: with a packing that settles under parameters of its own (`settle`), or with
+// the recorded state of another run (`start`).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/filling.hpp"
+#include "experiments/figures/collect.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/audit.hpp"
+#include "experiments/runner/stage.hpp"
+#include "provenance/errors.hpp"
+#include "tests/experiments/temporary_store.hpp"
+#include "tests/support/text.hpp"
+
+namespace shearcell::test {
+namespace {
+
+const std::string kTwoDrags = "sweep: {grid: {drag_kg_per_s: [1.28e-3, 1.28e-2]}}\n";
+
+class Started : public StoreTest {
+ protected:
+  /// Computes a manifest whose `start` may name runs of the store.
+  CampaignResult compute_here(const std::string& text, ExpandOptions options = {}) {
+    const std::vector<Stage> known = store_.stages();
+    options.known = known;
+    return compute(store_, text, options);
+  }
+
+  std::string refusal(const std::string& text) {
+    const std::vector<Stage> known = store_.stages();
+    const Manifest manifest = parse_manifest(text, "tiny.yaml");
+    return message_of<ManifestError>([&] { expand(manifest, {.known = known}); });
+  }
+
+  std::vector<Stage> runs_of(const std::string& experiment) {
+    std::vector<Stage> found = runs_of_kind(store_, "shear");
+    std::erase_if(found,
+                  [&](const Stage& run) { return run.asks.front().experiment != experiment; });
+    return found;
+  }
+
+  Checkpoint state_at(const Stage& run, double cycle) {
+    for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
+      if (record.cycle == cycle) return store_.load_checkpoint(record);
+    }
+    throw NotFound("no such cycle");
+  }
+
+  /// Starts from cycle 1 of `tiny`, with other keys of `start` and of `base`.
+  static std::string clones(const std::string& keys, const std::string& base = "",
+                            const std::string& rest = "") {
+    return renamed(
+        tiny_manifest(
+            base, fmt::format("start: {{experiment: tiny, seed: 1, cycle: 1{}}}\n", keys) + rest),
+        "clones");
+  }
+};
+
+using Settled = Started;
+
+TEST_F(Settled, VariantsOfTheShearShareAPackingAndEachSettlesItsOwnWithoutSettle) {
+  const auto packings = [](const std::string& rest) {
+    std::set<std::string> ids;
+    const Manifest manifest = parse_manifest(tiny_manifest("", kTwoDrags + rest), "tiny.yaml");
+    for (const PlannedRun& run : expand(manifest).runs) ids.insert(run.prepare->id);
+    return ids;
+  };
+  EXPECT_EQ(packings("").size(), 2U);
+  EXPECT_EQ(packings("settle: {drag_kg_per_s: 1.28e-3}\n").size(), 1U);
+  const std::string other = tiny_manifest("  drag_kg_per_s: 2.0e-3\n");
+  EXPECT_EQ(packings("settle: {drag_kg_per_s: 2.0e-3}\n"),
+            std::set{expand(parse_manifest(other, "tiny.yaml")).runs.front().prepare->id})
+      << "the packing of a shear with that drag";
+}
+
+TEST_F(Settled, WhatSettleStatesIsTheDefaultOfNothing) {
+  const auto ids = [](const std::string& rest) {
+    const Plan plan = expand(parse_manifest(tiny_manifest("", rest), "tiny.yaml"));
+    return plan.runs.front().prepare->id + plan.runs.front().stage.id;
+  };
+  EXPECT_EQ(ids(""), ids("settle: {drag_kg_per_s: 1.28e-3, gravity_m_per_s2: 9.81}\n"))
+      << "the ids of what could be stated before do not change";
+  EXPECT_NE(ids(""), ids("settle: {gravity_m_per_s2: 0}\n"));
+}
+
+TEST_F(Settled, AScaleReplacesSettleAsAWhole) {
+  const Manifest manifest =
+      parse_manifest(tiny_manifest("",
+                                   "settle: {drag_kg_per_s: 2.0e-3}\n"
+                                   "scales: {one: {}, two: {settle: {pressure_Pa: 500}}}\n"),
+                     "tiny.yaml");
+  const Parameters one = expand(manifest, {.scale = "one"}).runs.front().packing;
+  const Parameters two = expand(manifest, {.scale = "two"}).runs.front().packing;
+  EXPECT_EQ(one.drag_kg_per_s, 2.0e-3);
+  EXPECT_EQ(two.drag_kg_per_s, Parameters{}.drag_kg_per_s);
+  EXPECT_EQ(two.pressure_Pa, 500);
+}
+
+TEST_F(Settled, AutomaticTimeStepsFollowThePackingsOwnStiffness) {
+  const Manifest manifest =
+      parse_manifest(tiny_manifest("  steps_per_cycle: auto\n  settle_time_step_s: auto\n",
+                                   "settle: {stiffness_N_per_m: 2616}\n"),
+                     "tiny.yaml");
+  const PlannedRun run = expand(manifest).runs.front();
+  EXPECT_NEAR(run.packing.settle_time_step_s, run.parameters.settle_time_step_s / 2, 1e-8);
+  EXPECT_EQ(run.packing.steps_per_cycle, 2 * run.parameters.steps_per_cycle);
+}
+
+TEST_F(Settled, DragUnderShearAloneIsComparedInPairs) {
+  EXPECT_EQ(
+      compute_here(tiny_manifest("", kTwoDrags + "settle: {drag_kg_per_s: 1.28e-3}\n")).completed,
+      3U);
+  const auto runs = runs_of("tiny");
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(state_at(runs[0], 0).state.position, state_at(runs[1], 0).state.position);
+  EXPECT_NE(state_at(runs[0], 1).state.position, state_at(runs[1], 1).state.position);
+}
+
+// Forces depend on positions alone, and the walls are where they were: the same bits.
+TEST_F(Started, WithoutNoiseTheRunGoesOnAsBefore) {
+  compute_here(tiny_manifest("  cycles: 3\n"));
+  EXPECT_EQ(compute_here(clones("")).completed, 1U) << "nothing settles";
+  const Stage whole = runs_of("tiny").at(0), part = runs_of("clones").at(0);
+  EXPECT_EQ(part.parent, whole.id);
+  for (const double cycle : {0.0, 1.0, 2.0}) {
+    const State had = state_at(whole, cycle + 1).state, has = state_at(part, cycle).state;
+    EXPECT_EQ(has.position, had.position) << cycle;
+    EXPECT_EQ(has.velocity, had.velocity);
+    EXPECT_EQ(has.wall_height, had.wall_height);
+    EXPECT_EQ(has.wall_velocity, had.wall_velocity);
+    EXPECT_EQ(has.step, had.step - kStepsPerCycle);
+  }
+}
+
+TEST_F(Started, EachSeedDrawsNoiseOfItsOwn) {
+  compute_here(tiny_manifest());
+  const std::string text = clones(", noise_d: 1.0e-6", "", "seeds: 2\n");
+  EXPECT_EQ(compute_here(text).completed, 2U);
+  const auto two = runs_of("clones");
+  const Checkpoint from = state_at(runs_of("tiny").at(0), 1);
+  const Eigen::Matrix3Xd first = state_at(two[0], 0).state.position - from.state.position;
+  const Eigen::Matrix3Xd second = state_at(two[1], 0).state.position - from.state.position;
+  const auto count = static_cast<double>(first.size());
+  EXPECT_NEAR(std::sqrt(first.squaredNorm() / count), 1e-6, 0.1e-6);
+  EXPECT_NEAR(first.mean(), 0, 4e-6 / std::sqrt(count));
+  EXPECT_LT(std::abs(first.cwiseProduct(second).mean()), 4e-12 / std::sqrt(count));
+  EXPECT_EQ(state_at(two[0], 0).state.velocity, from.state.velocity);
+}
+
+TEST_F(Started, InterruptedAndComputedAgainItHasTheSameBits) {
+  compute_here(tiny_manifest("  cycles: 1\n"));
+  const std::vector<Stage> known = store_.stages();
+  for (const StageJob& job : declared(store_, clones(", noise_d: 1.0e-13"), {.known = known})) {
+    EXPECT_GT(interrupt_to_the_end(store_, job.id), 1U);
+  }
+  const Stage run = runs_of("clones").at(0);
+  for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
+    EXPECT_FALSE(verify_by_replay(store_, record).divergence) << record.cycle;
+  }
+  EXPECT_TRUE(store_.verify().ok());
+  EXPECT_TRUE(check_runs(store_).empty());
+}
+
+TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
+  compute_here(tiny_manifest("", "seeds: 2\n"));
+  const std::string text = renamed(
+      tiny_manifest("  cycles: 1\n",
+                    "start: {experiment: tiny, noise_d: 1.0e-13}\n"
+                    "sweep: {zip: {start_seed: [1, 2, 2], start_cycle: [0, 1, 2]}}\nseeds: 2\n"),
+      "clones");
+  EXPECT_EQ(compute_here(text).completed, 6U);
+  std::set<std::string> parents;
+  for (const Stage& run : runs_of("clones")) {
+    const Stage parent = store_.stage(run.parent);
+    EXPECT_EQ(parent.asks.front().seed, run.asks.front().swept.at("start_seed"));
+    parents.insert(run.parent);
+  }
+  EXPECT_EQ(parents.size(), 2U);
+  const auto found =
+      collect_runs(store_, wanted_figures(store_, {"S2"}, {"clones"}).figures.at(0), {});
+  for (const CollectedRun& run : found.runs) {
+    EXPECT_EQ(unmeasured(run).packing, store_.stage(run.stage.parent).parent) << "one packing";
+  }
+}
+
+TEST_F(Started, AnIdNamesTheRecordedRunAsWell) {
+  compute_here(tiny_manifest());
+  const Stage run = runs_of("tiny").at(0);
+  const std::string by_id = renamed(
+      tiny_manifest("", fmt::format("start: {{checkpoint: {:.10}@1, noise_d: 1.0e-13}}\n", run.id)),
+      "clones");
+  const std::vector<Stage> known = store_.stages();
+  const auto id_of = [&](const std::string& text) {
+    return expand(parse_manifest(text, "tiny.yaml"), {.known = known}).runs.front().stage.id;
+  };
+  EXPECT_EQ(id_of(by_id), id_of(clones(", noise_d: 1.0e-13")));
+}
+
+TEST_F(Started, ThePruneKeepsItsStateOrSaysHowToRestoreIt) {
+  compute_here(tiny_manifest("  cycles: 3\n"));
+  const Stage whole = runs_of("tiny").at(0);
+  const auto at_cycle_1 = [&] { return store_.checkpoints(whole.id, Listed::and_pruned).at(1); };
+  store_.prune({at_cycle_1()});
+  ASSERT_EQ(at_cycle_1().state, CheckpointState::pruned);
+  const CampaignResult without = compute_here(clones(""));
+  EXPECT_EQ(without.damaged, 1U);
+  ASSERT_EQ(without.messages.size(), 1U);
+  const std::string remedy = fmt::format("`shearcell regenerate {:.12}`", at_cycle_1().sha256);
+  EXPECT_NE(without.messages[0].find(remedy), std::string::npos) << without.messages[0];
+  EXPECT_FALSE(regenerate_checkpoint(store_, at_cycle_1()).divergence);
+  EXPECT_EQ(compute_here(clones("")).completed, 1U);
+  for (const CheckpointRecord& record : store_.prunable({.keep_every = 3})) {
+    EXPECT_NE(record.sha256, at_cycle_1().sha256) << "a run began with it";
+  }
+}
+
+TEST_F(Started, ClonesOfTwoMachinesMerge) {
+  compute_here(tiny_manifest());
+  const std::string text = clones(", noise_d: 1.0e-13", "", "seeds: 2\n");
+  std::vector<std::filesystem::path> parts;
+  for (const std::uint64_t seed : {1, 2}) {
+    const auto& part = parts.emplace_back(folder_.path() / fmt::format("part{}", seed));
+    Store store(part, Access::create);
+    store.merge({store_.folder()});
+    const std::vector<Stage> known = store.stages();
+    EXPECT_EQ(compute(store, text, {.only_seeds = {seed}, .known = known}).completed, 1U);
+  }
+  store_.merge(parts);
+  EXPECT_EQ(runs_of("clones").size(), 2U);
+  EXPECT_EQ(compute_here(text).already, 2U);
+  EXPECT_TRUE(check_runs(store_).empty());
+}
+
+TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
+  compute_here(tiny_manifest());
+  compute_here(clones(""));
+  const Stage run = runs_of("clones").at(0);
+  const std::vector<CheckpointRecord> states = store_.checkpoints(run.parent);
+  Store forged(folder_.path() / "forged", Access::create);
+  forged.merge({store_.folder()}, {run.parent, store_.stage(run.parent).parent});
+  Stage declared = declaration_of(run);
+  forged.declare_stage(declared);
+  forged.start_stage(run.id, {}, std::nullopt, states.at(2).sha256);
+  const auto findings = check_runs(forged);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_NE(findings[0].message.find("which is not the state that it begins with"),
+            std::string::npos);
+}
+
+TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
+  const std::string none = refusal(clones(""));
+  EXPECT_NE(none.find("start: the store has no run of tiny at scale base with seed 1. Compute it "
+                      "first, or name the store that has it with --store."),
+            std::string::npos)
+      << none;
+  compute_here(tiny_manifest("", kBothFluids));
+  EXPECT_NE(refusal(clones(""))
+                .find("more than one run of tiny at scale base with seed 1. Single "
+                      "one out: `variant: \"KEY=VALUE\"`."),
+            std::string::npos);
+  EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");
+  EXPECT_NE(refusal(clones(", variant: \"fluid=none\"")).find("has no run of tiny"),
+            std::string::npos);
+  const std::string late = ", variant: \"fluid=cell\"";
+  EXPECT_NE(refusal(clones(late, "", "sweep: {grid: {start_cycle: [1, 3]}}\n"))
+                .find("has no cycle 3 yet (got cycle 2). Extend it first."),
+            std::string::npos);
+  EXPECT_NE(refusal(clones(late, "  height_over_width: 1.5\n"))
+                .find("height_over_width: differs from that of run "),
+            std::string::npos);
+  EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
+      << "what acts on the grains may change";
+}
+
+TEST(Noise, DependsOnSeedAndGrainAlone) {
+  State few, many;
+  few.position = Eigen::Matrix3Xd::Zero(3, 2);
+  many.position = Eigen::Matrix3Xd::Zero(3, 5);
+  add_noise(few, 1, 7);
+  add_noise(many, 1, 7);
+  EXPECT_EQ(few.position, many.position.leftCols(2));
+  State other = few;
+  add_noise(other, 0, 7);
+  EXPECT_EQ(other.position, few.position);
+}
+
+}  // namespace
+}  // namespace shearcell::test
