@@ -188,8 +188,8 @@ std::string subtract(const PlotSpec& plot, std::vector<FigureRun>& runs) {
         const Measures* measures = measures_at(partner, checkpoint.cycle);
         return measures == nullptr ? std::nan("") : measures->number(plot.y);
       });
-      double& value = checkpoint.measures.numbers[plot.y];
-      value = checkpoint.measures.number(plot.y) - other;
+      const double own = checkpoint.measures.number(plot.y);
+      checkpoint.measures.numbers[plot.y] = own - other;
       return std::isnan(other);
     });
   }
@@ -509,7 +509,8 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
   const std::string less = plot.minus.empty() ? "" : subtract(plot, runs);
   FigureResult result;
   std::vector<nlohmann::json> wheres;
-  const auto panels = runs_of_panels(plot, std::move(runs));
+  auto panels = runs_of_panels(plot, std::move(runs));
+  if (panels.empty() && !less.empty()) panels[nullptr] = {};  // says so
   for (const auto& [value, members] : panels) {
     FigureTable& table = result.tables.emplace_back(draw(plot, members, names));
     table.chart.x = x_axis(plot, members);

@@ -60,7 +60,7 @@ TEST(Manifests, EachExpandsAtEveryScale) {
       EXPECT_FALSE(expanded.runs.empty());
       // Some time steps are above 0.7 of the stability limit on purpose.
       const bool larger = scale == "fast" || scale == "larger_step";
-      EXPECT_EQ(expanded.warnings.size(), experiment == "accuracy"   ? 5U  // small ones, too
+      EXPECT_EQ(expanded.warnings.size(), experiment == "accuracy"   ? 4U  // small ones, too
                                           : experiment == "timestep" ? 2U
                                           : larger                   ? 1U
                                                                      : 0U)
