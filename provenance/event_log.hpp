@@ -43,7 +43,8 @@ struct Event {
   nlohmann::json body() const;
 };
 
-std::string run_stream(std::string_view run);  ///< "run/<id>"
+std::string run_stream(std::string_view run);         ///< "run/<id>"
+std::string packing_stream(std::string_view sha256);  ///< "packing/<sha256>"
 /// The id of the event's run; nothing if its stream is not that of a run.
 std::optional<std::string> run_of(const Event& event);
 

@@ -28,6 +28,15 @@ struct ManifestRegistered {
   }
 };
 
+/// A file of grains from which a packing is made.
+struct PackingRegistered {
+  static constexpr std::string_view kType = "PackingRegistered";
+  std::string sha256, path, text;
+  static void fields(auto& e, auto field) {
+    field("sha256", e.sha256), field("path", e.path), field("text", e.text);
+  }
+};
+
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
   Stage run;  ///< without its id, and as nobody began it
@@ -152,9 +161,9 @@ struct FigureGenerated {
 struct Other {};
 
 using Any =
-    std::variant<Other, ManifestRegistered, RunDeclared, RunStarted, RunResumed, CheckpointRecorded,
-                 CheckpointRejected, RunInterrupted, RunFailed, RunCompleted, CheckpointPruned,
-                 CheckpointRegenerated, FigureGenerated, StoreMerged>;
+    std::variant<Other, ManifestRegistered, PackingRegistered, RunDeclared, RunStarted, RunResumed,
+                 CheckpointRecorded, CheckpointRejected, RunInterrupted, RunFailed, RunCompleted,
+                 CheckpointPruned, CheckpointRegenerated, FigureGenerated, StoreMerged>;
 
 /// Throws StoreDamaged, naming the event, when its payload lacks what its type requires.
 Any decode(const Event& event);

@@ -222,7 +222,12 @@ bool merged_before(const EventLog& log, const Head& head) {
       });
 }
 
-/// If `runs` is not empty, only these runs and the manifests.
+/// Manifests, and files of grains: a stream holds one text.
+bool holds_a_text(std::string_view stream) {
+  return stream.starts_with("manifest/") || stream.starts_with("packing/");
+}
+
+/// If `runs` is not empty, only these runs and the texts.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -243,7 +248,7 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   if (!runs.empty()) {
     std::erase_if(source.events, [&runs](const Event& event) {
       const auto run = run_of(event);
-      return !event.stream.starts_with("manifest/") && !(run && runs.contains(*run));
+      return !holds_a_text(event.stream) && !(run && runs.contains(*run));
     });
   }
   for (const Event& event : source.events) {
@@ -290,8 +295,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(run.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), run));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // manifests that are known
-    return entry.first.starts_with("manifest/") && log.version(entry.first) > 0;
+  std::erase_if(streams, [&log](const auto& entry) {  // texts that are known
+    return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) {
     apply(into, log.append_copy(lock, event));

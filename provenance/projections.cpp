@@ -372,8 +372,14 @@ std::string try_apply(Database& database, const Event& event) {
     apply(database, event);
     const events::Any decoded = events::decode(event);
     const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-    if (manifest == nullptr || event.stream == "manifest/" + sha256_hex(manifest->text)) return "";
-    return "the manifest's text has another SHA-256";
+    if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
+      return "the manifest's text has another SHA-256";
+    }
+    const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
+    if (packing != nullptr && event.stream != packing_stream(sha256_hex(packing->text))) {
+      return "the text of the file of grains has another SHA-256";
+    }
+    return "";
   } catch (const StoreDamaged& damage) {
     return damage.what();
   } catch (const json::exception& problem) {

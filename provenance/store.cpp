@@ -238,6 +238,28 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   return sha256;
 }
 
+std::string Store::register_packing(std::string_view text, std::string_view path) {
+  must_write();
+  std::string sha256 = sha256_hex(text);
+  const std::string stream = packing_stream(sha256);
+  const std::scoped_lock guard(mutex_);
+  sqlite::WriteTransaction lock(database_);
+  if (log_.version(stream) > 0) return sha256;
+  append(stream, encode(events::PackingRegistered{sha256, std::string(path), std::string(text)}),
+         lock);
+  lock.commit();
+  return sha256;
+}
+
+std::pair<std::string, std::string> Store::packing_text(const std::string& sha256) const {
+  for (const Event& event : events(packing_stream(sha256), events::PackingRegistered::kType)) {
+    auto found = std::get<events::PackingRegistered>(events::decode(event));
+    if (sha256_hex(found.text) == sha256) return {std::move(found.text), std::move(found.path)};
+  }
+  throw StoreDamaged(fmt::format(
+      "the file of grains {:.12} is not in the store; `shearcell run` records it", sha256));
+}
+
 void Store::declare_stage(const Stage& declared) {
   must_write();
   if (!is_sha256_hex(declared.id)) {

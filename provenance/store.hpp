@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "provenance/checkpoint.hpp"
@@ -94,6 +95,12 @@ class Store {
   /// last for info["experiment"].
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
+
+  /// Stores the text of a file of grains, once, and returns its SHA-256.
+  std::string register_packing(std::string_view text, std::string_view path);
+  /// The text with this SHA-256 and the path that it came from. Throws StoreDamaged if it is
+  /// missing.
+  std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
   /// Records each ask of the run that is new or has a larger target. A longer target makes a
   /// completed run `declared` again. Throws std::invalid_argument when the id is not

@@ -54,7 +54,7 @@ const std::array kFormats = {
                  [](const auto& out, auto, auto lengths) { return extxyz_writer(out, lengths); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "LAMMPS data and run.json, a folder: LAMMPS, OVITO; SI", "",
+    ExportFormat{"lammps", "LAMMPS data with a script to continue, a folder: LAMMPS, OVITO; SI", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
@@ -360,7 +360,8 @@ each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, press
 lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
 wall grains and the tilted cell. Writes a single RUN to PATH; several runs, or those that options
 select, go into the folder PATH, each under a name of its own. PATH must be new; that of a crate
-may be an earlier export of the same run.
+may be an earlier export of the same run. With --to lammps, `lmp -in in.frame_CYCLE` in that folder
+continues the run from that checkpoint.
 Examples:
   shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz
   shearcell export 3f9a --to vtk --out frames

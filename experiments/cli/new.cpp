@@ -80,6 +80,11 @@ base:
   }
   return text +
          R"(
+# Parameters of the packing that differ from those of the shear.
+# settle: {drag_kg_per_s: 1.28e-3}
+# Instead of settling: the state of a recorded run.
+# start: {experiment: drag, variant: "fluid=still", seed: 3, cycle: 10, noise_d: 1.0e-13}
+
 # What varies: every combination under `grid`; keys under `zip` advance together.
 sweep:
   grid:

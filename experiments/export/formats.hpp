@@ -34,10 +34,9 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 /// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
-/// A folder with frame_CYCLE.data for each frame: LAMMPS data, atom_style sphere, units si, a
-/// triclinic box. Type 1 is a grain, 2 to 5 are the wall grains of the left, right, bottom and top
-/// wall. LAMMPS drops atoms outside the box, so the box includes the wall grains, which lie behind
-/// their planes. The format has no place for measures.
+/// A folder with frame_CYCLE.data for each frame (lammps_data, SI; the title has the planes of the
+/// cell, and the format has no place for measures) and, unless the run is a stiffening,
+/// in.frame_CYCLE, the script with which LAMMPS continues it (lammps_script).
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",

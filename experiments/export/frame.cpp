@@ -5,31 +5,12 @@
 
 #include <cmath>
 
-#include "analysis/voronoi.hpp"
+#include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 
 namespace shearcell {
 namespace {
-
-void place_cell(const Checkpoint& c, const WallPose& pose, Frame& frame) {
-  const double d = c.units.diameter_m;
-  const double height = (pose.top - pose.bottom) * d;
-  const double shift = height * pose.tan_theta;
-  frame.origin = Eigen::Vector3d(-shift, pose.bottom * d, 0);
-  frame.edges << c.cell.width * d, shift, 0,  //
-      0, height, 0,                           //
-      0, 0, c.cell.depth * d;
-}
-
-void add_grains(const Checkpoint& c, const Eigen::Matrix3Xd& sites, Frame& frame) {
-  for (Eigen::Index i = 0; i < c.state.position.cols(); ++i) {
-    frame.velocity.col(i) = c.state.velocity.col(i) * c.units.diameter_m;
-    const double periods = (c.state.position(2, i) - sites(2, i)) / c.cell.depth;
-    frame.image.push_back(static_cast<std::int32_t>(std::lround(periods)));
-    frame.type.push_back(0);
-  }
-}
 
 bool enters_frames(const Provider& one) {
   return one.from == ComputedFrom::checkpoint &&
@@ -52,15 +33,20 @@ void add_columns(const Measures& measures, Frame& frame) {
   }
 }
 
-void add_wall_grains(const Checkpoint& c, const WallPose& pose, const Measures& measures,
-                     Frame& frame) {
-  const double rate = measures.number("shear_rate_per_s");  // only of a shear
-  const double shear_rate = std::isnan(rate) ? 0 : rate;
-  frame.velocity.rightCols(static_cast<Eigen::Index>(c.cell.wall_grains.size())) =
-      wall_grain_velocities(c.cell, pose, shear_rate, c.state.wall_velocity) * c.units.diameter_m;
-  for (const WallGrain& grain : c.cell.wall_grains) {
-    frame.image.push_back(0);
-    frame.type.push_back(1 + static_cast<std::int32_t>(grain.side));
+// A packing goes on settling under the forces of its scene.
+std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
+  const auto kind = value_of<StageKind>(stage.kind);
+  if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;
+  try {
+    const Parameters p = read_stage(stage.resolved).parameters;
+    const bool shears = kind == StageKind::shear;
+    return LammpsTask{.cell = c.cell,
+                      .scene = shears ? shear_scene(p) : settle_scene(p),
+                      .drive = shears ? drive(p) : Drive{},
+                      .state = c.state,
+                      .units = c.units};
+  } catch (const UnreadableRecord&) {
+    return std::nullopt;
   }
 }
 
@@ -99,22 +85,17 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
       (sources == nullptr ? alone : *sources)
           .measures_of(record, checkpoint, analyse_stored(record, checkpoint), enters_frames);
   const WallPose pose = pose_of(checkpoint);
+  const double rate = measures.number("shear_rate_per_s");  // only of a shear
   Frame frame;
+  static_cast<Particles&>(frame) = particles_of(checkpoint.cell, pose, checkpoint.state,
+                                                std::isnan(rate) ? 0 : rate, checkpoint.units);
   frame.step = checkpoint.state.step;
   frame.time_s = checkpoint.time_s;
   frame.cycle = checkpoint.cycle;
   frame.theta = checkpoint.theta;
-  frame.grains = static_cast<std::size_t>(checkpoint.state.position.cols());
-  frame.radius = checkpoint.units.diameter_m / 2;
-  frame.mass = checkpoint.units.mass_kg;
-  const Eigen::Matrix3Xd sites = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
-  frame.position = sites * checkpoint.units.diameter_m;
-  frame.velocity.resize(3, sites.cols());
   add_facts(record, run, measures, frame);
-  place_cell(checkpoint, pose, frame);
-  add_grains(checkpoint, sites, frame);
-  add_wall_grains(checkpoint, pose, measures, frame);
   add_columns(measures, frame);
+  frame.continued = continued(checkpoint, run.stage);
   return frame;
 }
 

@@ -2,14 +2,16 @@
 // One checkpoint for export: every particle with its measures, in SI units.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "experiments/figures/run_table.hpp"
+#include "experiments/runner/lammps/lammps_deck.hpp"
 #include "experiments/runner/measure_sources.hpp"
+#include "experiments/runner/particles.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
@@ -20,11 +22,9 @@ struct FrameColumn {
   std::variant<std::vector<double>, std::vector<std::int32_t>> values;
 };
 
-/// The grains by id, then the wall grains. Arrays have one entry, or one column, per particle. Wall
-/// grains have measures of zero, and classes of -1. They move with the
-/// shear (x of a wall point at y: (y - y_top) tan(theta)) and with the moving wall. Velocities of
+/// Particles in SI units. Wall grains have measures of zero, and classes of -1. Velocities of
 /// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
-struct Frame {
+struct Frame : Particles {
   std::uint64_t step = 0;
   double time_s = 0;
   double cycle = 0;
@@ -37,21 +37,11 @@ struct Frame {
   /// The measures of the frame by their names in `table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// The cell [m]: its lower left corner, and its edges as columns. Only the third is periodic.
-  Eigen::Vector3d origin;
-  Eigen::Matrix3d edges;
-
-  std::size_t grains = 0;           ///< the first of the particles
-  double radius = 0;                ///< of every particle [m]
-  double mass = 0;                  ///< of every grain [kg]
-  Eigen::Matrix3Xd position;        ///< [m], z within the cell
-  Eigen::Matrix3Xd velocity;        ///< [m/s]; of wall grains that of their wall
-  std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
-  std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
   /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
   std::vector<FrameColumn> columns;
 
-  std::size_t particles() const { return type.size(); }
+  /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
+  std::optional<LammpsTask> continued;
 };
 
 /// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string_view>
 
 #include "experiments/export/formats.hpp"
@@ -67,21 +66,14 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
   return line;
 }
 
-std::string lammps_header(const Frame& f) {
-  const double tilt = f.edges(0, 1) / f.edges(1, 1);
-  const double low_y = f.position.row(1).minCoeff() - f.radius;
-  const double high_y = f.position.row(1).maxCoeff() + f.radius;
-  const Eigen::RowVectorXd along = f.position.row(0) - tilt * f.position.row(1);
-  const double low_x = along.minCoeff() + tilt * low_y - f.radius;
-  const double high_x = along.maxCoeff() + tilt * low_y + f.radius;
+// The planes of the cell are not those of the box; a start from the file needs them.
+std::string lammps_title(const Frame& f) {
+  const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(
-      "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, "
-      "run {:.64}\n\n"
-      "{} atoms\n5 atom types\n\n"
-      "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n{:.17g} 0 0 xy xz "
-      "yz\n\n",
-      f.step, f.cycle, f.run.front().second.get<std::string>(), f.particles(), low_x, high_x, low_y,
-      high_y, f.edges(2, 2), tilt * (high_y - low_y));
+      "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, run "
+      "{:.64}, cell {:.17g} {:.17g} {:.17g} {:.17g} 0 {:.17g} tilt {:.17g}",
+      f.step, f.cycle, f.run.front().second.get<std::string>(), f.origin.x(), high.x(),
+      f.origin.y(), high.y(), high.z(), f.edges(0, 1));
 }
 
 }  // namespace
@@ -111,19 +103,10 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
 
 FrameWriter lammps_writer(const std::filesystem::path& folder) {
   return [folder](const Frame& f) {
-    const double density = f.mass / (4.0 / 3.0 * std::numbers::pi * std::pow(f.radius, 3));
-    std::string text = lammps_header(f) + "Atoms # sphere\n\n";
-    for (std::size_t i = 0; i < f.particles(); ++i) {
-      const auto r = f.position.col(static_cast<Eigen::Index>(i));
-      fmt::format_to(std::back_inserter(text), "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1,
-                     f.type[i] + 1, 2 * f.radius, density, fmt::join(r, " "), f.image[i]);
-    }
-    text += "\nVelocities\n\n";
-    for (std::size_t i = 0; i < f.particles(); ++i) {
-      const auto v = f.velocity.col(static_cast<Eigen::Index>(i));
-      fmt::format_to(std::back_inserter(text), "{} {:.17g} 0 0 0\n", i + 1, fmt::join(v, " "));
-    }
-    NewFile(folder / fmt::format("frame_{}.data", frame_name(f))).add(text);
+    const std::string name = "frame_" + frame_name(f);
+    NewFile(folder / (name + ".data")).add(lammps_data(f, lammps_title(f)));
+    if (!f.continued) return;
+    NewFile(folder / ("in." + name)).add(lammps_script(*f.continued, name + ".data", name));
   };
 }
 

@@ -18,6 +18,7 @@
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
@@ -136,14 +137,17 @@ void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   }
 }
 
-/// The stage that settled the packing from which the stage descends; "" if there is none.
+/// The stage that settled the packing from which the stage descends, or the file that all packings
+/// of its seeds are made of; "" if there is none.
 std::string packing_of(const Store& store, const Stage& stage) {
   std::string packing = stage.parent;
   std::set<std::string> seen;  // a forged record may name itself
   while (!packing.empty() && seen.insert(packing).second) {
-    const std::string before = store.stage(packing).parent;
-    if (before.empty()) break;
-    packing = before;
+    const Stage before = store.stage(packing);
+    const nlohmann::json file = member_of(member_of(before.resolved, "start"), "file");
+    if (file.is_string()) return file.get<std::string>();
+    if (before.parent.empty()) break;
+    packing = before.parent;
   }
   return packing;
 }

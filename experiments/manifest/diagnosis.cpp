@@ -197,9 +197,10 @@ struct VariantCheck {
     const auto refuse = [&](const Position& at, const char* key, string problem, string remedy) {
       problems.add(at, key, std::move(problem), "", std::move(remedy));
     };
-    if (!start.is_stated()) {
+    if (!start.is_recorded()) {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
-        if (find(key) == nullptr) continue;
+        const Field& field = *find_field(key);
+        if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
                "State `start: {experiment: NAME}`, or leave it out.");
       }
@@ -215,8 +216,9 @@ struct VariantCheck {
     if (!start.run.empty() && find("start_seed") != nullptr) {
       report("start_seed", "does not go with checkpoint, which names one run", "Leave it out.");
     }
-    for (const auto& [key, setting] : scale.settle) {
-      refuse(setting.at, "settle", "has no effect with start: nothing settles", "Leave it out.");
+    if (scale.settle_at.line > 0) {
+      refuse(scale.settle_at, "settle", "has no effect with start: nothing settles",
+             "Leave it out.");
     }
   }
 

@@ -91,22 +91,6 @@ std::string escaped(string_view text, std::size_t longest, bool (*escapes)(char3
   return result;
 }
 
-// yaml-cpp silently replaces bad bytes and stops reading at U+0004.
-void check_characters(string_view text, string_view file) {
-  Position at{1, 1};
-  while (!text.empty()) {
-    const std::size_t length = decode(text).length;
-    const char c = text.front();
-    if (length == 0) refuse(file, at, "", "is not valid UTF-8", "", "Save the file as UTF-8 text.");
-    if (std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t' && c != '\n' && c != '\r') {
-      refuse(file, at, "", fmt::format("holds the control character 0x{:02x}", static_cast<int>(c)),
-             "", "A manifest is plain text.");
-    }
-    at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
-    text.remove_prefix(length);
-  }
-}
-
 class TreeBuilder : public YAML::EventHandler {
  public:
   explicit TreeBuilder(string_view file) : file_(file) {}
@@ -315,12 +299,28 @@ const Node* Node::find(string_view name) const {
   return found == parts.end() || kind != Kind::map ? nullptr : &*found;
 }
 
+void check_characters(string_view text, string_view file, std::string_view remedy) {
+  Position at{1, 1};
+  while (!text.empty()) {
+    const std::size_t length = decode(text).length;
+    const char c = text.front();
+    if (length == 0) refuse(file, at, "", "is not valid UTF-8", "", "Save the file as UTF-8 text.");
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t' && c != '\n' && c != '\r') {
+      refuse(file, at, "", fmt::format("holds the control character 0x{:02x}", static_cast<int>(c)),
+             "", std::string(remedy));
+    }
+    at = c == '\n' ? Position{at.line + 1, 1} : Position{at.line, at.column + 1};
+    text.remove_prefix(length);
+  }
+}
+
 Node read_document(string_view text, string_view file) {
   if (text.size() > ManifestLimits::bytes) {
     refuse(file, {}, "", fmt::format("is larger than {} bytes", ManifestLimits::bytes), "",
            "A manifest is a short text.");
   }
-  check_characters(text, file);
+  // yaml-cpp silently replaces bad bytes and stops reading at U+0004.
+  check_characters(text, file, "A manifest is plain text.");
   std::istringstream stream{std::string(text)};
   TreeBuilder builder(file);
   try {

@@ -37,6 +37,10 @@ struct Node {
 /// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
+/// Throws a ManifestError, with the place and this remedy, unless the text is UTF-8 without control
+/// characters other than tabs and line ends.
+void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
+
 /// Makes a text fit for a one-line message. Escapes control characters, characters that change the
 /// direction of text, bytes that are not UTF-8, code points that are no characters, invisible ones,
 /// and blanks that look like a space, as \x1b or \u202e. Cuts it to `longest` bytes.

@@ -13,6 +13,7 @@
 #include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/start.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
 #include "provenance/json_text.hpp"
@@ -78,76 +79,11 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-bool has_swept_values(const std::string& variant, const std::string& wanted) {
-  return wanted.empty() || Filter(std::vector{wanted}).passes(variant);
-}
-
-/// The recorded run whose state the variant begins with.
-const Stage& run_to_start_from(const Manifest& manifest, const Scale& scale, const Variant& variant,
-                               std::span<const Stage> known) {
-  const Start& start = scale.start;
-  const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
-  std::vector<const Stage*> found;
-  for (const Stage& stage : known) {
-    if (stage.kind != name_of(StageKind::shear)) continue;
-    const auto is_it = [&](const Ask& ask) {
-      return ask.newest && ask.experiment == start.experiment &&
-             scale_name(ask.scale) == scale_name(at_scale) &&
-             ask.seed == variant.parameters.start_seed &&
-             has_swept_values(ask.variant, start.variant);
-    };
-    const bool fits = start.run.empty() ? std::ranges::any_of(stage.asks, is_it)
-                                        : stage.id.starts_with(start.run);
-    if (fits) found.push_back(&stage);
-  }
-  const std::string what =
-      start.run.empty()
-          ? fmt::format("run of {} at scale {} with seed {}{}", start.experiment,
-                        scale_name(at_scale), variant.parameters.start_seed,
-                        start.variant.empty() ? "" : " and " + printable(start.variant))
-          : fmt::format("shear whose id begins with {}", start.run);
-  if (found.empty()) {
-    refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute it first, or name the store that has it with --store.");
-  }
-  if (found.size() > 1) {
-    refuse(manifest.file, start.at, "start", fmt::format("the store has more than one {}", what),
-           "",
-           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`."
-                             : "State more digits of the id.");
-  }
-  const double cycle = static_cast<double>(variant.parameters.start_cycle);
-  if (found.front()->cycle < cycle) {
-    refuse(manifest.file, start.at, "start",
-           fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
-           fmt::format("cycle {}", found.front()->cycle), "Extend it first.");
-  }
-  return *found.front();
-}
-
-/// The parameters of the packing that the cell, its grains and their units depend on are those of
-/// the recorded run.
-void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
-                       const Stage& recorded) {
-  const Parameters had = read_stage(recorded.resolved).parameters;
-  for (const Field& field : schema()) {
-    const bool of_packing = field.identity.stage == StageKind::prepare &&
-                            field.identity.distinguishes_runs() &&
-                            !field.name.starts_with("settle_");
-    if (!of_packing || may_differ_in_settling(field.name)) continue;
-    const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
-    if (mine == its) continue;
-    refuse(manifest.file, scale.start.at, std::string(field.name),
-           fmt::format("differs from that of run {:.8}, whose state this one begins with",
-                       recorded.id),
-           value_text(mine), fmt::format("State {}.", value_text(its)));
-  }
-}
-
 // `common`: the facts that all runs of the scale share; `recorded`: the run whose state it begins
-// with, or null.
+// with, or null; `file`: that of its grains.
 PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& variant,
-                       std::uint64_t seed, const Stage* recorded) {
+                       std::uint64_t seed, const Stage* recorded,
+                       const std::optional<PackingText>& file) {
   PlannedRun run;
   run.ask = common;
   run.ask.variant = variant.name();
@@ -156,7 +92,9 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
   run.parameters = variant.parameters;
   run.ask.target_cycles = target_cycles(run.parameters);
   run.packing = variant.packing;
-  if (recorded == nullptr) run.prepare = prepare_stage(run.packing, seed);
+  if (recorded == nullptr) {
+    run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
+  }
   run.stage = last_stage(run.parameters, seed, recorded == nullptr ? *run.prepare : *recorded);
   if (run.stage.kind == name_of(StageKind::shear) && scale.until.until) {
     run.ask.until = to_json(*scale.until.until);
@@ -206,7 +144,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
 
   std::vector<Variant> variants = variants_of(scale);
-  Plan plan{manifest.experiment, scale.name, {}, {}};
+  Plan plan{manifest.experiment, scale.name, {}, {}, {}};
+  if (!scale.start.file.empty()) plan.file = read_packing_file(manifest, scale);
   Ask common{
       {.experiment = plan.experiment, .scale = plan.scale, .manifest = sha256_hex(manifest.text)}};
   common.checkpoint_every = scale.checkpoints.every_cycles;
@@ -231,13 +170,14 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
              "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");
     }
     const Stage* recorded = nullptr;
-    if (scale.start.is_stated()) {
-      recorded = &run_to_start_from(manifest, scale, variant, options.known);
-      require_same_cell(manifest, scale, variant, *recorded);
+    if (scale.start.is_recorded()) {
+      recorded = &recorded_run(manifest, scale, variant, options.known);
     }
     for (const std::uint64_t seed : chosen_seeds) {
       const PlannedRun& run =
-          plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded));
+          plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
+      if (plan.file) placed(*plan.file, run.packing, seed);  // or says why it cannot
+
       const std::string& same = variant_of.emplace(run.stage.id, run.ask.variant).first->second;
       if (same == run.ask.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",

@@ -11,6 +11,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
+#include "experiments/manifest/start.hpp"
 #include "provenance/records.hpp"
 
 namespace shearcell {
@@ -38,8 +39,9 @@ struct PlannedRun : Run {
 struct Plan {
   std::string experiment;
   std::string scale;
-  std::vector<PlannedRun> runs;       ///< variants in manifest order, and within each its seeds
-  std::vector<std::string> warnings;  ///< sound but unlikely to be meant; one line each
+  std::optional<PackingText> file = {};  ///< of which the packings are made
+  std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
+  std::vector<std::string> warnings;     ///< sound but unlikely to be meant; one line each
 };
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).

@@ -44,6 +44,11 @@ json record_of(const StageInputs& stage) {
   json resolved = {
       {"stage", name_of(stage.stage)}, {"seed", stage.seed}, {"parameters", std::move(values)}};
   if (!stage.parent.empty()) resolved["parent"] = stage.parent;
+  if (stage.file) {
+    json& start =
+        resolved["start"] = {{"file", stage.file->sha256}, {"settles", stage.file->settles}};
+    if (stage.file->unit) start["unit"] = name_of(*stage.file->unit);
+  }
   return resolved;
 }
 
@@ -104,10 +109,23 @@ void read_parameters(const json& values, StageInputs& record) {
   }
 }
 
+StartFile read_start(const json& start) {
+  const json sha256 = member_of(start, "file"), settles = member_of(start, "settles");
+  const json unit = member_of(start, "unit");
+  StartFile file;
+  if (sha256.is_string()) file.sha256 = sha256.get<std::string>();
+  if (!is_sha256_hex(file.sha256)) throw damaged("file", "is not a SHA-256");
+  if (!settles.is_boolean()) throw damaged("settles", "is not true or false");
+  file.settles = settles.get<bool>();
+  if (unit.is_string()) file.unit = value_of<LengthUnit>(unit.get<std::string>());
+  return file;  // read_stage() finds other keys and values
+}
+
 }  // namespace
 
-Stage prepare_stage(const Parameters& parameters, std::uint64_t seed) {
-  return new_stage({StageKind::prepare, "", seed, parameters});
+Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
+                    const std::optional<StartFile>& file) {
+  return new_stage({StageKind::prepare, "", seed, parameters, file});
 }
 
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent) {
@@ -129,6 +147,9 @@ StageInputs read_stage(const json& resolved) {
   if (record.stage != StageKind::prepare) {
     if (parent.is_string()) record.parent = parent.get<std::string>();
     if (!is_sha256_hex(record.parent)) throw damaged("parent", "is not a run's id");
+  }
+  if (record.stage == StageKind::prepare && resolved.contains("start")) {
+    record.file = read_start(resolved.at("start"));
   }
   read_parameters(values, record);
   if (record.stage != StageKind::prepare &&
@@ -153,9 +174,10 @@ StageInputs read_stage(const json& resolved) {
 json effective_parameters(const json& resolved) {
   json values = json::object();
   try {
-    const auto [stage, parent, seed, parameters] = read_stage(resolved);
+    const StageInputs inputs = read_stage(resolved);
+    const Parameters& parameters = inputs.parameters;
     for (const Field& field : schema()) {
-      if (!enters(field.identity, stage, parameters.protocol, nullptr)) continue;
+      if (!enters(field.identity, inputs.stage, parameters.protocol, nullptr)) continue;
       values[std::string(field.name)] = field.get(parameters);
     }
     if (!depends_on_pressure_at(parameters)) values.erase("pressure_at");

@@ -4,13 +4,22 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "experiments/manifest/packing_file.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "provenance/records.hpp"
 
 namespace shearcell {
+
+/// A file of grains that a packing is made of, instead of loose grains.
+struct StartFile {
+  std::string sha256;                   ///< of the text, which the store keeps
+  std::optional<LengthUnit> unit = {};  ///< if the manifest states it
+  bool settles = false;                 ///< the grains settle further; else they stay as placed
+};
 
 /// A stage, as read from its `resolved` record. Parameters that do not affect it, and lengths, have
 /// their defaults; the protocol of a stiffening is `stiffen`.
@@ -19,12 +28,14 @@ struct StageInputs {
   std::string parent;
   std::uint64_t seed = 0;
   Parameters parameters;
+  std::optional<StartFile> file = {};  ///< of a packing
 };
 
-/// The preparation: fill and settle. A stage that nobody asks for yet; its id is the hash of
-/// `resolved`, which `read_stage` reads back. Equal ids mean equal trajectories, so a stage is
-/// computed once.
-Stage prepare_stage(const Parameters& parameters, std::uint64_t seed);
+/// The preparation: fill, or place the grains of the file, and settle. A stage that nobody asks for
+/// yet; its id is the hash of `resolved`, which `read_stage` reads back. Equal ids mean equal
+/// trajectories, so a stage is computed once.
+Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
+                    const std::optional<StartFile>& file = {});
 
 /// Shear or stiffening, by the protocol, of the packing that `parent` prepares.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);

@@ -30,7 +30,10 @@ std::string join(const std::vector<ManifestProblem>& problems) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-std::string read_file(const std::filesystem::path& path, const std::string& name) {
+}  // namespace
+
+std::string read_text(const std::filesystem::path& path, std::size_t limit) {
+  const std::string name = path.string();
   const auto refuse_file = [&](const std::string& why, const char* remedy = "") {
     refuse(name, {}, "", why, "", remedy);
   };
@@ -39,19 +42,17 @@ std::string read_file(const std::filesystem::path& path, const std::string& name
   if (type == std::filesystem::file_type::not_found) refuse_file("there is no such file");
   if (error) refuse_file(fmt::format("cannot be read: {}", error.message()));
   if (type == std::filesystem::file_type::directory) {
-    refuse_file("is a directory", "Name a manifest file in it.");
+    refuse_file("is a directory", "Name a file in it.");
   }
   // Reading a pipe or a device might never end.
   if (type != std::filesystem::file_type::regular) refuse_file("is not a regular file");
   std::ifstream stream(path, std::ios::binary);
-  std::string text(ManifestLimits::bytes + 1, '\0');
+  std::string text(limit + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream.is_open() || stream.bad()) refuse_file("cannot be read");
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
-
-}  // namespace
 
 std::string ManifestProblem::text() const {
   std::string result = printable(file, 4096);
@@ -90,8 +91,7 @@ void ProblemList::raise() {
 }
 
 Manifest load_manifest(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  return parse_manifest(read_file(path, name), name);
+  return parse_manifest(read_text(path, ManifestLimits::bytes), path.string());
 }
 
 Manifest parse_manifest(std::string_view text, std::string_view file) {

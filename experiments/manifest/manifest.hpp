@@ -15,6 +15,7 @@
 
 #include "analysis/own_figure.hpp"
 #include "core/named.hpp"
+#include "experiments/manifest/packing_file.hpp"
 #include "provenance/errors.hpp"
 
 namespace shearcell {
@@ -160,8 +161,11 @@ struct Placed : Spec {
   Position at;
 };
 
-/// `start`: the recorded run whose state a shear begins with; default: a packing that it settles.
+/// `start`: the recorded run whose state a shear begins with, or a file of grains; default: loose
+/// grains that settle.
 struct Start {
+  std::string file = {};  ///< relative to the folder of the manifest
+  std::optional<LengthUnit> unit = {};
   std::string experiment = {};
   std::string scale = {};    ///< "" for that of the shear
   std::string variant = {};  ///< swept values; "" if the experiment has one variant
@@ -169,7 +173,7 @@ struct Start {
   Settings settings = {};    ///< start_seed, start_cycle, start_noise_d
   Position at = {};
 
-  bool is_stated() const { return at.line > 0; }
+  bool is_recorded() const { return !experiment.empty() || !run.empty(); }
 };
 
 /// An entry of `scales` with what it takes from the manifest, or what the manifest states for all
@@ -179,6 +183,7 @@ struct Scale {
   Position at = {};
   Settings settings = {};
   Settings settle = {};  ///< parameters of the packing that differ from those of the shear
+  Position settle_at = {};
   Start start = {};
   Sweep sweep = {};
   Seeds seeds = {};
@@ -211,6 +216,9 @@ inline constexpr std::size_t kLongestName = 64;
 /// Whether the text can name an experiment, its folder and its figures: 1 to kLongestName letters,
 /// digits, '-' and '_', the first not a '-'.
 bool is_name(std::string_view text);
+
+/// The bytes of a file, of a longer one the first `limit` + 1. Throws ManifestError.
+std::string read_text(const std::filesystem::path& path, std::size_t limit);
 
 /// Reads a file. Throws ManifestError.
 Manifest load_manifest(const std::filesystem::path& path);

@@ -35,7 +35,7 @@ using std::string;
 using std::string_view;
 using Names = std::vector<string_view>;
 
-constexpr std::size_t kLongestLabel = 120;  // [bytes]
+constexpr std::size_t kLongestLabel = 120, kLongestPath = 1000;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kCycles = {0, StoreLimits::cycles};
 // A double holds it exactly, so readers in any language can.
@@ -90,7 +90,9 @@ void fields(Scale& scale, const auto& visit) {
         {.name = "start",
          .doc = "instead of settling: the shear begins with the state of a recorded run at a whole "
                 "cycle, with noise that each seed draws anew. `{checkpoint: RUN@CYCLE}` names the "
-                "run by its id; `sweep` may vary start_seed and start_cycle",
+                "run by its id; `sweep` may vary start_seed and start_cycle. `{file: "
+                "packing.extxyz}` takes the grains of a file (`unit: d` or `m` if that has none), "
+                "which settle further if `settle` is stated, be it `{}`",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
@@ -357,7 +359,7 @@ const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
     {{"temperature", "thermostat"}, "Grains have no thermal motion; the walls move them."},
     {{"initial", "positions"},
      "Each run settles its own packing from loose grains, which `seeds` draw, or begins with a "
-     "recorded state: `start: {experiment: NAME, seed: 1, cycle: 10}`."}};
+     "recorded state or the grains of a file: `start: {file: packing.extxyz}`."}};
 
 // Reads values into members of their types. Problems are reported, and reading continues.
 struct Reader {
@@ -758,9 +760,9 @@ struct Reader {
     }
   }
 
-  // The recorded run, and the parameters that begin with `start_`.
+  // The file; or the recorded run, and the parameters that begin with `start_`.
   void read(const Node& in, const Field& about, Start& start) {
-    static constexpr string_view texts[] = {"experiment", "scale", "variant", "checkpoint"};
+    static constexpr string_view texts[] = {"experiment", "scale", "variant", "checkpoint", "file"};
     static constexpr string_view numbers[] = {"seed", "cycle", "noise_d"};
     start = {};
     start.at = in.at;
@@ -778,18 +780,39 @@ struct Reader {
         string& text = part.key == "experiment" ? start.experiment
                        : part.key == "scale"    ? start.scale
                        : part.key == "variant"  ? start.variant
+                       : part.key == "file"     ? start.file
                                                 : checkpoint;
-        const bool is_text = part.key == "variant" || part.key == "checkpoint";
-        read(part, {.longest = is_text ? kLongestLabel : 0}, text);
+        const bool is_name = part.key == "experiment" || part.key == "scale";
+        read(part, {.longest = is_name ? 0 : kLongestPath}, text);
+      } else if (part.key == "unit") {
+        read(part, with_type<LengthUnit>({}), start.unit.emplace());
       } else {
-        reject_unknown(part, joined({std::begin(texts), std::end(texts)}, std::span(numbers)));
+        Names known{std::begin(texts), std::end(texts)};
+        known.emplace_back("unit");
+        reject_unknown(part, joined(known, std::span(numbers)));
       }
     }
-    const Node* named = in.find("checkpoint");
-    if ((named != nullptr) == (in.find("experiment") != nullptr)) {
-      return reject(in, "does not have either an experiment or a checkpoint", remedy_of(about));
+    std::size_t sources = 0;
+    for (const char* key : {"experiment", "checkpoint", "file"}) {
+      sources += in.find(key) != nullptr ? 1 : 0;
     }
-    if (named != nullptr) read_checkpoint(*named, checkpoint, start);
+    if (sources != 1) {
+      return reject(in, "does not name one of an experiment, a checkpoint and a file",
+                    remedy_of(about));
+    }
+    if (const Node* named = in.find("checkpoint")) read_checkpoint(*named, checkpoint, start);
+    const std::string_view source = in.find("file") != nullptr         ? "file"
+                                    : in.find("checkpoint") != nullptr ? "checkpoint"
+                                                                       : "experiment";
+    for (const Node& part : in.parts) {
+      const bool of_file = part.key == "unit",
+                 of_experiment = part.key == "scale" || part.key == "variant";
+      const bool of_any =
+          part.key == source || (source != "file" && std::ranges::count(numbers, part.key) > 0);
+      if (of_any || (of_file && source == "file") || (of_experiment && source == "experiment"))
+        continue;
+      reject_key(part, fmt::format("does not go with {}", source), "Leave it out.");
+    }
   }
 
   // RUN@CYCLE
@@ -826,6 +849,7 @@ struct Reader {
       Scale& scale = scales.emplace_back(base);
       scale.name = part.key;
       scale.at = part.key_at;
+      if (const Node* settle = part.find("settle")) scale.settle_at = settle->key_at;
       read_settings(part, scale.settings, names_of(keys_of<Scale>()),
                     [&](const Node& key) { return read_key(key, scale); });
       for (const Node& key : part.parts) scale.own.insert(key.key);
@@ -1190,6 +1214,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   }
   // Scales begin with what is stated for all of them.
   std::ranges::stable_partition(root.parts, [](const Node& part) { return part.key != "scales"; });
+  if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;
   reader.read_keys(root, manifest);
   if (const Node* experiment = root.find("experiment")) {
     manifest.experiment_at = experiment->key_at;

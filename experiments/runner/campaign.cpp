@@ -430,6 +430,7 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
     info["max_overlap_diameters"] = std::move(limits);
   }
   store.register_manifest(manifest.text, manifest.file, info);
+  if (plan.file) store.register_packing(plan.file->text, plan.file->path);
   std::vector<Stage> stages;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {

@@ -203,7 +203,7 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
       look.particle_steps = grains * minimization_evaluations(grains) * left;
       look.checkpoints = left + (checkpoints.empty() ? 1 : 0);
     } else if (!completed) {
-      const double time = settling_time_s(p);
+      const double time = known.file && !known.file->settles ? 0 : settling_time_s(p);
       look.particle_steps = grains * time / p.settle_time_step_s;
       look.checkpoints = 1 + std::floor(time / 2);
     }

@@ -17,6 +17,7 @@
 #include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/start.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -54,9 +55,21 @@ void require_memory(const StageInputs& inputs) {
       inputs.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
+/// Leaves the grains of a file where they are.
+class AsPlaced final : public Protocol {
+ public:
+  Drive drive() const override { return {}; }
+  StageProgress advance(Simulation& simulation, std::uint64_t) const override {
+    simulation.check();
+    return {.checkpoint_due = true, .finished = true};
+  }
+  std::uint64_t last_step() const override { return 0; }
+};
+
 std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& stage) {
   const Parameters& p = inputs.parameters;
   const std::uint64_t cycles = stage.target_cycles;
+  if (inputs.file && !inputs.file->settles) return std::make_unique<AsPlaced>();
   if (inputs.stage == StageKind::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
@@ -156,6 +169,12 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::st
   if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record)};
+  }
+  if (plan.inputs.file) {
+    auto [text, path] = store.packing_text(plan.inputs.file->sha256);
+    auto [cell, state] = placed({path, text, *plan.inputs.file}, plan.inputs.parameters,
+                                plan.inputs.seed, give_up_if_requested);
+    return {std::move(cell), std::move(state)};
   }
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.inputs.parameters);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stages that LAMMPS computes, through the program: recorded like ours, under other ids, and
 // continued after an interruption.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <csignal>
 
+#include "core/contact.hpp"
+#include "core/simulation.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/packing_file.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
 #include "tests/support/text.hpp"
@@ -138,6 +144,70 @@ TEST_F(EngineRun, ContinuesAfterAKill) {
   expect(0, {"resume", "-q"});
   EXPECT_EQ(run_of("engine=lammps")["cycle"], 4);
   expect(0, {"verify"});
+}
+
+/// The end of the exported script's run in LAMMPS beside our continuation from the checkpoint.
+void expect_the_same_future(const Store& store, const std::string& id, double cycle,
+                            const fs::path& folder) {
+  constexpr std::uint64_t steps = 300;
+  const Stage stage = store.find_stage(id);
+  const StageInputs inputs = read_stage(stage.resolved);
+  const Parameters& p = inputs.parameters;
+  const bool shears = inputs.stage == StageKind::shear;
+  const std::vector<CheckpointRecord> records = store.checkpoints(id);
+  const auto record = std::ranges::find(records, cycle, &CheckpointRecord::cycle);
+  ASSERT_NE(record, records.end());
+  const Checkpoint from = store.load_checkpoint(*record);
+  const std::string name =
+      shears ? fmt::format("frame_{}", cycle) : fmt::format("frame_step{}", from.state.step);
+  SCOPED_TRACE(name);
+  const auto ran = run_program(
+      {"lmp", "-in", "in." + name, "-var", "steps", std::to_string(steps), "-screen", "none"},
+      folder);
+  ASSERT_TRUE(ran && ran->code == 0) << read_bytes(folder / "log.lammps");
+  const PackingFile theirs =
+      read_packing(read_bytes(folder / (name + "_end.dump")), name,
+                   {.unit = LengthUnit::m, .diameter_m = p.diameter_m, .largest_overlap = 0.5});
+  Simulation ours(from.cell, shears ? shear_scene(p) : settle_scene(p), from.state);
+  ours.advance(shears ? drive(p) : Drive{}, steps);
+  const State state = ours.state();
+  ASSERT_EQ(theirs.position.cols(), state.position.cols());
+  Eigen::Matrix3Xd apart = theirs.position - state.position;
+  const double depth = from.cell.depth;
+  apart.row(2) =
+      apart.row(2).unaryExpr([&](double z) { return nearest_image(z, depth, 1 / depth); });
+  const double moved = (state.position - from.state.position).colwise().norm().maxCoeff();
+  std::printf("%s: moved %.2g d, apart %.2g d\n", name.c_str(), moved,
+              apart.colwise().norm().maxCoeff());
+  EXPECT_GT(moved, shears ? 1e-6 : 0);
+  EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-9);
+}
+
+TEST_F(EngineRun, AnExportedScriptContinuesTheRun) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  const std::string phases = "checkpoints: {phases: [0.25, 0.6, 0.9]}\n";
+  write("plain.yaml", tiny_manifest("  cycles: 1\n", phases));
+  write("paused.yaml",
+        renamed(tiny_manifest("  cycles: 1\n  protocol: paused\n  pause_s: 0.5\n  fluid: cell\n"
+                              "  moving_wall: top\n",
+                              phases),
+                "paused"));
+  expect(0, {"run", "plain.yaml", "paused.yaml", "-q"});
+  for (const char* experiment : {"tiny", "paused"}) {
+    std::string id;
+    const nlohmann::json status = json({"status", "--experiment", experiment, "--json"});
+    for (const nlohmann::json& run : status["runs"]) id = run["id"];
+    const nlohmann::json shown = json({"show", id, "--json"});
+    const std::string packing = shown["parent"], out = experiment;
+    expect(0, {"export", id, "--to", "lammps", "--out", out});
+    expect(0, {"export", packing, "--to", "lammps", "--out", out + "_packing"});
+    const Store store(path("shearcell-store"), Access::read);
+    for (const double cycle : {0.0, 0.25, 0.6, 0.9, 1.0}) {
+      expect_the_same_future(store, id, cycle, path(out));
+    }
+    expect_the_same_future(store, packing, store.checkpoints(packing).back().cycle,
+                           path(out + "_packing"));
+  }
 }
 
 TEST_F(EngineRun, ReportsThatLammpsIsMissing) {

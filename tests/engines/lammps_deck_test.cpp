@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The input that LAMMPS gets, and the reading of its output. Does not need LAMMPS.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,7 +59,7 @@ TEST(LammpsDeck, LeavesOutWhatTheSceneDoesNotHave) {
   p.amplitude_rad = 0;
   p.walls = WallTexture::smooth;
   const std::string deck = lammps_deck(loose_task(p));
-  for (const char* part : {"gravity", "fix drag", "fix flow", "theta", "displace_atoms", "fcm"}) {
+  for (const char* part : {"gravity", "fix drag", "fix flow", "theta", "move variable", "fcm"}) {
     EXPECT_FALSE(has(deck, part)) << part;
   }
   EXPECT_EQ(number_after(deck, "set group grains mass "), 1);
@@ -66,22 +67,26 @@ TEST(LammpsDeck, LeavesOutWhatTheSceneDoesNotHave) {
 
 TEST(LammpsDeck, FollowsTheMovingWall) {
   Parameters p = small();
-  const std::string bottom = lammps_deck(loose_task(p));
-  EXPECT_TRUE(has(bottom, "variable bottom equal y[101]\n"));
+  const LammpsTask below = loose_task(p);
+  const std::string bottom = lammps_deck(below);
+  const auto wall = [](const LammpsTask& of) { return 101 + of.cell.wall_grains.size(); };
+  EXPECT_TRUE(has(bottom, fmt::format("variable bottom equal y[{}]\n", wall(below))));
   EXPECT_TRUE(has(bottom, "f_bottom_plane[1]+fcm(bottom,y)\n"));
   EXPECT_FALSE(has(bottom, "fix top top move"));
   p.moving_wall = MovingWall::top;
   const LammpsTask task = loose_task(p);
   const std::string top = lammps_deck(task);
-  EXPECT_TRUE(has(top, "variable top equal y[101]\n"));
+  EXPECT_TRUE(has(top, fmt::format("variable top equal y[{}]\n", wall(task))));
   EXPECT_TRUE(has(top, "fix top top move"));
   EXPECT_LT(number_after(top, "variable push equal "), 0) << "the pressure points inwards";
 }
 
 TEST(LammpsDeck, WritesEachAtomOnceWithItsVelocity) {
   const LammpsTask task = loose_task(small());
-  const std::size_t atoms = 101 + task.cell.wall_grains.size();
-  std::istringstream data(lammps_data(task));
+  const std::size_t atoms = 100 + task.cell.wall_grains.size();  // the deck makes the moving wall
+  const WallPose pose = wall_pose(task.cell, 0, task.state.wall_height);
+  std::istringstream data(
+      lammps_data(particles_of(task.cell, pose, task.state, 0, task.units), "title"));
   std::size_t lines = 0, sections = 0;
   std::vector<std::size_t> seen(atoms + 1, 0);
   for (std::string line; std::getline(data, line);) {

@@ -12,6 +12,7 @@
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/sha256.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
@@ -212,7 +213,7 @@ TEST_F(Started, ThePruneKeepsItsStateOrSaysHowToRestoreIt) {
   EXPECT_NE(without.messages[0].find(remedy), std::string::npos) << without.messages[0];
   EXPECT_FALSE(regenerate_checkpoint(store_, at_cycle_1()).divergence);
   EXPECT_EQ(compute_here(clones("")).completed, 1U);
-  for (const CheckpointRecord& record : store_.prunable({.keep_every = 3})) {
+  for (const CheckpointRecord& record : store_.prunable({.runs = {}, .keep_every = 3})) {
     EXPECT_NE(record.sha256, at_cycle_1().sha256) << "a run began with it";
   }
 }
@@ -273,6 +274,128 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
             std::string::npos);
   EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
       << "what acts on the grains may change";
+}
+
+/// A manifest in a folder of its own, beside a file of grains.
+class FromAFile : public Started {
+ protected:
+  void write_grains(const std::string& text) { write_bytes(folder_.path() / "grains.csv", text); }
+
+  Manifest manifest(const std::string& rest, const std::string& base = "") {
+    const std::filesystem::path file = folder_.path() / "tiny.yaml";
+    write_bytes(file, renamed(tiny_manifest(base, "start: {file: grains.csv}\n" + rest), "placed"));
+    return load_manifest(file);
+  }
+
+  CampaignResult compute_placed(Store& store, const Manifest& stated) {
+    return run_campaign(store, declare(store, stated, expand(stated)), 2, {}, true);
+  }
+
+  /// The grains of a state as a CSV file with a box.
+  static std::string as_csv(const State& state) {
+    std::string text = "x_d,y_d,z_d,vx_d_per_s,vy_d_per_s,vz_d_per_s\n";
+    for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
+      const auto r = state.position.col(i), v = state.velocity.col(i);
+      text += fmt::format("{},{},{},{},{},{}\n", r.x(), r.y(), r.z(), v.x(), v.y(), v.z());
+    }
+    return text;
+  }
+
+  std::string refusal_of(const Manifest& stated) {
+    return message_of<ManifestError>([&] { expand(stated); });
+  }
+};
+
+TEST_F(FromAFile, ThePositionsOfASettledPackingAreShearedAtOnce) {
+  compute_here(tiny_manifest("  walls: smooth\n"));
+  const Stage packing = runs_of_kind(store_, "prepare").at(0);
+  const State settled = store_.load_checkpoint(store_.checkpoints(packing.id).back()).state;
+  write_grains(as_csv(settled));
+  const Manifest stated = manifest("", "  walls: smooth\n");
+  EXPECT_EQ(compute_placed(store_, stated).completed, 2U);
+  const Stage placed_packing = runs_of_kind(store_, "prepare").at(1);
+  const State read = store_.load_checkpoint(store_.checkpoints(placed_packing.id).back()).state;
+  EXPECT_EQ(read.step, 0U);
+  // Without a box the walls touch the outermost grains: they move by an overlap at most.
+  EXPECT_LT((read.position - settled.position).cwiseAbs().rowwise().maxCoeff().head(2).maxCoeff(),
+            0.02);
+  EXPECT_EQ(read.velocity, settled.velocity);
+  EXPECT_NEAR(read.wall_height, settled.wall_height, 0.02);
+  for (const Stage& run : store_.stages()) {
+    for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
+      EXPECT_FALSE(verify_by_replay(store_, record).divergence) << run.kind << record.cycle;
+    }
+  }
+  EXPECT_TRUE(check_runs(store_).empty());
+  EXPECT_TRUE(store_.verify().ok());
+}
+
+TEST_F(FromAFile, TheStoreKeepsTheTextAndMergesIt) {
+  const std::string loose = "x_d,y_d,z_d\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n";
+  write_grains(loose);
+  const std::string base =
+      "  walls: smooth\n  grains: 4\n  nominal_packing_fraction: 0.05\n"
+      "  fill_packing_fraction: 0.04\n  height_over_width: 1\n";
+  const Manifest stated = manifest("settle: {}\n", base);
+  const std::vector<StageJob> jobs = declare(store_, stated, expand(stated));
+  std::filesystem::remove(folder_.path() / "grains.csv");
+  Store other(folder_.path() / "other", Access::create);
+  other.merge({store_.folder()});
+  EXPECT_EQ(other.packing_text(sha256_hex(loose)).first, loose);
+  EXPECT_EQ(run_stage(other, jobs.front().id, {}), run_stage(store_, jobs.front().id, {}));
+  EXPECT_EQ(other.stage(jobs.front().id).state_hash, store_.stage(jobs.front().id).state_hash);
+  EXPECT_EQ(count_events(store_, "PackingRegistered"), 1U);
+  store_.register_packing(loose, "elsewhere");
+  EXPECT_EQ(count_events(store_, "PackingRegistered"), 1U) << "once";
+  EXPECT_TRUE(other.verify().ok());
+}
+
+TEST_F(FromAFile, TheIdHoldsTextUnitAndWhetherItSettles) {
+  const auto id = [](const std::optional<StartFile>& file) {
+    return prepare_stage({}, 1, file).id;
+  };
+  const std::string a = sha256_hex("a"), b = sha256_hex("b");
+  const std::set<std::string> ids = {id({}), id(StartFile{a, {}, false}),
+                                     id(StartFile{b, {}, false}), id(StartFile{a, {}, true}),
+                                     id(StartFile{a, LengthUnit::m, false})};
+  EXPECT_EQ(ids.size(), 5U);
+  const Stage stage = prepare_stage({}, 1, StartFile{a, LengthUnit::d, true});
+  EXPECT_EQ(read_stage(stage.resolved).file->unit, LengthUnit::d);
+  for (const char* key : {"file", "settles", "unit"}) {
+    nlohmann::json damaged = stage.resolved;
+    damaged["start"][key] = 7;
+    EXPECT_THROW(read_stage(damaged), UnreadableRecord) << key;
+  }
+  nlohmann::json more = stage.resolved;
+  more["start"]["more"] = 1;
+  EXPECT_THROW(read_stage(more), UnreadableRecord);
+}
+
+TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
+  write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
+  EXPECT_NE(refusal_of(manifest("")).find("has 2 grains, and the manifest 300. State `grains: 2`."),
+            std::string::npos);
+  const std::string two =
+      "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
+      "  fill_packing_fraction: 0.02\n  height_over_width: 1\n";
+  EXPECT_EQ(refusal_of(manifest("", two)), "");
+  write_grains("x_d,y_d,z_d\n1,1,1\n9,1,1\n");
+  const std::string wide = refusal_of(manifest("", two));
+  EXPECT_NE(wide.find("grains.csv: its grains are 9 d wide (x), and the cell of the manifest is "),
+            std::string::npos)
+      << wide;
+  const std::size_t at = wide.find("`nominal_packing_fraction: ");
+  ASSERT_NE(at, std::string::npos) << wide;
+  const std::string remedy = wide.substr(at + 1, wide.find('`', at + 1) - at - 1);
+  std::string other = two;
+  other.replace(other.find("nominal_packing_fraction: 0.03"), 30, remedy);
+  other.replace(other.find("fill_packing_fraction: 0.02"), 27, "fill_packing_fraction: 0.001");
+  EXPECT_EQ(refusal_of(manifest("", other)), "") << "the remedy helps";
+  EXPECT_NE(refusal_of(manifest("sweep: {grid: {walls: [rough, smooth]}}\n", two)).find("wall"),
+            std::string::npos);
+  std::filesystem::remove(folder_.path() / "grains.csv");
+  EXPECT_NE(refusal_of(manifest("", two)).find("grains.csv: there is no such file"),
+            std::string::npos);
 }
 
 TEST(Noise, DependsOnSeedAndGrainAlone) {

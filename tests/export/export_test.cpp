@@ -15,6 +15,7 @@
 #include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/packing_file.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/text.hpp"
 
@@ -271,6 +272,45 @@ TEST(Export, OtherProgramsReadEveryNumber) {
   EXPECT_EQ(
       std::system((python + SHEARCELL_TEST_DATA "/../export/read_back.py " + at.string()).c_str()),
       0);
+}
+
+/// An export as a start: the grains alone, with the planes of their cell.
+void expect_the_checkpoint(const fs::path& file, const PackingFacts& facts) {
+  SCOPED_TRACE(file);
+  const Checkpoint c = checkpoints().front();
+  const PackingFile packing = read_packing(read_bytes(file), file.string(), facts);
+  ASSERT_EQ(packing.position.cols(), c.state.position.cols());
+  Eigen::Matrix3Xd moved = packing.position - c.state.position;
+  EXPECT_LT((moved.row(2).array() + 2 * c.cell.depth).abs().maxCoeff(), 1e-12) << "z is wrapped";
+  moved.row(2).setZero();
+  EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-13);
+  ASSERT_TRUE(packing.velocity && packing.box);
+  EXPECT_LT((*packing.velocity - c.state.velocity).cwiseAbs().maxCoeff(), 1e-12);
+  const Eigen::Vector3d low(0, c.state.wall_height, 0);
+  EXPECT_LT((packing.box->low - low).norm(), 1e-13);
+  EXPECT_LT((packing.box->high - Eigen::Vector3d(c.cell.width, c.cell.top, c.cell.depth)).norm(),
+            1e-12);
+}
+
+TEST(Export, IsReadBackAsAStart) {
+  const TemporaryFolder folder;
+  const fs::path& at = folder.path();
+  const std::vector<Checkpoint> all = checkpoints();
+  const Frame upright = frame_of(all.front(), {}, about()),
+              tilted = frame_of(all.back(), {}, about());
+  extxyz_writer(at / "d.xyz", Lengths::diameters)(upright);
+  extxyz_writer(at / "m.xyz", Lengths::metres)(upright);
+  lammps_writer(at)(upright);
+  const PackingFacts facts{.diameter_m = upright.radius * 2, .largest_overlap = 0.25};
+  expect_the_checkpoint(at / "d.xyz", facts);
+  expect_the_checkpoint(at / "m.xyz", facts);
+  expect_the_checkpoint(at / "frame_3.data", facts);
+  extxyz_writer(at / "tilted.xyz", Lengths::metres)(tilted);
+  lammps_writer(at)(tilted);
+  for (const char* name : {"tilted.xyz", "frame_3.25.data"}) {
+    expect_refused<ManifestError>([&] { read_packing(read_bytes(at / name), name, facts); },
+                                  {"the box is not orthogonal", "at the end of a cycle"});
+  }
 }
 
 TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {

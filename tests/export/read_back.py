@@ -212,13 +212,17 @@ def check_lammps():
         rows = np.array([line.split() for line in lines[start : start + len(f["id"])]], dtype=float)
         equal("lammps velocities", rows[:, 1:4], f["velocity"])
         box = {l.split()[-1]: [float(w) for w in l.split()[:-2]] for l in lines if l.endswith("hi")}
-        tilt = float(next(l for l in lines if l.endswith("xy xz yz")).split()[0])
-        low, high = box["yhi"]
-        share = (f["position"][:, 1] - low) / (high - low)
-        left = box["xhi"][0] + share * tilt
-        assert np.all((share >= 0) & (share <= 1)), "a particle is below or above the box"
-        inside = (f["position"][:, 0] >= left) & (f["position"][:, 0] <= left + np.diff(box["xhi"]))
-        assert np.all(inside), "a particle is beside the box"
+        for axis, name in enumerate("xyz"):
+            low, high = box[name + "hi"]
+            at = f["position"][:, axis]
+            assert np.all((at >= low) & (at <= high)), f"a particle is outside of the box in {name}"
+        assert not any(l.endswith("xy xz yz") for l in lines), "the box is not upright"
+        words = lines[0].split()
+        cell = np.array(words[words.index("cell") + 1 : words.index("tilt")], dtype=float)
+        origin, edges = f["origin"], np.array(f["edges"])
+        equal("lammps cell", cell[::2], [origin[0], origin[1], 0])
+        equal("lammps cell", cell[1::2], [origin[0] + edges[0, 0], origin[1] + edges[1, 1], edges[2, 2]], 1e-15)
+        same("lammps tilt", float(words[-1]), edges[1, 0])
 
 
 def check_lammps_measures():

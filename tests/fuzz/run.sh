@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 seconds="${1:-10}"
 [ $# -eq 0 ] || shift
-targets="${*:-checkpoint events manifest measures published store}"
+targets="${*:-checkpoint events manifest measures packing published store}"
 
 if ! command -v clang++ >/dev/null 2>&1; then
   echo "fuzzing: left out, clang is not installed (Debian: clang libclang-rt-dev)"

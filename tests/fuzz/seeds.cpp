@@ -181,6 +181,24 @@ std::vector<std::string> published_seeds() {
           std::string("x,y\n1,2\n") + '\0' + chart};
 }
 
+std::vector<std::string> packing_seeds() {
+  const std::string box = "0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n";
+  return {
+      "2\nLattice=\"9 0 0 0 9 0 0 0 9\" Origin=\"0 0 0\" length_unit=d "
+      "Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1\n"
+      "H 1 1 1 0 0 0 1 0.5 0\nHe 3 3 3 0 0 0 2 0.5 1\n",
+      "2\n\nA 1 1 1\nA 3 3 3\n",
+      "title\n\n2 atoms\n1 atom types\n" + box +
+          "\nMasses\n\n1 1\n\nAtoms # atomic\n\n2 1 1 1 1\n1 1 3 3 3 0 0 -1\n\n"
+          "Velocities\n\n1 0 0 0\n2 0 0 1e-3\n",
+      "LAMMPS data file by shearcell, units =, cell 0 9 0 9 0 9 tilt 0\n\n2 atoms\n" + box +
+          "0 0 0 xy xz yz\n\nAtoms # sphere\n\n1 1 1 1.9 1 1 1 0 0 0\n2 5 1 1.9 3 3 3 0 0 0\n",
+      "title\n2 atoms\n\nAtoms # hybrid\n\n1 1 1 1 1 1 1.9\n2 1 3 3 3 1 1.9\n",
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz ff ff pp\n"
+      "0 9 0\n0 9 0\n0 9 0\nITEM: ATOMS id x y z vx vy vz\n2 1 1 1 0 0 0\n1 3 3 3 0 0 0\n",
+      "x_d;y_d;z_d;\"diameter_d\"\n1;1;1;1\n3;3;3;1\n"};
+}
+
 std::vector<std::string> measure_seeds() {
   const CrystalliteMap map{{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
   Analysis analysis;

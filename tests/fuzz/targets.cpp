@@ -15,6 +15,7 @@
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/lines.hpp"
+#include "experiments/manifest/packing_file.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/ro_crate.hpp"
@@ -71,6 +72,26 @@ void take_manifest(Input input) {
       check_plan(plan);
       for (const PlannedRun& run : plan.runs)
         manifest_lines(text, run.ask.scale, run.ask.swept, "");
+    }
+  } catch (const ManifestError& error) {
+    require(!error.problems().empty(), "an error says what is wrong");
+  }
+}
+
+// A file of positions.
+void take_packing(Input input) {
+  const PackingFacts facts{.unit = LengthUnit::d, .diameter_m = 3e-3, .largest_overlap = 0.25};
+  try {
+    const PackingFile packing = read_packing(text_of(input), "fuzz.csv", facts);
+    require(packing.position.cols() > 0 && packing.position.allFinite(), "grains have places");
+    const auto& moving = packing.velocity;
+    require(!moving || (moving->allFinite() && moving->cols() == packing.position.cols()),
+            "all grains have a velocity, or none");
+    if (!packing.box) return;
+    for (Eigen::Index i = 0; i < packing.position.cols(); ++i) {
+      const Eigen::Array3d p = packing.position.col(i).array();
+      require((p >= packing.box->low.array() && p <= packing.box->high.array()).all(),
+              "grains are within the box");
     }
   } catch (const ManifestError& error) {
     require(!error.problems().empty(), "an error says what is wrong");
@@ -256,10 +277,11 @@ void take_store(Input input) {
 
 }  // namespace
 
-const std::array<Target, 6> all_targets = {{{"checkpoint", take_checkpoint, checkpoint_seeds},
+const std::array<Target, 7> all_targets = {{{"checkpoint", take_checkpoint, checkpoint_seeds},
                                             {"events", take_events, event_seeds},
                                             {"manifest", take_manifest, manifest_seeds},
                                             {"measures", take_measures, measure_seeds},
+                                            {"packing", take_packing, packing_seeds},
                                             {"published", take_published, published_seeds},
                                             {"store", take_store, store_seeds}}};
 

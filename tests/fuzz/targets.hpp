@@ -31,7 +31,7 @@ inline void PrintTo(const Target& target, std::ostream* out) {
   *out << target.name;
 }
 
-extern const std::array<Target, 6> all_targets;
+extern const std::array<Target, 7> all_targets;
 
 std::vector<std::string> manifest_seeds();
 std::vector<std::string> event_seeds();
@@ -39,6 +39,7 @@ std::vector<std::string> checkpoint_seeds();
 std::vector<std::string> store_seeds();
 std::vector<std::string> published_seeds();
 std::vector<std::string> measure_seeds();
+std::vector<std::string> packing_seeds();
 
 /// Lines of "TYPE<tab>STREAM<tab>SCHEMA<tab>PAYLOAD" as events, numbered on from those of
 /// make_store. A line with fewer fields is left out.

@@ -2,6 +2,7 @@
 #include "experiments/runner/lammps/lammps_deck.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -10,18 +11,15 @@
 #include <numbers>
 #include <string_view>
 
+#include "core/drive.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {
 
-// Atom types of the data file.
-enum Type { kGrain = 1, kSide, kBottom, kTop, kWall };
-
-int type_of(WallSide side) {
-  return side == WallSide::bottom ? kBottom : side == WallSide::top ? kTop : kSide;
-}
+// Atom types: those of Particles and one more, and the atom of the moving wall.
+enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
 
 template <typename... Arguments>
 void add(std::string& text, fmt::format_string<Arguments...> line, Arguments&&... arguments) {
@@ -35,43 +33,84 @@ class Deck {
       : task_(task),
         cell_(task.cell),
         scene_(task.scene),
+        d_(task.units.diameter_m),
+        m_(task.units.mass_kg),
         area_(cell_.width * cell_.depth),
+        pose_(wall_pose(cell_, tilt(task.drive, task.state.step).theta, task.state.wall_height)),
+        wall_(task.state.position.cols() + static_cast<Eigen::Index>(cell_.wall_grains.size()) + 1),
         bottom_moves_(cell_.moving == MovingWall::bottom),
         shears_(task.drive.amplitude != 0),
         holds_(task.drive.pause_steps > 0 && task.drive.pause_walls == PauseWalls::held) {}
 
-  std::string text() {
-    atoms();
-    pose();
-    motion();
-    forces();
-    steps();
+  std::string for_engine() {
+    scene("lj", "scene.data");
+    stopping();
+    begin();
+    frames();
+    return std::move(text_);
+  }
+
+  std::string for_users(std::string_view data, std::string_view name) {
+    scene("si", data);
+    watching(name);
+    begin();
+    to_the_end(name);
     return std::move(text_);
   }
 
  private:
+  void scene(std::string_view units, std::string_view data) {
+    atoms(units, data);
+    contacts();
+    pose();
+    motion();
+    forces();
+  }
+
   bool has(WallSide side) const {
-    return std::any_of(
-        cell_.wall_grains.begin(), cell_.wall_grains.end(),
-        [side](const WallGrain& grain) { return type_of(grain.side) == type_of(side); });
+    return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
   // What an explicit drag of rate b must add to a mass to be taken implicitly.
   double added(double drag) const { return task_.added_mass ? 0.5 * drag * scene_.time_step : 0; }
 
-  void atoms() {
-    add(text_, "# by shearcell: lengths in d, masses in m, times in s");
-    add(text_, "units lj\natom_style sphere\natom_modify map array\nboundary s s p");
-    add(text_, "newton off\ncomm_modify vel yes\nread_data scene.data");
+  void atoms(std::string_view units, std::string_view data) {
+    add(text_, "units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
+    add(text_, "newton off\ncomm_modify vel yes");
+    add(text_,
+        "\n# Grains (type 1), wall grains ({} left, {} right, {} bottom, {} top), and an atom",
+        +kLeft, +kRight, +kBottom, +kTop);
+    add(text_, "# (type {}) that stands for the moving wall and touches nothing.", +kWall);
+    add(text_, "read_data {} extra/atom/types 1", data);
+    // LAMMPS creates atoms only between those that there are: first at the height of a grain.
+    const Eigen::Vector3d start = task_.state.position.col(0) * d_;
+    add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
+        start.y(), cell_.depth / 2 * d_);
     add(text_, "reset_timestep {}", task_.state.step);
     add(text_, "group grains type {}\ngroup wall type {}\ngroup free type {} {}", +kGrain, +kWall,
         +kGrain, +kWall);
-    add(text_, "group planted type {} {} {}\ngroup sides type {}", +kSide, +kBottom, +kTop, +kSide);
+    add(text_, "group planted type {} {} {} {}\ngroup sides type {} {}", +kLeft, +kRight, +kBottom,
+        +kTop, +kLeft, +kRight);
     add(text_, "group bottom type {}\ngroup top type {}", +kBottom, +kTop);
-    add(text_, "set group grains mass {:.17g}", 1 + added(scene_.drag_rate));
-    add(text_, "set group wall mass {:.17g}", area_ * (scene_.wall_mass + added(scene_.wall_drag)));
-    add(text_, "pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", scene_.stiffness);
-    add(text_, "neighbor 0.15 bin\nneigh_modify delay 0 every 1 check yes");
+    add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
+    add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
+    add(text_,
+        "# Masses are raised by drag*dt/2: LAMMPS's explicit drag then equals an implicit one.");
+    add(text_, "# Give grains of another size their diameter and, so raised, their mass.");
+    add(text_, "set group grains mass {:.17g}", (1 + added(scene_.drag_rate)) * m_);
+    add(text_, "set group wall mass {:.17g}",
+        area_ * (scene_.wall_mass + added(scene_.wall_drag)) * m_);
+  }
+
+  void contacts() {
+    add(text_, "\n# The contact law of grains and wall grains: change it here, for example to");
+    add(text_,
+        "# gran/hooke/history (friction, damping) or granular (Hertz, rolling, cohesion). The");
+    add(text_,
+        "# four planes further below have the same spring and no friction; fix wall/gran/region");
+    add(text_, "# knows other laws.");
+    add(text_, "pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", scene_.stiffness * m_);
+    add(text_, "neighbor {:.17g} bin\nneigh_modify delay 0 every 1 check yes", 0.15 * d_);
     add(text_, "neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
   }
 
@@ -79,78 +118,100 @@ class Deck {
 
   // Tilt and heights at the present step, from the integer step and the moving wall's atom.
   void pose() {
-    const auto cycle = task_.drive.steps_per_cycle + task_.drive.pause_steps;
+    const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
-    const std::string height = fmt::format("y[{}]", task_.state.position.cols() + 1);
+    const std::string height = fmt::format("y[{}]", wall_);
+    add(text_, "\n# Heights of the planes, and the tilt of the side walls.");
     add(text_, "variable bottom equal {}",
-        bottom_moves_ ? height : fmt::format("{:.17g}", cell_.bottom));
-    add(text_, "variable top equal {}", bottom_moves_ ? fmt::format("{:.17g}", cell_.top) : height);
-    add(text_, "variable rise equal v_{}-({:.17g})", bottom_moves_ ? "bottom" : "top",
-        bottom_moves_ ? cell_.bottom : cell_.top);
+        bottom_moves_ ? height : fmt::format("{:.17g}", cell_.bottom * d_));
+    add(text_, "variable top equal {}",
+        bottom_moves_ ? fmt::format("{:.17g}", cell_.top * d_) : height);
+    add(text_, "variable rise equal {}-({:.17g})", height, task_.state.wall_height * d_);
+    add(text_, "variable rising equal vy[{}]", wall_);
     if (shears_ || holds_) add(text_, "variable phase equal step%{}", cycle);
     if (!shears_) return;
     add(text_, "variable theta equal {:.17g}*sin(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn, turn);
     add(text_, "variable turn equal -v_theta\nvariable shear equal tan(v_theta)");
-    add(text_, "variable side_x atom (y-v_top)*v_shear");
-    add(text_, "variable bottom_x equal (v_bottom-v_top)*v_shear");
-    if (!fluid_moves()) return;
     add(text_, "variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn * scene_.time_step, turn, turn);
-    add(text_, "variable flow atom {:.17g}*(y-v_top)*v_rate/cos(v_theta)^2",
-        scene_.drag_rate * fluid_share(scene_.fluid));
+    add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Displaces a wall's grains, which the data file holds as in the untilted cell.
-  void carry(const char* group, const char* x, const char* y) {
-    add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero NULL NULL NULL", group, x, y);
-    add(text_, "displace_atoms {} move v_{} v_{} 0 units box", group, x, y);
+  // Moves the wall grains of a group from where the data file has them: x by that variable, or by
+  // nothing; y with the moving wall.
+  void carry(const char* group, const char* x, const char* vx, bool rises) {
+    add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
+        rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
   }
 
   // The wall's atom moves first, because the wall grains follow its height.
   void motion() {
+    add(text_,
+        "\n# Grains and the moving wall by velocity Verlet; wall grains follow their walls.");
     add(text_, "fix step free nve\nvariable zero equal 0");
-    if (has(WallSide::left) && shears_) carry("sides", "side_x", "zero");
-    if (has(WallSide::bottom) && (shears_ || bottom_moves_)) {
-      carry("bottom", shears_ ? "bottom_x" : "zero", bottom_moves_ ? "rise" : "zero");
+    const double top = pose_.top * d_, shear = pose_.tan_theta;
+    // If the top wall rises, the points of the tilted sides move against it.
+    const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
+    if ((has(WallSide::left) || has(WallSide::right)) && shears_) {
+      add(text_, "variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
+      add(text_, "variable side_vx atom (y-v_top)*v_shear_rate{}", against);
+      carry("sides", "side_x", "side_vx", false);
     }
-    if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "rise");
+    if (has(WallSide::bottom) && shears_) {
+      add(text_, "variable bottom_x equal (v_bottom-v_top)*v_shear-({:.17g})",
+          (pose_.bottom - pose_.top) * d_ * shear);
+      add(text_, "variable bottom_vx equal (v_bottom-v_top)*v_shear_rate{}",
+          bottom_moves_ ? "+v_rising*v_shear" : against);
+    }
+    if (has(WallSide::bottom) && (shears_ || bottom_moves_)) {
+      carry("bottom", shears_ ? "bottom_x" : "zero", shears_ ? "bottom_vx" : "zero", bottom_moves_);
+    }
+    if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
   // A side plane turns about its end at the top wall.
   void side_plane(const char* name, double x, int normal) {
-    add(text_, "region {} plane {:.17g} {:.17g} 0 {} 0 0 side in units box{}{}", name, x, cell_.top,
-        normal, shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x, cell_.top) : "",
+    const double top = pose_.top * d_;
+    add(text_, "region {} plane {:.17g} {:.17g} 0 {} 0 0 side in units box{}{}", name, x * d_, top,
+        normal, shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x * d_, top) : "",
         shears_ && !bottom_moves_ ? " move NULL v_rise NULL" : "");
-    add(text_, "fix {0} grains wall/region {0} harmonic {1:.17g} 1 0.5", name,
-        scene_.stiffness / 2);
+    add(text_, "fix {} grains wall/region {} harmonic {:.17g} 1 {:.17g}", name, name,
+        scene_.stiffness / 2 * m_, 0.5 * d_);
   }
 
   // `wall/region` would work for these too, but reports the force on the wall for the first step
   // only.
   void flat_plane(const char* name, const char* face) {
-    add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 0.5 units box", name, face,
-        scene_.stiffness / 2);
+    add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 {3:.17g} units box", name,
+        face, scene_.stiffness / 2 * m_, 0.5 * d_);
   }
 
   void forces() {
+    add(text_, "\n# The planes of the four walls: springs of k, given as the energy k/2.");
     side_plane("left_plane", 0, 1);
     side_plane("right_plane", cell_.width, -1);
     flat_plane("bottom", "ylo");
     flat_plane("top", "yhi");
-    if (scene_.gravity != 0) {  // m g, whatever the mass is raised to
+    if (scene_.gravity != 0) {
+      add(text_, "\n# The weight m g, whatever the mass is raised to.");
       add(text_, "fix weight grains gravity {:.17g} vector 0 -1 0",
-          scene_.gravity / (1 + added(scene_.drag_rate)));
+          scene_.gravity * d_ / (1 + added(scene_.drag_rate)));
     }
     if (scene_.drag_rate != 0) {
-      add(text_, "fix drag grains viscous {:.17g}", scene_.drag_rate);
-      if (fluid_moves()) add(text_, "fix flow grains addforce v_flow 0 0");
+      add(text_, "\n# The drag of the fluid.");
+      add(text_, "fix drag grains viscous {:.17g}", scene_.drag_rate * m_);
+      if (fluid_moves()) {
+        add(text_, "variable flow atom {:.17g}*(y-v_top)*v_shear_rate",
+            scene_.drag_rate * fluid_share(scene_.fluid) * m_);
+        add(text_, "fix flow grains addforce v_flow 0 0");
+      }
     }
     const char* moving = bottom_moves_ ? "bottom" : "top";
     const auto grains = static_cast<std::size_t>(task_.state.position.cols());
     const double load = scene_.pressure * area_ + carried_weight(scene_, cell_, grains);
     std::string force =
-        fmt::format("{:.17g}+f_{}_plane[1]", (bottom_moves_ ? 1 : -1) * load, moving);
+        fmt::format("{:.17g}+f_{}_plane[1]", (bottom_moves_ ? 1 : -1) * load * m_ * d_, moving);
     if (has(bottom_moves_ ? WallSide::bottom : WallSide::top)) {
       force += fmt::format("+fcm({},y)", moving);
     }
@@ -159,23 +220,31 @@ class Deck {
       const double mass = area_ * (scene_.wall_mass + added(scene_.wall_drag));
       const double stop = area_ * scene_.wall_drag - mass / scene_.time_step;
       const auto turn = task_.drive.steps_per_cycle;
-      force = fmt::format("({0})*(v_phase<{1})+{2:.17g}*vy[{3}]*(v_phase>={1})", force, turn, stop,
-                          grains + 1);
+      force = fmt::format("({0})*(v_phase<{1})+{2:.17g}*vy[{3}]*(v_phase>={1})", force, turn,
+                          stop * m_, wall_);
     }
+    add(text_, "\n# The moving wall: its load, the forces of its plane and wall grains, its drag.");
     add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
     if (scene_.wall_drag != 0) {
-      add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_);
+      add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_ * m_);
     }
   }
 
-  // Our velocities are those of half a step before, LAMMPS's those of the step. Half a kick with
-  // the forces of `run 0` is added at the start; half a kick is subtracted in each frame.
-  void steps() {
-    const double half = 0.5 * scene_.time_step;
+  // Our velocities are those of half a step before, LAMMPS's those of the step.
+  void begin() {
+    add(text_, "\n# The velocities of the data file are those of half a step before: half a kick.");
+    add(text_, "# Under mpirun each process gets equally many grains.");
     for (const char axis : {'x', 'y', 'z'}) {
-      add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half);
-      add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half);
+      add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
     }
+    add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
+    add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
+    add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
+  }
+
+  double half_step() const { return 0.5 * scene_.time_step; }
+
+  void stopping() {
     // One process checks for the file, so that all processes get the same answer.
     add(text_, "variable asked atom is_file(stop)\ncompute asked wall reduce sum v_asked");
     add(text_,
@@ -183,10 +252,13 @@ class Deck {
         "message no",
         task_.check_every);
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
-    // Under mpirun each process gets equally many grains, however far the wall grains reach.
-    add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
-    add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
-    add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
+  }
+
+  // Half a kick is subtracted in each frame.
+  void frames() {
+    for (const char axis : {'x', 'y', 'z'}) {
+      add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
+    }
     add(text_, "variable next equal (floor(step/{0})+1)*{0}", task_.stride);
     add(text_, "label next");
     add(text_, "variable goal string $(v_next*(v_next<{0})+{0}*(v_next>={0}):%.0f)", task_.end);
@@ -199,24 +271,42 @@ class Deck {
         task_.end);
   }
 
+  // A cycle, or of a packing a second. What is defined after the first `run` would need another
+  // setup, in which the drag of the kicked velocities would replace that of the half step.
+  void watching(std::string_view name) {
+    const auto steps = shears_ ? cycle_steps(task_.drive)
+                               : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
+    add(text_, "\n# How long, and how often positions are written: lmp -in in.{} -var steps 1000",
+        name);
+    add(text_, "variable steps index {}\nvariable every index {}", steps,
+        std::max<std::uint64_t>(1, steps / 20));
+    add(text_, "thermo ${{every}}\nthermo_style custom step time ke v_bottom v_top{}",
+        shears_ ? " v_theta" : "");
+    add(text_, "dump frames all custom ${{every}} {}.lammpstrj id type diameter x y z vx vy vz",
+        name);
+    add(text_, "dump_modify frames sort id format float %.12g");
+  }
+
+  void to_the_end(std::string_view name) {
+    add(text_, "run ${{steps}} pre no");
+    add(text_, "\n# The grains at the end, which a manifest can start from.");
+    add(text_,
+        "write_dump grains custom {}_end.dump id x y z vx vy vz modify sort id format float %.17g",
+        name);
+  }
+
   const LammpsTask& task_;
   const Cell& cell_;
   const Scene& scene_;
-  double area_;
+  double d_, m_;       // the units of length and mass of the text
+  double area_;        // of the moving wall [d^2]
+  WallPose pose_;      // at the beginning
+  Eigen::Index wall_;  // id of the moving wall's atom
   bool bottom_moves_;
   bool shears_;
   bool holds_;  // the moving wall, during a pause
   std::string text_;
 };
-
-void add_atom(std::string& text, Eigen::Index id, int type, const Eigen::Vector3d& p) {
-  constexpr double density = 6 / std::numbers::pi;  // mass 1
-  add(text, "{} {} 1 {:.17g} {:.17g} {:.17g} {:.17g}", id, type, density, p.x(), p.y(), p.z());
-}
-
-void add_velocity(std::string& text, Eigen::Index id, const Eigen::Vector3d& v) {
-  add(text, "{} {:.17g} {:.17g} {:.17g} 0 0 0", id, v.x(), v.y(), v.z());
-}
 
 // Reads numbers from a text that may be damaged.
 class Numbers {
@@ -254,40 +344,40 @@ class Numbers {
 
 }  // namespace
 
-std::string lammps_data(const LammpsTask& task) {
-  const State& state = task.state;
-  const Eigen::Index grains = state.position.cols();
-  const auto planted = static_cast<Eigen::Index>(task.cell.wall_grains.size());
-  const Eigen::Vector3d wall(task.cell.width / 2, state.wall_height, task.cell.depth / 2);
-  double low = std::min(state.wall_height, task.cell.bottom);
-  double high = std::max(state.wall_height, task.cell.top);
-  for (const WallGrain& grain : task.cell.wall_grains) {
-    low = std::min(low, grain.position.y());
-    high = std::max(high, grain.position.y());
-  }
-  // The box must hold all atoms; LAMMPS shrinks it to them when the run begins.
-  const double reach = high - low + 2;
+std::string lammps_data(const Particles& all, std::string_view title) {
+  // A box for all particles and all planes, tilted ones too.
+  Eigen::Matrix3Xd corners(3, 4);
+  corners << all.origin, all.origin + all.edges.col(0), all.origin + all.edges.col(1),
+      all.origin + all.edges.rowwise().sum();
+  const Eigen::Vector3d low =
+      all.position.rowwise().minCoeff().cwiseMin(corners.rowwise().minCoeff()).array() - all.radius;
+  const Eigen::Vector3d high =
+      all.position.rowwise().maxCoeff().cwiseMax(corners.rowwise().maxCoeff()).array() + all.radius;
   std::string text;
-  add(text, "by shearcell: lengths in d, masses in m, times in s, velocities at step - 1/2\n");
-  add(text, "{} atoms\n{} atom types\n", grains + 1 + planted, +kWall);
-  add(text, "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n", -reach,
-      task.cell.width + reach, low - 2, high + 2, task.cell.depth);
+  add(text, "{}\n\n{} atoms\n{} atom types\n", title, all.particles(), +kTop);
+  add(text, "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n", low.x(),
+      high.x(), low.y(), high.y(), all.edges(2, 2));
   add(text, "Atoms # sphere\n");
-  for (Eigen::Index i = 0; i < grains; ++i) add_atom(text, i + 1, kGrain, state.position.col(i));
-  add_atom(text, grains + 1, kWall, wall);
-  Eigen::Index id = grains + 2;
-  for (const WallGrain& grain : task.cell.wall_grains) {
-    add_atom(text, id++, type_of(grain.side), grain.position);
+  const double density = all.mass / (4.0 / 3.0 * std::numbers::pi * std::pow(all.radius, 3));
+  for (std::size_t i = 0; i < all.particles(); ++i) {
+    const auto r = all.position.col(static_cast<Eigen::Index>(i));
+    add(text, "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}", i + 1, all.type[i] + 1, 2 * all.radius,
+        density, fmt::join(r, " "), all.image[i]);
   }
   add(text, "\nVelocities\n");
-  for (Eigen::Index i = 0; i < grains; ++i) add_velocity(text, i + 1, state.velocity.col(i));
-  add_velocity(text, grains + 1, {0, state.wall_velocity, 0});
-  for (id = grains + 2; id < grains + 2 + planted; ++id) add_velocity(text, id, {0, 0, 0});
+  for (std::size_t i = 0; i < all.particles(); ++i) {
+    const auto v = all.velocity.col(static_cast<Eigen::Index>(i));
+    add(text, "{} {:.17g} 0 0 0", i + 1, fmt::join(v, " "));
+  }
   return text;
 }
 
 std::string lammps_deck(const LammpsTask& task) {
-  return Deck(task).text();
+  return Deck(task).for_engine();
+}
+
+std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name) {
+  return Deck(task).for_users(data, name);
 }
 
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
@@ -305,11 +395,11 @@ State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   std::vector<bool> seen(grains + 1, false);
   for (std::size_t row = 0; row <= grains; ++row) {
     const auto id = numbers.next<std::size_t>();
-    if (id < 1 || id > grains + 1 || seen[id - 1]) numbers.refuse();
-    seen[id - 1] = true;
+    if (id < 1 || seen[std::min(id - 1, grains)]) numbers.refuse();
+    seen[std::min(id - 1, grains)] = true;
     Eigen::Matrix<double, 6, 1> v;
     for (double& value : v) value = numbers.next<double>();
-    if (id == grains + 1) {
+    if (id > grains) {  // the moving wall
       state.wall_height = v(1);
       state.wall_velocity = v(4);
     } else {

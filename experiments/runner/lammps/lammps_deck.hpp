@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stage of shear as LAMMPS reads it: a data file and an input deck, and the frames that come
-// back. README.md lists how each part of the scene is written, and why every mass is raised by
-// b dt/2.
+// A state and what acts on it as LAMMPS reads them: a data file and an input deck, and the frames
+// that come back. README.md lists how each part of the scene is written, and why every mass is
+// raised by b dt/2.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/cell.hpp"
 #include "core/scene.hpp"
 #include "core/state.hpp"
+#include "experiments/runner/particles.hpp"
 
 namespace shearcell {
 
@@ -23,21 +25,29 @@ struct LammpsTask {
   std::uint64_t stride = 1;         ///< a frame at every multiple of it, and at the end
   std::uint64_t check_every = 100;  ///< steps between two checks for a file `stop`, which ends it
   bool added_mass = true;           ///< false: the drag as LAMMPS users take it, wrong by order dt
+  Units units = {1, 1};             ///< of lengths and masses in the deck; those of the data file
 };
 
-/// The file `scene.data`: grains (ids 1 .. N), an atom for the moving wall (N + 1), wall grains.
-/// Lengths in d, masses in m, times in s.
-std::string lammps_data(const LammpsTask& task);
+/// A data file (atom_style sphere): ids from 1, grains first; type 1 is a grain, 2 to 5 are the
+/// wall grains of the left, right, bottom and top wall. LAMMPS drops atoms outside the box, so the
+/// box, which is upright, includes the wall grains and the planes. `title` is its first line.
+std::string lammps_data(const Particles& particles, std::string_view title);
 
-/// The input deck. It runs in a folder with `scene.data` and writes each frame there as
-/// `frame.STEP`, renamed to that when complete. If a file `stop` appears, it writes one more frame
-/// and ends.
+/// The input deck. It runs in a folder with the task's particles as `scene.data` and writes each
+/// frame there as `frame.STEP`, renamed to that when complete. If a file `stop` appears, it writes
+/// one more frame and ends.
 std::string lammps_deck(const LammpsTask& task);
+
+/// An input script for users, with comments: it continues from the file `data`, whose units are the
+/// task's and SI, by a cycle or as many steps as its variable `steps`, and writes NAME.lammpstrj
+/// and NAME_end.dump. The task's `end`, `stride` and `check_every` have no effect.
+std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
 
 /// Limit for files that LAMMPS writes [bytes]; none comes near it.
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
-/// Reads a frame. Throws ProgramError, with the file's name, unless it is a complete state of this
+/// Reads a frame, whose ids are those of the data file; an id above those of the grains is the
+/// moving wall. Throws ProgramError, with the file's name, unless it is a complete state of this
 /// number of grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/drive.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
@@ -108,7 +109,11 @@ std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks) {
 
 std::unique_ptr<ChildProcess> start_lammps(const LammpsProgram& program, const LammpsTask& task,
                                            const fs::path& folder, std::size_t ranks) {
-  write_output(folder / "scene.data", lammps_data(task));
+  const WallPose pose =
+      wall_pose(task.cell, tilt(task.drive, task.state.step).theta, task.state.wall_height);
+  write_output(folder / "scene.data",
+               lammps_data(particles_of(task.cell, pose, task.state, 0, task.units),
+                           "by shearcell: lengths in d, masses in m, times in s"));
   write_output(folder / "deck.in", lammps_deck(task));
   std::vector<std::string> words = {program.path, "-in",     "deck.in", "-log",
                                     "log",        "-screen", "none"};

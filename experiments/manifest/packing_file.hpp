@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Positions of equal grains from a text of another program: XYZ and extended XYZ, LAMMPS data and
+// LAMMPS dumps, CSV with a header. README.md lists what is read of each.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/named.hpp"
+
+namespace shearcell {
+
+/// Of the lengths of a file: metres or grain diameters.
+enum class LengthUnit : std::uint8_t { m, d };
+template <>
+inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
+
+/// An upright box [d].
+struct PackingBox {
+  Eigen::Vector3d low, high;
+};
+
+/// The grains, by id if the file has ids, else in its order. Wall grains that an export of this
+/// program holds are left out.
+struct PackingFile {
+  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z within the box if there is one
+  std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
+  std::optional<PackingBox> box;             ///< of an export, the planes of its cell
+};
+
+/// What a file may leave to the manifest and to the parameters of the run.
+struct PackingFacts {
+  std::optional<LengthUnit> unit = {};  ///< for a file that does not state one
+  double diameter_m = 0;                ///< of the run's grains
+  double largest_overlap = 0;           ///< of two grains [d], below 1
+};
+
+/// Largest text [bytes].
+inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
+
+/// Reads the text of a file of this name. The format is that of the content; the name decides what
+/// is said of a text that has none of the formats. Positions are not moved, except that z is
+/// wrapped into the box. Throws ManifestError, with line, value and remedy, if the text is not a
+/// packing of equal grains within its box that overlap by at most facts.largest_overlap, across the
+/// periodic boundary in z too if there is a box.
+PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
+
+}  // namespace shearcell

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/manifest/start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "core/diagnostics.hpp"
+#include "core/simulation.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/document.hpp"
+#include "experiments/manifest/schema.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/sha256.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+bool has_swept_values(const std::string& variant, const std::string& wanted) {
+  return wanted.empty() || Filter(std::vector{wanted}).passes(variant);
+}
+
+/// The parameters of the packing that the cell, its grains and their units depend on are those of
+/// the recorded run.
+void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
+                       const Stage& recorded) {
+  const Parameters had = read_stage(recorded.resolved).parameters;
+  for (const Field& field : schema()) {
+    const bool of_packing = field.identity.stage == StageKind::prepare &&
+                            field.identity.distinguishes_runs() &&
+                            !field.name.starts_with("settle_");
+    if (!of_packing || may_differ_in_settling(field.name)) continue;
+    const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
+    if (mine == its) continue;
+    refuse(manifest.file, scale.start.at, std::string(field.name),
+           fmt::format("differs from that of run {:.8}, whose state this one begins with",
+                       recorded.id),
+           value_text(mine), fmt::format("State {}.", value_text(its)));
+  }
+}
+
+/// The nominal packing fraction at which the cell is so wide; nothing if there is none.
+std::optional<double> fraction_for_width(Geometry shape, double width) {
+  const Range& range = find_field("nominal_packing_fraction")->range;
+  double low = range.min, high = range.max;  // a denser cell is narrower
+  const auto width_at = [&](double fraction) {
+    shape.nominal_packing_fraction = fraction;
+    return cell_width(shape);
+  };
+  if (width_at(low) < width || width_at(high) > width) return std::nullopt;
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    (width_at(middle) > width ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Puts the grains between the planes of the cell. Throws ManifestError.
+State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
+               const Parameters& p) {
+  constexpr double tolerance = 1e-6;  // of the width
+  const Eigen::Vector3d low = grains.box ? grains.box->low
+                                         : Eigen::Vector3d(grains.position.rowwise().minCoeff()) -
+                                               Eigen::Vector3d::Constant(0.5);
+  const Eigen::Vector3d high = grains.box ? grains.box->high
+                                          : Eigen::Vector3d(grains.position.rowwise().maxCoeff()) +
+                                                Eigen::Vector3d::Constant(0.5);
+  const Eigen::Vector3d size = high - low;
+  for (const int axis : {0, 2}) {
+    const double room = axis == 0 ? cell.width : cell.depth;
+    const bool fits = grains.box ? std::fabs(size[axis] - room) <= tolerance * room
+                                 : size[axis] - (axis == 0 ? 0 : 1) <= room * (1 + tolerance);
+    if (fits) continue;
+    const auto fraction = fraction_for_width(geometry(p), size[axis]);
+    refuse(path, {}, "",
+           fmt::format("its {} are {:.9g} d {}, and the cell of the manifest is {:.9g} d",
+                       grains.box ? "box and grains" : "grains", size[axis],
+                       axis == 0 ? "wide (x)" : "deep (z)", room),
+           "",
+           fraction ? fmt::format("State `nominal_packing_fraction: {:.10g}`, which with this "
+                                  "height_over_width makes the cell as wide and deep as that.",
+                                  *fraction)
+                    : "Use a file with a cell of another size.");
+  }
+  const bool from_below = cell.moving == MovingWall::top;  // which plane stays
+  const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),
+                                 from_below ? cell.bottom - low.y() : cell.top - high.y(),
+                                 -low.z()};
+  State state;
+  state.position = grains.position.colwise() + shift;
+  state.velocity =
+      grains.velocity ? *grains.velocity : Eigen::Matrix3Xd::Zero(3, grains.position.cols());
+  state.wall_height = from_below ? cell.bottom + size.y() : cell.top - size.y();
+  return state;
+}
+
+/// Limit of the overlaps of a packing that is sheared at once, or of one that settles.
+double overlap_limit(const StartFile& file, const Parameters& p) {
+  return file.settles ? std::max(p.max_overlap_diameters, 0.9 * kLargestOverlapLimit)
+                      : p.max_overlap_diameters;
+}
+
+}  // namespace
+
+const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
+                          std::span<const Stage> known) {
+  const Start& start = scale.start;
+  const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
+  std::vector<const Stage*> found;
+  for (const Stage& stage : known) {
+    if (stage.kind != name_of(StageKind::shear)) continue;
+    const auto is_it = [&](const Ask& ask) {
+      return ask.newest && ask.experiment == start.experiment &&
+             scale_name(ask.scale) == scale_name(at_scale) &&
+             ask.seed == variant.parameters.start_seed &&
+             has_swept_values(ask.variant, start.variant);
+    };
+    const bool fits = start.run.empty() ? std::ranges::any_of(stage.asks, is_it)
+                                        : stage.id.starts_with(start.run);
+    if (fits) found.push_back(&stage);
+  }
+  const std::string what =
+      start.run.empty()
+          ? fmt::format("run of {} at scale {} with seed {}{}", start.experiment,
+                        scale_name(at_scale), variant.parameters.start_seed,
+                        start.variant.empty() ? "" : " and " + printable(start.variant))
+          : fmt::format("shear whose id begins with {}", start.run);
+  if (found.empty()) {
+    refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
+           "Compute it first, or name the store that has it with --store.");
+  }
+  if (found.size() > 1) {
+    refuse(manifest.file, start.at, "start", fmt::format("the store has more than one {}", what),
+           "",
+           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`."
+                             : "State more digits of the id.");
+  }
+  const double cycle = static_cast<double>(variant.parameters.start_cycle);
+  if (found.front()->cycle < cycle) {
+    refuse(manifest.file, start.at, "start",
+           fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
+           fmt::format("cycle {}", found.front()->cycle), "Extend it first.");
+  }
+  require_same_cell(manifest, scale, variant, *found.front());
+  return *found.front();
+}
+
+PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::path(manifest.file).parent_path() / scale.start.file;
+  PackingText packing{path.string(), read_text(path, kLargestPackingFile), {}};
+  packing.file = {sha256_hex(packing.text), scale.start.unit, scale.settle_at.line > 0};
+  return packing;
+}
+
+PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64_t seed,
+                    const Poll& poll) {
+  const double limit = overlap_limit(packing.file, p);
+  const PackingFile grains = read_packing(
+      packing.text, packing.path,
+      {.unit = packing.file.unit, .diameter_m = p.diameter_m, .largest_overlap = limit});
+  const auto count = static_cast<std::uint64_t>(grains.position.cols());
+  if (count != p.grains) {
+    refuse(packing.path, {}, "",
+           fmt::format("has {}, and the manifest {}", counted(count, "grain"), p.grains), "",
+           fmt::format("State `grains: {}`.", count));
+  }
+  PlacedGrains made{make_cell(geometry(p), seed, poll), {}};
+  made.state = state_in(made.cell, grains, packing.path, p);
+  double deepest = 0;
+  const WallPose pose = wall_pose(made.cell, 0, made.state.wall_height);
+  for_each_contact(made.cell, made.state.position, pose, [&](const Contact& contact) {
+    if (contact.kind != Contact::Kind::grain) deepest = std::max(deepest, contact.overlap);
+  });
+  if (deepest > limit) {
+    refuse(packing.path, {}, "",
+           fmt::format("a grain overlaps a wall by {:.3g} d, more than {:g} d", deepest, limit), "",
+           fmt::format("Leave the grains of rough walls room (`walls: smooth` has none){}.",
+                       packing.file.settles ? "" : ", or let them settle first: `settle: {}`"));
+  }
+  return made;
+}
+
+}  // namespace shearcell

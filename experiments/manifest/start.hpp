@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a shear begins, if not with loose grains that settle: with the recorded state of another
+// run, or with the grains of a file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/cell.hpp"
+#include "core/filling.hpp"
+#include "core/state.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/variants.hpp"
+#include "provenance/records.hpp"
+
+namespace shearcell {
+
+/// The recorded run of `known` whose state the variant begins with. Throws ManifestError if there
+/// is not exactly one, if it has not reached the cycle, or if its cell or grains are others.
+const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
+                          std::span<const Stage> known);
+
+/// The text of a file of grains, and what the id of its packing holds of it.
+struct PackingText {
+  std::string path;  ///< as messages name it
+  std::string text;
+  StartFile file;
+};
+
+/// Reads the file that `start` names, from the folder of the manifest. Throws ManifestError.
+PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
+
+struct PlacedGrains {
+  Cell cell;
+  State state;  ///< at step 0; the moving wall is at rest
+};
+
+/// The cell of the parameters, with the wall grains of the seed, and in it the grains of the text.
+/// The box of the file must be as wide and deep as the cell; without a box the walls touch the
+/// outermost grains. Throws ManifestError with the reason and the remedy if they do not fit.
+PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
+                    const Poll& poll = {});
+
+}  // namespace shearcell

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packings of other programs: what is read, and every bad file with its message.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "experiments/manifest/manifest.hpp"
+#include "experiments/manifest/packing_file.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/text.hpp"
+
+namespace shearcell::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const PackingFacts kInD{.unit = LengthUnit::d, .diameter_m = 3e-3, .largest_overlap = 0.25};
+const PackingFacts kUnstated{.diameter_m = 3e-3, .largest_overlap = 0.25};
+
+const std::string kLattice = "Lattice=\"9 0 0 0 9 0 0 0 9\" ";
+
+std::string xyz(const std::string& comment, const std::string& rows, int count = 2) {
+  return fmt::format("{}\n{}\n{}", count, comment, rows);
+}
+
+std::string data(const std::string& header, const std::string& sections) {
+  return "title\n\n2 atoms\n1 atom types\n" + header + "\n" + sections;
+}
+
+const std::string kBounds = "0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n";
+const std::string kAtoms = "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3\n";
+
+std::string dump(const std::string& columns, const std::string& rows) {
+  return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff pp\n0 9\n0 9\n0 9\n"
+         "ITEM: ATOMS " +
+         columns + "\n" + rows;
+}
+
+struct BadPacking {
+  std::string name, file, text, message;
+  PackingFacts facts = kInD;
+};
+
+void PrintTo(const BadPacking& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+const std::string kFormats =
+    "It takes extended XYZ (its first line is the number of grains), LAMMPS data (\"500 atoms\" in "
+    "its header), a LAMMPS dump, or CSV whose first line names the columns, as x_m,y_m,z_m.";
+const std::string kDeep =
+    "At most 0.25 d (`max_overlap_diameters`): are the unit of the lengths and the diameter right? "
+    "If so, let the grains relax in the program that made them.";
+
+const std::vector<BadPacking> kBad = {
+    {"Empty", "a.xyz", "", "a.xyz: is empty. " + kFormats},
+    {"Blank", "a.csv", " \r\n\n", "a.csv: is empty. " + kFormats},
+    {"Picture", "a.xyz", std::string("\x89PNG\r\n\x1a\n\0", 9),
+     "a.xyz:1:1: is not valid UTF-8. Save the file as UTF-8 text."},
+    {"Binary", "a.data", std::string("12\0\0", 4),
+     "a.data:1:3: holds the control character 0x00. Save the positions as text: extended XYZ, "
+     "LAMMPS data or CSV."},
+    {"Latin1", "a.csv", "x,y,z\n1,2,\xe9\n",
+     "a.csv:2:5: is not valid UTF-8. Save the file as UTF-8 text."},
+    {"Prose", "a.txt", "Dear reader\n",
+     "a.txt: is none of the formats that can be read. " + kFormats},
+    {"TooLarge", "a.xyz", std::string(kLargestPackingFile + 1, '1'),
+     "a.xyz: is larger than 32 MiB. Leave out columns that are not positions, velocities or "
+     "radii."},
+    {"UnitUnstated", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz: does not state the unit of its lengths. Write `unit: m` or `unit: d` (grain "
+     "diameters) "
+     "beside `file` in the manifest.",
+     kUnstated},
+    {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
+     "a.csv:1:1: states lengths in m. The manifest says `unit: d`: leave that out."},
+    {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:13: length_unit: is not read (got nm). It takes m or d."},
+    {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
+     "a.csv:1:9: is in another unit than the columns before (got z_d). Write all lengths in _m or "
+     "all in _d.",
+     kUnstated},
+    {"NotANumber", "a.xyz", xyz("", "A 1 1 1\nA 3 three 3\n"),
+     "a.xyz:4:5: y: is not a number (got three). Write it in decimal digits, as 1.5e-3."},
+    {"NaN", "a.xyz", xyz("", "A 1 1 nan\nA 3 3 3\n"),
+     "a.xyz:3:7: z: is not finite, or beyond 1e100 (got nan). Remove this grain, or mend its "
+     "value."},
+    {"Infinite", "a.csv", "x,y,z\n1,2,-inf\n",
+     "a.csv:2:5: z: is not finite, or beyond 1e100 (got -inf). Remove this grain, or mend its "
+     "value."},
+    {"BeyondDouble", "a.csv", "x,y,z\n1,2,1e999\n",
+     "a.csv:2:5: z: is not a number (got 1e999). Write it in decimal digits, as 1.5e-3."},
+    {"DecimalComma", "a.csv", "x;y;z\n1,5;2;3\n",
+     "a.csv:2:1: x: is not a number (got 1,5). A number takes a decimal point: 1.5."},
+    {"DecimalCommasAmongCommas", "a.csv", "x,y,z\n1,5,2,5,3,5\n",
+     "a.csv:2:1: has 6 fields instead of 3. Numbers take a decimal point, not a comma."},
+    {"FieldMissing", "a.csv", "x,y,z\n1,2,3\n4,5\n",
+     "a.csv:3:1: has 2 fields instead of 3. Each grain is one line with a value for each column."},
+    {"ColumnMissing", "a.csv", "x,y,radius\n1,2,0.5\n",
+     "a.csv:1:1: the column z is missing. The first line names the columns, as x_m,y_m,z_m."},
+    {"VelocityIncomplete", "a.csv", "x,y,z,vx\n1,2,3,0\n",
+     "a.csv:1:1: the column vy is missing. The first line names the columns, as x_m,y_m,z_m."},
+    {"ColumnTwice", "a.csv", "x,y,z,x\n1,2,3,4\n",
+     "a.csv:1:7: names a column that stands there twice (got x). Keep one of them."},
+    {"HeaderAlone", "a.csv", "x,y,z\n", "a.csv:1:1: the file holds no grains. " + kFormats},
+    {"HeaderMissing", "a.csv", "1,2,3\n",
+     "a.csv:1:1: the column x is missing. The first line names the columns, as x_m,y_m,z_m."},
+    {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
+     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Write the whole file, "
+     "or "
+     "correct the number."},
+    {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
+     "a.xyz:5:1: the file goes on after the 2 grains that line 1 states. Keep one frame, or "
+     "correct "
+     "the number."},
+    {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file holds no grains. " + kFormats},
+    {"CountAlone", "a.xyz", "5",
+     "a.xyz:1:1: the file ends after this line. It lacks the comment and the grains."},
+    {"PropertiesWithoutPositions", "a.xyz", xyz("Properties=species:S:1:radius:R:1", "A 1\nA 1\n"),
+     "a.xyz:2:1: the column x is missing. Properties holds pos:R:3, and vel:R:3 if there are "
+     "velocities."},
+    {"PropertiesCut", "a.xyz", xyz("Properties=species:S:1:pos:R", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:24: Properties: is not a column (got pos). A column is NAME:TYPE:COUNT, as in "
+     "species:S:1:pos:R:3."},
+    {"PropertiesFlat", "a.xyz", xyz("Properties=pos:R:2", "1 1\n3 3\n"),
+     "a.xyz:2:18: Properties: is not the number of columns of pos (got 2). It takes 3."},
+    {"KeyTwice", "a.xyz", xyz(kLattice + kLattice, "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:29: is a key that stands there twice (got Lattice). Keep one of them."},
+    {"BoxLeans", "a.xyz", xyz("Lattice=\"9 0 0 0.5 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. A start is upright. Of a sheared "
+     "cell, write the state at the end of a cycle."},
+    {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:1: the box is -9 long in y. Its edges are positive."},
+    {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
+     "a.xyz:2:1: Lattice or Origin is not complete. They take 9 and 3 numbers: the edges of the "
+     "box "
+     "and its corner."},
+    {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
+     "a.xyz:2:1: the box is 2 d deep in z. At least 3 d: is the unit of its lengths right?"},
+    {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
+     "a.xyz:4:1: the grain is outside of the box: y = -3 d is not from 0 to 9 d. Only z is "
+     "periodic: "
+     "wrap x and y into the box, or write a larger box."},
+    {"TooLong", "a.xyz", xyz("", "A 1 1 1\nA 3e9 3 3\n"),
+     "a.xyz: the packing is 3e+09 d long. At most 100000 d: is the unit of its lengths right?"},
+    {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
+     "a.xyz:4:1: the grain is at the place of that of line 3. " + kDeep},
+    {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
+     "a.xyz:4:1: the grain overlaps that of line 3 by 0.5 d. " + kDeep},
+    {"OverlappingAcrossTheBoundary", "a.xyz", xyz(kLattice, "A 1 1 0.25\nA 1 1 8.75\n"),
+     "a.xyz:4:1: the grain overlaps that of line 3 by 0.5 d. " + kDeep},
+    {"RadiiUnequal", "a.xyz",
+     xyz("Properties=species:S:1:pos:R:3:radius:R:1", "A 1 1 1 0.5\nA 3 3 3 0.6\n"),
+     "a.xyz:4:1: the grains have diameters from 1 (line 3) to 1.2, 20 % larger. All grains of this "
+     "program are equal. Continue such a packing in LAMMPS (`shearcell export --to lammps` writes "
+     "a "
+     "script for it)."},
+    {"RadiusOfZero", "a.csv", "x,y,z,radius\n1,2,3,0\n",
+     "a.csv:2:1: the diameter is 0. It must be positive."},
+    {"DiameterOfAnotherRun", "a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,0.002\n",
+     "a.csv:2:1: the diameter is 0.002 m. The run's is 0.003 m: set `diameter_m`, or scale the "
+     "file.",
+     kUnstated},
+    {"DiameterNotOne", "a.csv", "x,y,z,radius\n1,2,3,1\n",
+     "a.csv:2:1: the diameter is 2 d. Lengths in d are divided by the diameter, so it is 1."},
+    {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
+     "a.csv:3:1: the id 7 is that of line 2, too. Each grain has an id of its own."},
+    {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
+     "a.data:3:1: states 2 atoms, and there are 1. Write the whole file, or correct the number."},
+    {"DataWithoutAtoms", "a.data", data(kBounds, ""),
+     "a.data:3:1: states 2 atoms, and there are 0. Write the whole file, or correct the number."},
+    {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
+     "a.data:11:1: the atom style full is not read. Write the data file with atom_style sphere or "
+     "atomic."},
+    {"DataOfNoStyle", "a.data", data(kBounds, "Atoms\n\n1 1 0 1 1 1\n"),
+     "a.data:11:1: an atom of 6 fields is not read. Write the data file with atom_style sphere or "
+     "atomic."},
+    {"DataTilted", "a.data", data(kBounds + "1 0 0 xy xz yz\n", kAtoms),
+     "a.data:8:1: the box is not orthogonal: an edge leans by 1. A start is upright. Of a sheared "
+     "cell, write the state at the end of a cycle."},
+    {"DataReversed", "a.data", data("9 0 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n", kAtoms),
+     "a.data:7:1: the box is -9 long in x. Its edges are positive."},
+    {"DataVelocityMissing", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n"),
+     "a.data:16:1: atom 2 has no velocity. Write a velocity for each atom, each once, or leave the "
+     "section out."},
+    {"DataVelocityOfNone", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n"),
+     "a.data:17:1: atom 3 has two velocities, or no position. Write the whole file."},
+    {"DataNotANumber", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3,5\n"),
+     "a.data:12:9: z: is not a number (got 3,5). A number takes a decimal point: 3.5."},
+    {"DumpScaled", "a.dump", dump("id type xs ys zs", "1 1 0.1 0.1 0.1\n2 1 0.3 0.3 0.3\n"),
+     "a.dump:9:1: the column x is missing. Write them: dump ... custom ... id x y z vx vy vz."},
+    {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
+     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
+     "or correct the number."},
+    {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
+     "a.dump:12:1: the file goes on after the 2 grains that line 4 states. Keep one frame, or "
+     "correct the number."},
+    {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
+     "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
+};
+
+class PackingFileBad : public testing::TestWithParam<BadPacking> {};
+
+TEST_P(PackingFileBad, IsRejectedWithItsMessage) {
+  const BadPacking& bad = GetParam();
+  EXPECT_EQ(message_of<ManifestError>([&] { read_packing(bad.text, bad.file, bad.facts); }),
+            bad.message);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, PackingFileBad, testing::ValuesIn(kBad),
+                         [](const auto& bad) { return bad.param.name; });
+
+/// Two grains at (1, 1, 1) and (3, 3, 3) d.
+void expect_two(const std::string& file, const std::string& text, const PackingFacts& facts) {
+  SCOPED_TRACE(text);
+  const PackingFile packing = read_packing(text, file, facts);
+  ASSERT_EQ(packing.position.cols(), 2);
+  EXPECT_LT((packing.position.col(0) - Eigen::Vector3d(1, 1, 1)).norm(), 1e-12);
+  EXPECT_LT((packing.position.col(1) - Eigen::Vector3d(3, 3, 3)).norm(), 1e-12);
+}
+
+TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
+  expect_two("a", xyz("", "A 1 1 1\nA 3 3 3\n"), kInD);
+  expect_two("a.xyz", "2\r\n\r\nA 1 1 1\r\nA 3 3 3\r\n\r\n", kInD);
+  expect_two("a.xyz", xyz("length_unit=m", "A .003 3e-3 +3E-3 extra\nA 0.009 0.009 0.009"),
+             kUnstated);
+  expect_two("a.csv", "\xEF\xBB\xBF\"x\";\"y\";\"z\"\n1;1;1\n\n3;3;3\n", kInD);
+  expect_two("a.csv", "# x_d, y_d, z_d\n1, 1, 1\n3, 3, 3\n", kUnstated);
+  expect_two("a.txt", "z_m\tname\ty_m\tx_m\n0.003\tA\t0.003\t0.003\n0.009\tA\t0.009\t0.009\n",
+             kUnstated);
+  expect_two("a.csv", "id,x,y,z\n2,3,3,3\n1,1,1,1\n", kInD);
+  expect_two("a.data", data(kBounds, kAtoms), kInD);
+  expect_two("a.data", data("0 0 0 xy xz yz\n", "Atoms\n\n2 1 3 3 3 0 0 0\n1 1 1 1 1 0 0 0\n"),
+             kInD);
+  expect_two("a.dump", dump("id type xu yu zu", "2 1 3 3 3\n1 1 1 1 10\n"), kInD);  // z is wrapped
+}
+
+/// The numbers of truth.csv.
+PackingFile truth(const fs::path& folder) {
+  return read_packing(read_bytes(folder / "truth.csv"), "truth.csv", kUnstated);
+}
+
+TEST(PackingFile, ScriptsAseAndLammpsAreRead) {
+  const TemporaryFolder folder;
+  const fs::path& at = folder.path();
+  const std::string script =
+      fs::path(SHEARCELL_TEST_DATA) / ".." / "experiments" / "write_packings.py";
+  ASSERT_EQ(std::system(("/usr/bin/python3 " + script + " " + at.string()).c_str()), 0);
+  const PackingFile expected = truth(at);
+  ASSERT_EQ(expected.position.cols(), 500);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(at)) {
+    const std::string name = entry.path().filename().string();
+    SCOPED_TRACE(name);
+    const PackingFile packing =
+        read_packing(read_bytes(entry.path()), name, name == "truth.csv" ? kUnstated : kInD);
+    // XYZ of ASE has 8 decimals, dump xyz of LAMMPS has 6 digits.
+    const double rounding = name.find(".xyz") == name.npos || name == "plain.xyz" ? 1e-13 : 1e-4;
+    ASSERT_EQ(packing.position.cols(), 500);
+    EXPECT_LT((packing.position - expected.position).cwiseAbs().maxCoeff(), rounding);
+    const bool still = name.find("_still") != name.npos || name == "plain.xyz";
+    ASSERT_EQ(packing.velocity.has_value(), !still);
+    if (!still) {
+      EXPECT_LT((*packing.velocity - *expected.velocity).cwiseAbs().maxCoeff(), rounding);
+    }
+    const bool boxed = name.find(".csv") == name.npos && name != "plain.xyz" &&
+                       name.find("_still.xyz") == name.npos;
+    if (boxed) {
+      ASSERT_TRUE(packing.box);
+      EXPECT_EQ(packing.box->low, Eigen::Vector3d::Zero());
+      EXPECT_EQ(packing.box->high, Eigen::Vector3d(10, 12, 11));
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 5U);
+  std::printf("%zu files\n", files);
+}
+
+}  // namespace
+}  // namespace shearcell::test
