@@ -59,9 +59,10 @@ std::optional<double> fraction_for_width(Geometry shape, double width) {
   return 0.5 * (low + high);
 }
 
-/// Puts the grains between the planes of the cell. Throws ManifestError.
+/// Puts the grains between the planes of the cell, into which they may be pressed by `limit`.
+/// Throws ManifestError.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
-               const Parameters& p) {
+               const Parameters& p, double limit) {
   constexpr double tolerance = 1e-6;  // of the width
   const Eigen::Vector3d low = grains.box ? grains.box->low
                                          : Eigen::Vector3d(grains.position.rowwise().minCoeff()) -
@@ -72,8 +73,9 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
   const Eigen::Vector3d size = high - low;
   for (const int axis : {0, 2}) {
     const double room = axis == 0 ? cell.width : cell.depth;
-    const bool fits = grains.box ? std::fabs(size[axis] - room) <= tolerance * room
-                                 : size[axis] - (axis == 0 ? 0 : 1) <= room * (1 + tolerance);
+    // Without a box, grains may be pressed into the planes, and z is periodic.
+    const double over = size[axis] - room - (grains.box ? 0 : axis == 0 ? 2 * limit : 1);
+    const bool fits = grains.box ? std::fabs(over) <= tolerance * room : over <= tolerance * room;
     if (fits) continue;
     const auto fraction = fraction_for_width(geometry(p), size[axis]);
     refuse(path, {}, "",
@@ -170,7 +172,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
            fmt::format("State `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}};
-  made.state = state_in(made.cell, grains, packing.path, p);
+  made.state = state_in(made.cell, grains, packing.path, p, limit);
   double deepest = 0;
   const WallPose pose = wall_pose(made.cell, 0, made.state.wall_height);
   for_each_contact(made.cell, made.state.position, pose, [&](const Contact& contact) {

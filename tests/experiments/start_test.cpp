@@ -391,8 +391,11 @@ TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   other.replace(other.find("nominal_packing_fraction: 0.03"), 30, remedy);
   other.replace(other.find("fill_packing_fraction: 0.02"), 27, "fill_packing_fraction: 0.001");
   EXPECT_EQ(refusal_of(manifest("", other)), "") << "the remedy helps";
-  EXPECT_NE(refusal_of(manifest("sweep: {grid: {walls: [rough, smooth]}}\n", two)).find("wall"),
-            std::string::npos);
+  write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
+  const std::string rough = two.substr(two.find("  grains")) + "  max_overlap_diameters: 1.0e-6\n";
+  EXPECT_NE(refusal_of(manifest("", rough)).find("a grain overlaps a wall by 0."),
+            std::string::npos)
+      << refusal_of(manifest("", rough));
   std::filesystem::remove(folder_.path() / "grains.csv");
   EXPECT_NE(refusal_of(manifest("", two)).find("grains.csv: there is no such file"),
             std::string::npos);
