@@ -53,11 +53,12 @@ void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
 void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {
   find_lammps(options.parallel.ranks);
 } catch (const ProgramError& missing) {
-  const auto sweeps_engine = [](const PlannedRun& run) {
-    return run.variant.find("engine=shearcell") != run.variant.npos;
+  const auto is_ours = [](const PlannedRun& run) {
+    return run.parameters.engine == EngineKind::shearcell;
   };
-  const bool others = std::ranges::any_of(
-      plans, [&](const Plan& plan) { return std::ranges::any_of(plan.runs, sweeps_engine); });
+  const bool others = std::ranges::any_of(plans, [&](const Plan& plan) {
+    return asks_for_lammps(plan) && std::ranges::any_of(plan.runs, is_ours);
+  });
   if (!others) throw;
   throw ProgramError(std::string(missing.what()) +
                      ". `--variant engine=shearcell` computes the runs without it");
