@@ -385,7 +385,8 @@ class PackingReader {
     int stated_in = 0;
     std::vector<GrainRow> velocities;
     Layout moving;
-    for (const int q : {kId, kVx, kVy, kVz}) moving.set(q, q == kId ? 0 : q - kVx + 1);
+    moving.set(kId, 0);
+    for (std::size_t k = 0; k < 3; ++k) moving.set(kVx + static_cast<int>(k), k + 1);
     moving.fields = 4;
     moving.more_allowed = true;
     string section, style;

@@ -95,8 +95,10 @@ TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
 TEST_F(EngineRun, FailsWhereTheWatchdogRefusesAFrame) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   expect(0, {"run", write("m.yaml", tiny_manifest()), "--cycles", "0", "-q"});  // the packing
-  const std::string strict = write("strict.yaml", tiny_manifest("  max_overlap_diameters: 1e-4\n"));
-  expect(3, {"run", strict, "--engine", "lammps"}, {"overlap [d] of two grains", "0.0001"});
+  // Above the limit of speed that follows from it, 20 d/s, is no grain.
+  const std::string strict = write("strict.yaml", tiny_manifest("  max_overlap_diameters: 1e-3\n"));
+  expect(3, {"run", strict, "--engine", "lammps"},
+         {"overlap [d] of two grains", "over its limit of 0.001"});
   EXPECT_EQ(run_of("engine=lammps")["state"], "failed");
 }
 
@@ -149,7 +151,7 @@ TEST_F(EngineRun, ContinuesAfterAKill) {
 /// The end of the exported script's run in LAMMPS beside our continuation from the checkpoint.
 void expect_the_same_future(const Store& store, const std::string& id, double cycle,
                             const fs::path& folder) {
-  constexpr std::uint64_t steps = 300;
+  constexpr std::uint64_t steps = 200;
   const Stage stage = store.find_stage(id);
   const StageInputs inputs = read_stage(stage.resolved);
   const Parameters& p = inputs.parameters;
@@ -179,19 +181,19 @@ void expect_the_same_future(const Store& store, const std::string& id, double cy
   const double moved = (state.position - from.state.position).colwise().norm().maxCoeff();
   std::printf("%s: moved %.2g d, apart %.2g d\n", name.c_str(), moved,
               apart.colwise().norm().maxCoeff());
-  EXPECT_GT(moved, shears ? 1e-6 : 0);
   EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-9);
+  EXPECT_GT(moved, 1e3 * apart.colwise().norm().maxCoeff());
 }
 
 TEST_F(EngineRun, AnExportedScriptContinuesTheRun) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   const std::string phases = "checkpoints: {phases: [0.25, 0.6, 0.9]}\n";
-  write("plain.yaml", tiny_manifest("  cycles: 1\n", phases));
-  write("paused.yaml",
-        renamed(tiny_manifest("  cycles: 1\n  protocol: paused\n  pause_s: 0.5\n  fluid: cell\n"
-                              "  moving_wall: top\n",
-                              phases),
-                "paused"));
+  write("plain.yaml", tiny_manifest("  cycles: 1\n  steps_per_cycle: 20000\n", phases));
+  write("paused.yaml", renamed(tiny_manifest("  cycles: 1\n  steps_per_cycle: 20000\n  protocol: "
+                                             "paused\n  pause_s: 0.5\n  fluid: cell\n"
+                                             "  moving_wall: top\n",
+                                             phases),
+                               "paused"));
   expect(0, {"run", "plain.yaml", "paused.yaml", "-q"});
   for (const char* experiment : {"tiny", "paused"}) {
     std::string id;

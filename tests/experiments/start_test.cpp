@@ -291,12 +291,13 @@ class FromAFile : public Started {
     return run_campaign(store, declare(store, stated, expand(stated)), 2, {}, true);
   }
 
-  /// The grains of a state as a CSV file with a box.
-  static std::string as_csv(const State& state) {
+  /// The grains of a state as a CSV file, without a box.
+  static std::string as_csv(const State& state, double depth) {
     std::string text = "x_d,y_d,z_d,vx_d_per_s,vy_d_per_s,vz_d_per_s\n";
     for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
       const auto r = state.position.col(i), v = state.velocity.col(i);
-      text += fmt::format("{},{},{},{},{},{}\n", r.x(), r.y(), r.z(), v.x(), v.y(), v.z());
+      text += fmt::format("{},{},{},{},{},{}\n", r.x(), r.y(),
+                          r.z() - depth * std::floor(r.z() / depth), v.x(), v.y(), v.z());
     }
     return text;
   }
@@ -309,8 +310,9 @@ class FromAFile : public Started {
 TEST_F(FromAFile, ThePositionsOfASettledPackingAreShearedAtOnce) {
   compute_here(tiny_manifest("  walls: smooth\n"));
   const Stage packing = runs_of_kind(store_, "prepare").at(0);
-  const State settled = store_.load_checkpoint(store_.checkpoints(packing.id).back()).state;
-  write_grains(as_csv(settled));
+  const Checkpoint recorded = store_.load_checkpoint(store_.checkpoints(packing.id).back());
+  const State& settled = recorded.state;
+  write_grains(as_csv(settled, recorded.cell.depth));
   const Manifest stated = manifest("", "  walls: smooth\n");
   EXPECT_EQ(compute_placed(store_, stated).completed, 2U);
   const Stage placed_packing = runs_of_kind(store_, "prepare").at(1);
@@ -318,9 +320,9 @@ TEST_F(FromAFile, ThePositionsOfASettledPackingAreShearedAtOnce) {
   EXPECT_EQ(read.step, 0U);
   // Without a box the walls touch the outermost grains: they move by an overlap at most.
   EXPECT_LT((read.position - settled.position).cwiseAbs().rowwise().maxCoeff().head(2).maxCoeff(),
-            0.02);
+            0.05);
   EXPECT_EQ(read.velocity, settled.velocity);
-  EXPECT_NEAR(read.wall_height, settled.wall_height, 0.02);
+  EXPECT_NEAR(read.wall_height, settled.wall_height, 0.05);
   for (const Stage& run : store_.stages()) {
     for (const CheckpointRecord& record : store_.checkpoints(run.id)) {
       EXPECT_FALSE(verify_by_replay(store_, record).divergence) << run.kind << record.cycle;
