@@ -1030,8 +1030,6 @@ struct Reader {
     if (const Node* minus = in.find("minus"); minus != nullptr && curve != nullptr) {
       reject_key(*minus, fmt::format("does not go with {}", curve->name),
                  "Take a number as y: curves are not subtracted.");
-    } else if (minus != nullptr && plot.minus.empty() && minus->is_map() && minus->parts.empty()) {
-      reject(*minus, "names no variant", "It takes `{steps_per_cycle: 45600}`.");
     }
     if (plot.show == Show::rms && curve == nullptr && plot.x != "cycle" && !is_parameter(plot.x)) {
       reject_value(*in.find("show"), fmt::format("does not go with {} as x", plot.x),
