@@ -102,18 +102,6 @@ std::vector<double> numbers_of(RunGroup group, const Values& values,
   return numbers;
 }
 
-/// The runs of a group by the packing that one stage prepared, in the order of the group.
-std::vector<std::pair<std::string, std::vector<const FigureRun*>>> by_packing(RunGroup group) {
-  std::vector<std::pair<std::string, std::vector<const FigureRun*>>> packings;
-  for (const FigureRun* run : group) {
-    auto same =
-        std::ranges::find(packings, packing_of(*run), [](const auto& of) { return of.first; });
-    if (same == packings.end()) same = packings.insert(same, {packing_of(*run), {}});
-    same->second.push_back(run);
-  }
-  return packings;
-}
-
 /// Differences a - b of the packings that both groups have: each of the mean over its runs.
 struct Pairs {
   std::vector<double> differences;
@@ -207,6 +195,17 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
   estimate.value = increasing(estimate.value);
   estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
   return estimate;
+}
+
+PackingGroups by_packing(RunGroup group) {
+  PackingGroups packings;
+  for (const FigureRun* run : group) {
+    auto same =
+        std::ranges::find(packings, packing_of(*run), [](const auto& of) { return of.first; });
+    if (same == packings.end()) same = packings.insert(same, {packing_of(*run), {}});
+    same->second.push_back(run);
+  }
+  return packings;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {

@@ -42,6 +42,10 @@ Scalar onset_phi();
 /// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
+/// The runs of a group by packing_of(), in the order of the group.
+using PackingGroups = std::vector<std::pair<std::string, std::vector<const FigureRun*>>>;
+PackingGroups by_packing(RunGroup group);
+
 /// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
 /// left out. Otherwise Welch's interval. A verdict needs least_runs runs or pairs. So that runs
 /// that end early do not bias it, three quarters of each group must have the number, and with pairs

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -35,6 +36,8 @@ struct FigureRun : Place {
   nlohmann::json parameters;                    ///< of all its stages, by their keys in a manifest
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
   double end = 0;  ///< its last cycle so far, whether the figure takes that or not
+  /// Computing time up to its end; known to figures that need the provider "cost".
+  double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 using RunGroup = std::span<const FigureRun* const>;

@@ -24,7 +24,7 @@ MakeProvider sensitivity_provider;                                     // profil
 MakeProvider motion_provider, grain_motion_provider;                   // motion.cpp
 MakeProvider pair_correlation_provider, structure_factor_provider;     // pair_structure.cpp
 MakeProvider drive_provider, ledger_provider, rest_provider;           // run_measures.cpp
-MakeProvider record_provider;                                          // run_measures.cpp
+MakeProvider record_provider, cost_provider;                           // run_measures.cpp
 MakeProvider onset_provider;                                           // onset.cpp
 
 std::span<const Provider> all_providers() {
@@ -39,6 +39,7 @@ std::span<const Provider> all_providers() {
                                             rest_provider(),
                                             record_provider(),
                                             onset_provider(),
+                                            cost_provider(),
                                             pair_correlation_provider(),
                                             structure_factor_provider(),
                                             profile_provider(),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,25 +16,6 @@
 
 namespace shearcell {
 namespace {
-
-std::size_t variants(RunGroup runs) {
-  std::set<std::string> distinct;
-  for (const FigureRun* run : runs) distinct.insert(run->variant);
-  return distinct.size();
-}
-
-/// The runs with these parameters; if they are of several variants, without those of another engine
-/// that `run --engine` added.
-std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
-                                        std::span<const FigureRun> runs) {
-  std::vector<const FigureRun*> found;
-  for (const FigureRun& run : runs) {
-    if (has_parameters(run, where)) found.push_back(&run);
-  }
-  std::vector<const FigureRun*> as_stated = found;
-  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
-  return variants(found) > 1 && variants(as_stated) == 1 ? as_stated : found;
-}
 
 /// The compared number. Of an expression: the runs must come from with_values().
 Scalar scalar_of(const ClaimSpec& claim) {
@@ -153,7 +133,7 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
   const std::size_t compared = claim.published ? 1 : 2;
   for (std::size_t k = 0; k < compared; ++k) {
     sides.at(k) = runs_with(claim.between.at(k), runs);
-    counts.at(k) = std::max<std::size_t>(variants(sides.at(k)), 1);
+    counts.at(k) = std::max<std::size_t>(count_variants(sides.at(k)), 1);
     const bool named = !sides.at(k).empty() && !sides.at(k).front()->name.empty();
     words.at(k) = named ? sides.at(k).front()->name : words_of(claim.between.at(k));
     if (claim.between.at(k).empty()) words.at(k).clear();

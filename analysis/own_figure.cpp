@@ -12,9 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/claims.hpp"
 #include "analysis/expression.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/onset.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -32,11 +34,24 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   return {std::move(name), std::move(unit), std::string(measure)};
 }
 
+/// A number of checkpoints or of a whole run; null if the text is neither.
+const Measure* find_scalar(std::string_view text) {
+  const Measure* measure = find_measure(text);
+  return measure != nullptr ? measure : find_measure(text, MeasureKind::run);
+}
+
 /// The column of a number of checkpoints or runs, or of an expression. `name` replaces its name.
 MeasureColumn scalar_column(const std::string& text, const std::string& name = {}) {
   MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, "", text};
-  if (const Measure* measure = find_measure(text)) column = column_of(text, measure->unit);
+  if (const Measure* measure = find_scalar(text)) column = column_of(text, measure->unit);
   if (!name.empty()) column.name = name;
+  return column;
+}
+
+MeasureColumn y_column(const PlotSpec& plot) {
+  const Measure* curve = find_measure(plot.y, MeasureKind::curve);
+  MeasureColumn column = curve != nullptr ? column_of(plot.y, curve->unit) : scalar_column(plot.y);
+  column.rms = plot.show == Show::rms;
   return column;
 }
 
@@ -59,7 +74,7 @@ Axis axis_of(const std::string& key) {
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  if (const Measure* measure = find_measure(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_scalar(key)) return named_axis(key, measure->unit);
   if (const Measure* measure = find_curve(key)) return named_axis(key, measure->unit);
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
@@ -115,6 +130,77 @@ const Measures* measures_at(const FigureRun& run, double cycle) {
   return found == run.checkpoints.end() ? nullptr : &found->measures;
 }
 
+/// Sets each run's x, a measure of the whole run, to its mean over those runs of the variant that
+/// have a y, so that these share a point.
+void average_x(const PlotSpec& plot, std::vector<FigureRun>& runs) {
+  const double cycle = cycle_of(plot, runs);
+  const auto has_y = [&](const FigureRun& run) {
+    if (find_curve(plot.y) == nullptr && is_parameter(plot.y)) {
+      return std::isfinite(number_of(run, plot.y));
+    }
+    const Measures* measures = measures_at(run, cycle);
+    return measures != nullptr && std::isfinite(measures->number(plot.y));
+  };
+  std::map<std::string, std::vector<double>> found;  // of each variant
+  for (const FigureRun& run : runs) {
+    std::vector<double>& of_variant = found[run.variant];
+    if (has_y(run)) of_variant.push_back(number_of(run, plot.x));
+  }
+  for (FigureRun& run : runs) {
+    const std::optional<double> mean = over_runs(found.at(run.variant)).mean;
+    run.parameters[plot.x] = mean.value_or(std::nan(""));
+  }
+}
+
+/// Replaces y by its difference from the runs of PlotSpec::minus, and removes these, runs without a
+/// partner, and checkpoints of cycles that the partner lacks. Returns a sentence for the caption.
+std::string subtract(const PlotSpec& plot, std::vector<FigureRun>& runs) {
+  const std::vector<FigureRun> all = std::exchange(runs, {});
+  const std::vector<const FigureRun*> others = runs_with(plot.minus, all);
+  const std::size_t variants = count_variants(others);
+  if (variants > 1 && !plot.listed) {
+    throw UsageError(fmt::format("plot {}: {}", plot.name, problem_of_minus(plot, variants)));
+  }
+  if (variants != 1) {
+    return fmt::format("{} {}", variants == 0 ? "No run has" : "Several variants have",
+                       words_of(plot.minus));
+  }
+  const PackingGroups packings = by_packing(others);
+  for (const FigureRun& run : all) {
+    const auto same =
+        std::ranges::find(packings, packing_of(run), &PackingGroups::value_type::first);
+    if (same == packings.end() || std::ranges::count(others, &run) > 0) continue;
+    // The mean over its partners: several where the runs of a packing differ by noise.
+    const auto of_partners = [&partners = same->second](const auto& number) {
+      std::vector<double> values;
+      for (const FigureRun* partner : partners) values.push_back(number(*partner));
+      return over_runs(values).mean.value_or(std::nan(""));
+    };
+    FigureRun& one = runs.emplace_back(run);
+    if (is_parameter(plot.y)) {
+      one.parameters[plot.y] = number_of(run, plot.y) - of_partners([&](const FigureRun& partner) {
+                                 return number_of(partner, plot.y);
+                               });
+      continue;
+    }
+    std::erase_if(one.checkpoints, [&](CheckpointMeasures& checkpoint) {
+      const double other = of_partners([&](const FigureRun& partner) {
+        const Measures* measures = measures_at(partner, checkpoint.cycle);
+        return measures == nullptr ? std::nan("") : measures->number(plot.y);
+      });
+      const double own = checkpoint.measures.number(plot.y);
+      checkpoint.measures.numbers[plot.y] = own - other;
+      return std::isnan(other);
+    });
+  }
+  const std::size_t alone = all.size() - others.size() - runs.size();
+  const std::string& name = others.front()->name;
+  return fmt::format(
+      "Differences from {} with the same packing{}", name.empty() ? words_of(plot.minus) : name,
+      alone == 0 ? ""
+                 : fmt::format(", which {} of {} runs lack", alone, all.size() - others.size()));
+}
+
 /// A copy of the runs in which `variant` is the curve: runs that differ in `x` alone, or runs with
 /// the same value of `by`, share a curve. A curve of one variant keeps its name.
 std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec& plot,
@@ -144,6 +230,11 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
     run.name = name && !keys.empty() ? shared.at(run.swept) : run.variant;
   }
   return found;
+}
+
+/// Whether the plot draws runs, not numbers over runs.
+bool draws_runs(const PlotSpec& plot) {
+  return plot.show == Show::traces || plot.show == Show::scatter;
 }
 
 /// Curves without symbols, which would hide them: each has its own colour, and dashes once these
@@ -247,8 +338,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
   const Measure* of_curve = find_curve(plot.y);
   const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
   const bool of_whole_run = of_curve == nullptr && is_parameter(plot.y);
-  const MeasureColumn y =
-      of_curve != nullptr ? column_of(plot.y, of_curve->unit) : scalar_column(plot.y);
+  const MeasureColumn y = y_column(plot);
   const double cycle = cycle_of(plot, runs);
   FigureTable table{.name = plot.name, .columns = {"variant", x}};
   add_columns(y, table.columns);
@@ -269,7 +359,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     }
     for (const auto& [at, values] : points.values) {
       TableRow& row = table.rows.emplace_back(TableRow{curve.variant, at});
-      const RunStatistics over = over_runs(over_packings(values.runs, values.values));
+      const RunStatistics over = y.over(over_packings(values.runs, values.values));
       add_values(over, row);
       row.emplace_back(over.runs);
       if (!of_whole_run) row.emplace_back(cycle);
@@ -282,7 +372,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
     table.chart.series[k].band = of_curve != nullptr;
     if (of_curve == nullptr) table.chart.series[k].runs = 0;  // those at each x are others
   }
-  if (plot.show != Show::mean) table.chart.series = std::move(traces);
+  if (draws_runs(plot)) table.chart.series = std::move(traces);
   for (Series& series : table.chart.series) {
     if (curves.size() == 1) series.title = {};
   }
@@ -348,13 +438,13 @@ void add_published(const PlotSpec& plot, Chart& chart) {
 
 /// Of y, and of further measures.
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
-  std::vector<MeasureColumn> columns = {scalar_column(plot.y)};
+  std::vector<MeasureColumn> columns = {y_column(plot)};
   for (const ColumnSpec& one : plot.also) columns.push_back(scalar_column(one.measure, one.name));
   return columns;
 }
 
-FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
-                 const NameVariants& names) {
+FigureTable draw(const PlotSpec& plot, std::vector<FigureRun> given, const NameVariants& names) {
+  if (is_measured_of_run(plot.x) && !draws_runs(plot)) average_x(plot, given);
   const Measure* measured = find_curve(plot.y);
   const bool by_parameter = measured == nullptr && is_parameter(plot.x);
   const bool grouped = by_parameter || !plot.by.empty() || !plot.panel.empty();
@@ -363,7 +453,7 @@ FigureTable draw(const PlotSpec& plot, std::span<const FigureRun> given,
   const std::vector<Curve> curves = curves_of(grouped ? groups : given, styles_of(plot));
   if (by_parameter || measured != nullptr) return against_x(plot, given, curves);
   const std::vector<MeasureColumn> columns = columns_of(plot);
-  if (plot.show != Show::mean) return traces(plot, curves);
+  if (draws_runs(plot)) return traces(plot, curves);
   if (plot.x == "cycle") return against_cycle(plot.name, curves, columns, {});
   if (plot.x == "phi") return against_phi(plot.name, curves, columns[0], {});
   return against_measure(plot, curves);
@@ -410,19 +500,24 @@ void share_ranges(std::vector<FigureTable>& tables) {
 
 FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
                        const NameVariants& names) {
-  if (!plot.by.empty()) {
+  if (!plot.by.empty() && !is_measured_of_run(plot.x)) {
     std::vector<std::string> keys = names_in(plot.x);
     keys.insert(keys.end(), {plot.by, plot.panel});
     require_told_apart(plot.name, given, keys, "leave out its `by` for a curve of each variant");
   }
   std::vector<FigureRun> runs = with_values(given, {plot.y, plot.x});
+  const std::string less = plot.minus.empty() ? "" : subtract(plot, runs);
   FigureResult result;
   std::vector<nlohmann::json> wheres;
-  const auto panels = runs_of_panels(plot, std::move(runs));
+  auto panels = runs_of_panels(plot, std::move(runs));
+  if (panels.empty() && !less.empty()) panels[nullptr] = {};  // says so
   for (const auto& [value, members] : panels) {
     FigureTable& table = result.tables.emplace_back(draw(plot, members, names));
     table.chart.x = x_axis(plot, members);
     table.chart.y = axis_of(plot.y);
+    if (!plot.minus.empty()) table.chart.y.name = Text("difference in ") + table.chart.y.name;
+    if (plot.show == Show::rms) table.chart.y.name = Text("rms ") + table.chart.y.name;
+    if (!less.empty()) table.chart.note += (table.chart.note.empty() ? "" : ". ") + less;
     adapt(table.chart.x, plot.xlabel, plot.log == LogAxes::x || plot.log == LogAxes::xy);
     adapt(table.chart.y, plot.ylabel, plot.log == LogAxes::y || plot.log == LogAxes::xy);
     add_published(plot, table.chart);
@@ -513,6 +608,34 @@ bool is_parameter(std::string_view x) {
   });
 }
 
+bool is_measured_of_run(std::string_view x) {
+  return std::ranges::any_of(names_in(x), [](const std::string& name) {
+    return find_measure(name, MeasureKind::run) != nullptr;
+  });
+}
+
+std::size_t count_variants(RunGroup runs) {
+  std::set<std::string> distinct;
+  for (const FigureRun* run : runs) distinct.insert(run->variant);
+  return distinct.size();
+}
+
+std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
+                                        std::span<const FigureRun> runs) {
+  std::vector<const FigureRun*> found;
+  for (const FigureRun& run : runs) {
+    if (has_parameters(run, where)) found.push_back(&run);
+  }
+  std::vector<const FigureRun*> as_stated = found;
+  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
+  return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
+}
+
+std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
+  if (plot.minus.empty() || variants == 1) return "";
+  return fmt::format("{} variants have {}; `minus` must name one.", variants, words_of(plot.minus));
+}
+
 std::vector<FigureRun> with_values(std::span<const FigureRun> given,
                                    const std::vector<std::string>& texts) {
   std::vector<FigureRun> runs(given.begin(), given.end());
@@ -543,7 +666,7 @@ std::vector<std::string> needs_of(const std::vector<std::string>& texts) {
   std::vector<std::string> needs;
   for (const std::string& text : texts) {
     for (const std::string& name : names_in(text)) {
-      if (const Measure* one = find_measure(name)) needs.push_back(provider_of(*one).name);
+      if (const Measure* one = find_scalar(name)) needs.push_back(provider_of(*one).name);
     }
   }
   return needs;

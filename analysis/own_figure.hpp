@@ -18,10 +18,11 @@
 
 namespace shearcell {
 
-/// What a plot draws: the mean over runs with its error, every run, or every value as a point.
-enum class Show : std::uint8_t { mean, traces, scatter };
+/// What a plot draws: the mean or the root mean square over runs with its error, every run, or
+/// every value as a point.
+enum class Show : std::uint8_t { mean, rms, traces, scatter };
 template <>
-inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "traces", "scatter");
+inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "rms", "traces", "scatter");
 
 /// Logarithmic axes of a plot.
 enum class LogAxes : std::uint8_t { none, x, y, xy };
@@ -89,7 +90,11 @@ struct PlotSpec {
   /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
   /// parameters, or of measures of a run and parameters.
   std::string y;
-  /// "cycle", a number of a checkpoint, a parameter, or an expression of these; unused by curves.
+  /// Parameters and their values, of one variant: `y` is less that of its run with the same packing
+  /// at the same cycle. Empty: `y` itself.
+  nlohmann::json minus = nlohmann::json::object();
+  /// "cycle", a number of a checkpoint, a parameter, a number of the whole run (drawn at its mean
+  /// over the runs of each variant), or an expression of these; unused by curves.
   std::string x = "cycle";
   std::string by = {};      ///< a curve for each value of it; "": for each variant
   std::string figure = {};  ///< plots and claims of one figure are drawn together; "": alone
@@ -146,6 +151,16 @@ std::string repeated_column(const PlotSpec& plot);
 /// Whether the x of a plot is one number of a run: it names neither the cycle nor a measure of
 /// checkpoints.
 bool is_parameter(std::string_view x);
+/// Whether it names a measure of the whole run, so that runs of one variant differ in it.
+bool is_measured_of_run(std::string_view x);
+
+/// How many variants the runs are of.
+std::size_t count_variants(RunGroup runs);
+
+/// The runs with these parameters; if they are of several variants, without those of another engine
+/// that `run --engine` added.
+std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
+                                        std::span<const FigureRun> runs);
 
 /// A copy of the runs with the value of each expression, and of each run measure: of a number of
 /// the run, one of its parameters; else one of the measures of each checkpoint.
@@ -168,6 +183,10 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// against a parameter, at one cycle or a number of the whole run. `names` names curves that
 /// several variants share by what these have in common; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
+
+/// Why `minus` names no variant, or several, a sentence; "" if it names one. `variants`: how many
+/// have its values.
+std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures that need the run of a checkpoint: its drive, what the engine recorded, and simulations
-// that begin at the checkpoint.
+// Measures that need the run of a checkpoint: its drive, what the engine recorded, simulations that
+// begin at the checkpoint, and what the run took to compute.
 #include <cmath>
 #include <numbers>
 
 #include "analysis/error.hpp"
+#include "analysis/figure.hpp"
 #include "analysis/measures.hpp"
 #include "core/drive.hpp"
 #include "core/trigonometry.hpp"
@@ -110,6 +111,21 @@ Provider rest_provider() {
           .compute = rest_of,
           .from = ComputedFrom::simulation,
           .cost = "a twentieth of a cycle"};
+}
+
+Provider cost_provider() {
+  return {.name = "cost",
+          .measures = {{.name = "core_time_s",
+                        .unit = "s",
+                        .meaning = "processor time of the run's steps up to its end, over all "
+                                   "attempts on whatever machines; without its packing, and in "
+                                   "full for each experiment that shares the run. Where none was "
+                                   "recorded, wall-clock time times processes",
+                        .kind = MeasureKind::run,
+                        .of_run = [](const FigureRun& run) { return measured(run.core_time_s); },
+                        .words = "the core time",
+                        .reach = "its end"}},
+          .from = ComputedFrom::history};
 }
 
 Provider record_provider() {

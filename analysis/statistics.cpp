@@ -95,6 +95,17 @@ RunStatistics over_runs(std::span<const double> values) {
   return result;
 }
 
+RunStatistics rms_over_runs(std::span<const double> values) {
+  std::vector<double> squares;
+  for (const double value : values) squares.push_back(value * value);
+  RunStatistics result = over_runs(squares);
+  if (!result.mean) return result;
+  const double root = std::sqrt(*result.mean);
+  result.mean = root;
+  if (result.standard_error && root > 0) *result.standard_error /= 2 * root;
+  return result;
+}
+
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
   if (runs < 2) return std::nullopt;
   const RunStatistics found = over_runs(bootstrap_values(runs, statistic));

@@ -20,6 +20,9 @@ struct RunStatistics {
 /// One value per run. Values that are not finite are left out and not counted.
 RunStatistics over_runs(std::span<const double> values);
 
+/// The root mean square, as `mean`, with the error of the mean square over twice the root.
+RunStatistics rms_over_runs(std::span<const double> values);
+
 /// A number computed from a selection of the runs, in which a run may occur several times. The
 /// bootstrap takes 1000 selections, drawn with replacement by core's counter-based generator: the
 /// same input gives the same values.

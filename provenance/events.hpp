@@ -105,6 +105,7 @@ struct CheckpointRecorded : CheckpointFile {
     field("time_s", e.checkpoint.time_s), field("observables", e.checkpoint.observables);
     field("wall_seconds", e.effort.wall_seconds), field("particle_steps", e.effort.particle_steps);
   }
+  static void optional_fields(auto& e, auto field) { field("core_seconds", e.effort.core_seconds); }
 };
 
 struct CheckpointRejected {

@@ -170,6 +170,23 @@ void add_run_lineage(const Store& store, const std::string& id, RunLineages& lin
   }
 }
 
+ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle) {
+  ComputingTime time;
+  json host;
+  for (const Event& event : store.events(run_stream(id))) {
+    if (events::begins_attempt(event)) host = member_of(event.body(), "host");
+    if (event.type != events::CheckpointRecorded::kType) continue;
+    const auto recorded = std::get<events::CheckpointRecorded>(events::decode(event));
+    if (recorded.checkpoint.cycle > last_cycle) continue;
+    const json processes = member_of(member_of(host, "engine"), "processes");
+    const double cores = processes.is_number_unsigned() ? processes.get<double>() : 1;
+    time.core_seconds +=
+        recorded.effort.core_seconds.value_or(cores * recorded.effort.wall_seconds);
+    time.processors.insert(text_at(host, "cpu"));
+  }
+  return time;
+}
+
 std::optional<ManifestText> find_manifest(const Store& store, const std::string& sha256) {
   for (const Event& event : store.events("manifest/" + sha256, events::ManifestRegistered::kType)) {
     auto found = std::get<events::ManifestRegistered>(events::decode(event));

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,18 @@ using RunLineages = std::map<std::string, RunLineage>;  ///< by id
 
 /// Adds the run and the stages before it, unless they are there.
 void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages);
+
+/// What it took to compute a stage.
+struct ComputingTime {
+  /// Processor time of all steps up to recorded checkpoints, over all attempts. Where none was
+  /// recorded (by earlier versions, and of LAMMPS under mpirun), wall-clock time times processes.
+  double core_seconds = 0;
+  std::set<std::string> processors;  ///< their names, of the attempts that recorded checkpoints
+};
+
+/// Of the checkpoints up to this cycle. Throws StoreDamaged, naming the event, for a damaged
+/// payload.
+ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle);
 
 struct ManifestText {
   std::string sha256;

@@ -115,6 +115,8 @@ struct PruneChoice {
 struct Effort {
   double wall_seconds = 0;
   double particle_steps = 0;  ///< grains times time steps
+  /// Processor time of the steps; none where it is not known, as in records of earlier versions.
+  std::optional<double> core_seconds = {};
 };
 
 /// `rejected`: its file is damaged. `pruned`: its file was deleted to free space; the record stays.

@@ -103,7 +103,7 @@ std::vector<CurvePoint> points_of(RunGroup runs) {
 RunStatistics over(const CurvePoint& point, const MeasureColumn& measure) {
   std::vector<double> values;
   for (const Measures* measures : point.measures) values.push_back(measure.of(*measures));
-  return over_runs(over_packings(point.runs, values));
+  return measure.over(over_packings(point.runs, values));
 }
 
 /// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where
@@ -127,7 +127,7 @@ bool follow_runs(const Curve& curve, const MeasureColumn& measure, Series& mean,
   for (const FigureRun* run : curve.runs) {
     Series line = thin_line({}, mean.colour);
     for (const CheckpointMeasures& c : run->checkpoints) {
-      const double value = measure.of(c.measures);
+      const double one = measure.of(c.measures), value = measure.rms ? std::abs(one) : one;
       if (c.cycle >= first_end && std::isfinite(value)) line.points.push_back({c.cycle, value});
     }
     if (line.points.size() > 1) single.push_back(std::move(line));
@@ -143,7 +143,12 @@ double MeasureColumn::of(const Measures& measures) const {
   return value < least ? least : value;
 }
 
+RunStatistics MeasureColumn::over(std::span<const double> values) const {
+  return rms ? rms_over_runs(values) : over_runs(values);
+}
+
 std::string column_name(const MeasureColumn& measure, const char* statistic) {
+  if (measure.rms && statistic == std::string_view("mean")) statistic = "rms";
   return measure.name + "_" + statistic + (measure.unit.empty() ? "" : "_" + measure.unit);
 }
 

@@ -80,19 +80,21 @@ Series thin_line(Text title, std::string colour, int point = 0);
 /// AnalysisError if two curves have the same title.
 std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns& columns);
 
-/// One quantity of a panel: its columns are NAME_mean and NAME_standard_error, with the unit at the
-/// end where there is one.
+/// One quantity of a panel: its columns are NAME_mean (or NAME_rms) and NAME_standard_error, with
+/// the unit at the end where there is one.
 struct MeasureColumn {
   std::string name;
   std::string unit;  ///< as part of a column's name: "d", "percent" or ""
   std::string measure;
   double least = -std::numeric_limits<double>::infinity();  ///< lower values count as this
   std::string known = {};  ///< only where this measure is known too; "" for none
+  bool rms = false;        ///< the root mean square over runs in place of the mean
 
   double of(const Measures& measures) const;
+  RunStatistics over(std::span<const double> values) const;  ///< one value of each run
 };
 
-/// Name of a column: "mean", "standard_error".
+/// Name of a column: "mean" (that of the root mean square, too), "standard_error".
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);

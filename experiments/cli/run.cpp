@@ -49,6 +49,21 @@ void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
                              "has no effect: LAMMPS computes none of these runs. Leave it out");
 }
 
+// Throws ProgramError if LAMMPS is not installed.
+void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {
+  find_lammps(options.parallel.ranks);
+} catch (const ProgramError& missing) {
+  const auto is_ours = [](const PlannedRun& run) {
+    return run.parameters.engine == EngineKind::shearcell;
+  };
+  const bool others = std::ranges::any_of(plans, [&](const Plan& plan) {
+    return asks_for_lammps(plan) && std::ranges::any_of(plan.runs, is_ours);
+  });
+  if (!others) throw;
+  throw ProgramError(std::string(missing.what()) +
+                     ". `--variant engine=shearcell` computes the runs without it");
+}
+
 // Number of runs at a time, so that their threads or processes fill the cores.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
@@ -66,7 +81,7 @@ void run(const RunOptions& options, Context& context) {
   const auto [manifests, plans] = load_manifests(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
-  if (lammps) find_lammps(options.parallel.ranks);  // throws if it is not installed
+  if (lammps) require_lammps(options, plans);
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;

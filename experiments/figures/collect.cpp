@@ -20,6 +20,7 @@
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
+#include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -156,6 +157,19 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
+/// Sets CollectedRun::core_time_s. Notes if the runs were computed by different processors.
+void add_core_times(const Store& store, CollectedRuns& collected) {
+  std::set<std::string> processors;
+  for (CollectedRun& run : collected.runs) {
+    ComputingTime time = computing_time(store, run.stage.id, run.end);
+    run.core_time_s = time.core_seconds;
+    processors.merge(time.processors);
+  }
+  if (processors.size() < 2) return;
+  collected.notes.push_back(
+      fmt::format("core times are of different processors: {}", some_of(processors)));
+}
+
 /// Names the variants of the runs, which may be of several versions of a manifest.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -237,7 +251,8 @@ FigureRun unmeasured(const CollectedRun& input) {
           input.named,
           std::move(parameters),
           {},
-          std::min(input.end, input.stage.cycle)};
+          std::min(input.end, input.stage.cycle),
+          input.core_time_s};
 }
 
 std::string WantedFigure::path() const {
@@ -347,6 +362,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   }
   if (measured) {
     leave_out_not_begun(wanted.figure, collected);
+    if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
     note_never_made(store, wanted.figure, collected);
   }
   return collected;

@@ -2,6 +2,7 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct CollectedRun : Run {
   std::vector<CheckpointRecord> checkpoints = {};  ///< checkpoints_for()
   double end = 0;                                  ///< end_for()
   std::string packing = {};                        ///< FigureRun::packing
+  double core_time_s = std::nan("");               ///< FigureRun::core_time_s
 };
 
 /// The run without its checkpoints. Its parameters say `pressure_at: top` where P acts equally on

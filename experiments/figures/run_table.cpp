@@ -16,6 +16,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -224,9 +225,11 @@ void measure_where(const Store& store, std::span<const std::string> names,
   }
 }
 
-FigureRun history_of(const Run& selected, std::span<const Row> rows) {
+FigureRun history_of(const Store& store, const Run& selected, std::span<const Row> rows) {
   FigureRun history;
   static_cast<Place&>(history) = selected.ask;
+  const double last = rows.empty() ? 0 : rows.back().checkpoint->cycle;
+  history.core_time_s = computing_time(store, selected.stage.id, last).core_seconds;
   history.run_id = selected.stage.id;
   history.parameters = effective_parameters(selected.stage.resolved);
   for (const Row& row : rows) {
@@ -286,7 +289,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
       for (const Row& row : rows) add(row);
       continue;
     }
-    const FigureRun& history = table.histories.emplace_back(history_of(run, rows));
+    const FigureRun& history = table.histories.emplace_back(history_of(store, run, rows));
     Row last = rows.empty() ? Row{&run} : rows.back();
     if (run.stage.kind == name_of(StageKind::shear)) last.history = &history;
     add(last);

@@ -539,12 +539,16 @@ std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, 
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
   keys.insert(keys.end(), {plot.by, plot.panel});
-  const string key = plot.by.empty() ? "" : averaged_over(keys, variants);
+  const bool averages = !plot.by.empty() && !is_measured_of_run(plot.x);
+  const string key = averages ? averaged_over(keys, variants) : "";
   if (!key.empty()) {
     found.push_back(format(
         "it would average over the values of {}. Leave out `by` for a curve of each variant.",
         key));
   }
+  const auto subtracted = std::ranges::count_if(
+      variants, [&](const Variant& variant) { return has_values(variant, plot.minus); });
+  found.push_back(problem_of_minus(plot, static_cast<std::size_t>(subtracted)));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
     found.push_back(format("shear_strain is 0 at whole cycles. State {}.",

@@ -149,11 +149,11 @@ void fields(PublishedSpec& published, const auto& visit) {
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names scalars = measure_names({MeasureKind::number});
   static const Names runs = measure_names({MeasureKind::run});
-  static const Names can_be_by = parameters(), can_be_x = joined({"cycle"}, scalars, can_be_by);
+  static const Names can_be_by = parameters(),
+                     can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
   static const Names can_be_y =
       measure_names({MeasureKind::number, MeasureKind::curve, MeasureKind::run});
-  static const Names x_terms = joined({"cycle"}, scalars, numbers());
-  static const Names y_terms = joined(x_terms, runs);
+  static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
   visit(plot.y,
         {.name = "y",
@@ -161,14 +161,21 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "or an expression of measures and parameters: `stress_xy_Pa/contact_pressure_Pa`. "
                 "Runs that end before their onset are counted in the caption",
          .names = can_be_y,
-         .terms = y_terms,
+         .terms = terms,
          .required = true});
   visit(plot.x,
         {.name = "x",
          .doc = "`cycle` (default), a measure, a parameter, or an expression: `1/period_s`. A "
-                "number of the run takes `y` at `at_cycle`",
+                "number of the run takes `y` at `at_cycle`. One that is measured, such as "
+                "`core_time_s`, gives a point for each variant, at its mean over the runs",
          .names = can_be_x,
-         .terms = x_terms});
+         .terms = terms});
+  visit(plot.minus,
+        {.name = "minus",
+         .doc = "swept values that single out a variant: `y` is less that of this variant's run "
+                "with the same packing, at the same cycle. Runs without such a partner are counted "
+                "in the caption",
+         .example = "{steps_per_cycle: 45600}"});
   visit(plot.by, {.name = "by",
                   .doc = "one curve for each value of this parameter; averaging over another swept "
                          "parameter is refused. Default: one for each variant or, with a parameter "
@@ -183,8 +190,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                             "with equal ranges",
                      .names = can_be_by});
   visit(plot.show, {.name = "show",
-                    .doc = "the mean (default) with its standard error, every run as a line, or "
-                           "every value as a point. The CSV of a curve measure or against a number "
+                    .doc = "the mean (default) or root mean square with its standard error, every "
+                           "run as a line, or every value as a point. The CSV of a curve measure "
+                           "or against a number "
                            "of the run has the means"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(
@@ -1019,7 +1027,16 @@ struct Reader {
     if (!plot.y.empty() && is_parameter(plot.y) && curve == nullptr && !is_parameter(plot.x)) {
       reject(in, fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }
-    if (cycles != nullptr && (plot.show == Show::mean || is_parameter(plot.x))) {
+    const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
+    if (const Node* minus = in.find("minus"); minus != nullptr && curve != nullptr) {
+      reject_key(*minus, fmt::format("does not go with {}", curve->name),
+                 "Take a number as y: curves are not subtracted.");
+    }
+    if (plot.show == Show::rms && curve == nullptr && plot.x != "cycle" && !is_parameter(plot.x)) {
+      reject_value(*in.find("show"), fmt::format("does not go with {} as x", plot.x),
+                   "Take `cycle` or a number of the run as x.");
+    }
+    if (cycles != nullptr && (!of_runs || is_parameter(plot.x))) {
       reject(*cycles, "draws each run along its cycles",
              "It takes `show: traces`, and `cycle` or a measure as x.");
     }

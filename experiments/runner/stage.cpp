@@ -260,17 +260,24 @@ class Engine {
 
   virtual std::uint64_t step() const = 0;         ///< present step
   virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
+  /// Processor time of the steps since construction; nothing if it is not known.
+  virtual std::optional<double> core_seconds() const = 0;
 };
 
 class OwnEngine final : public Engine {
  public:
   OwnEngine(const ReadyStage& plan, Beginning&& beginning, std::size_t threads)
-      : plan_(plan), simulation_(make_simulation(plan, std::move(beginning), threads)) {}
+      : plan_(plan),
+        threads_(static_cast<double>(threads)),
+        simulation_(make_simulation(plan, std::move(beginning), threads)) {}
 
   StageProgress advance() override { return advance_by(UINT64_MAX); }
   StageProgress advance_by(std::uint64_t most) {
     const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
-    return progress_ = plan_.protocol->advance(simulation_, steps);
+    const double before = thread_seconds();
+    progress_ = plan_.protocol->advance(simulation_, steps);
+    core_seconds_ += threads_ * (thread_seconds() - before);  // its threads share the work equally
+    return progress_;
   }
   StageProgress halt() override {
     progress_.checkpoint_due = true;
@@ -283,9 +290,12 @@ class OwnEngine final : public Engine {
   }
   std::uint64_t step() const override { return simulation_.step(); }
   std::uint64_t evaluations() const override { return simulation_.evaluations(); }
+  std::optional<double> core_seconds() const override { return core_seconds_; }
 
  private:
   const ReadyStage& plan_;
+  double threads_;
+  double core_seconds_ = 0;
   Simulation simulation_;
   StageProgress progress_;
 };
@@ -347,6 +357,9 @@ class LammpsEngine final : public Engine {
   }
   std::uint64_t step() const override { return step_; }
   std::uint64_t evaluations() const override { return step_ - first_; }
+  std::optional<double> core_seconds() const override {
+    return run_ ? run_->core_seconds() : std::optional(0.0);
+  }
 
  private:
   // The watchdog checks the frame after a step of our own engine from it.
@@ -541,8 +554,11 @@ class StageAttempt {
   void record(const Engine& engine, double cycle) {
     const Checkpoint checkpoint = engine.checkpoint(cycle);
     const auto steps = static_cast<double>(engine.evaluations() - recorded_evaluations_);
-    const CheckpointRecord recorded = store_.record_checkpoint(
-        id(), checkpoint, {recorded_.seconds(), steps * static_cast<double>(plan_.stage.grains)});
+    Effort effort{recorded_.seconds(), steps * static_cast<double>(plan_.stage.grains)};
+    const std::optional<double> core_seconds = engine.core_seconds();
+    if (core_seconds) effort.core_seconds = *core_seconds - recorded_core_seconds_;
+    const CheckpointRecord recorded = store_.record_checkpoint(id(), checkpoint, effort);
+    recorded_core_seconds_ = core_seconds.value_or(0);
     computed_ = true;
     seen_.push_back({recorded});
     recorded_.restart();
@@ -576,6 +592,7 @@ class StageAttempt {
   std::vector<SeenCheckpoint> seen_;
   bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
+  double recorded_core_seconds_ = 0;
   Stopwatch started_, recorded_, reported_;
 };
 

@@ -61,12 +61,16 @@ class ChildProcess {
   /// Peak memory of the ended process [bytes]; 0 while it runs.
   std::size_t peak_bytes() const { return peak_bytes_; }
 
+  /// Its processor time so far, without that of its own children.
+  double core_seconds() const;
+
  private:
   bool reap(int options);
 
   pid_t pid_ = 0;
   std::optional<int> exit_code_;
   std::size_t peak_bytes_ = 0;
+  double core_seconds_ = 0;  // of the ended process
 };
 
 struct ProgramOutcome {

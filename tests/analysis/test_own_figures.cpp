@@ -332,6 +332,191 @@ TEST(OwnPlot, HasFurtherColumnsWithNamesOfTheirOwn) {
       << to_csv(table);
 }
 
+/// Packings 1 to 3 with 100 (the reference), 10 and 20 steps of our engine and 20 of LAMMPS. phi of
+/// the reference depends on the packing; that of other steps differs from it by 0.4/steps^2, in
+/// packing 2 in the other direction. A run takes a second for each step and packing.
+std::vector<FigureRun> runs_of_steps() {
+  std::vector<FigureRun> runs;
+  for (const auto& [engine, steps] :
+       {std::pair("shearcell", 100), {"shearcell", 10}, {"shearcell", 20}, {"lammps", 20}}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const double error = steps == 100 ? 0 : (seed == 2 ? -0.4 : 0.4) / (steps * steps);
+      FigureRun run =
+          made_up_run("steps_per_cycle", steps, seed, 2, [&, of = steps](int n, Measures& m) {
+            m.numbers["phi"] = 0.6 + 0.01 * static_cast<double>(seed) + n * error;
+            m.numbers["mean_overlap_d"] = of;
+          });
+      run.swept["engine"] = engine;
+      run.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
+      run.run_id = fmt::format("{}/{}", run.variant, seed);
+      run.packing = fmt::format("packing {}", seed);
+      run.core_time_s =
+          steps * static_cast<double>(seed) * (engine == std::string("lammps") ? 9 : 1);
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
+}
+
+const PlotSpec kErrors = {.name = "own",
+                          .y = "phi",
+                          .minus = {{"steps_per_cycle", 100}},
+                          .x = "core_time_s",
+                          .by = "engine",
+                          .show = Show::rms,
+                          .log = LogAxes::xy,
+                          .cycle = 1};
+
+FigureTable errors_of(const std::vector<FigureRun>& runs, const PlotSpec& plot = kErrors) {
+  return plot_figure(plot).make(runs).tables.at(0);
+}
+
+/// Expects a row of the table: the variant, x, y with its error (none of one run), and the number
+/// of runs.
+void expect_row(const FigureTable& table, const std::string& variant, double x, double y,
+                double error, std::size_t runs) {
+  const auto number = [](const TableValue& value) {
+    const auto* whole = std::get_if<std::int64_t>(&value);
+    const auto* real = std::get_if<double>(&value);
+    return whole != nullptr ? static_cast<double>(*whole) : real != nullptr ? *real : 0;
+  };
+  for (const TableRow& row : table.rows) {
+    if (std::get<std::string>(row[0]) != variant || std::abs(number(row[1]) - x) > 1e-9) continue;
+    EXPECT_NEAR(number(row[2]), y, 1e-6 * std::abs(y));
+    EXPECT_NEAR(number(row[3]), error, 1e-6 * std::abs(y));
+    EXPECT_EQ(number(row[4]), static_cast<double>(runs));
+    return;
+  }
+  ADD_FAILURE() << "no row " << variant << "," << x << " in\n" << to_csv(table);
+}
+
+TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
+  const FigureTable table = errors_of(runs_of_steps());
+  EXPECT_TRUE(
+      to_csv(table).starts_with("variant,core_time_s,phi_rms,phi_standard_error,runs,cycle\n"));
+  EXPECT_EQ(table.rows.size(), 3U) << "without the reference";
+  expect_row(table, "engine=lammps", 360, 0.001, 0, 3);
+  expect_row(table, "engine=shearcell", 20, 0.004, 0, 3);
+  expect_row(table, "engine=shearcell", 40, 0.001, 0, 3);
+  EXPECT_EQ(plain_text(table.chart.y.name), "rms difference in volume fraction");
+  EXPECT_EQ(plain_text(table.chart.x.name), "core time");
+  EXPECT_EQ(plain_text(table.chart.x.unit), "s");
+  EXPECT_EQ(table.chart.note,
+            "At cycle 1. Differences from steps_per_cycle=100 with the same packing");
+  EXPECT_EQ(std::ranges::count(plot_figure(kErrors).needs, "cost"), 1);
+
+  PlotSpec against_cycle = kErrors;
+  against_cycle.x = "cycle";
+  against_cycle.by.clear();
+  const std::string variant = "engine=shearcell;steps_per_cycle=10";
+  expect_row(errors_of(runs_of_steps(), against_cycle), variant, 2, 0.008, 0, 3);
+  against_cycle.show = Show::mean;
+  expect_row(errors_of(runs_of_steps(), against_cycle), variant, 2, 0.008 / 3, 0.016 / 3, 3);
+
+  PlotSpec of_runs = kErrors;
+  of_runs.show = Show::scatter;
+  std::size_t points = 0;
+  for (const Series& series : errors_of(runs_of_steps(), of_runs).chart.series) {
+    points += series.points.size();
+  }
+  EXPECT_EQ(points, 9U) << "each run at its own core time";
+
+  PlotSpec of_costs = kErrors;
+  of_costs.y = "core_time_s";
+  of_costs.x = "steps_per_cycle";
+  const FigureTable costs = errors_of(runs_of_steps(), of_costs);
+  EXPECT_EQ(costs.columns[2], "core_time_rms_s");
+  bool found = false;  // 90, 180 and 270 s less
+  for (const Series& series : costs.chart.series) {
+    for (const ChartPoint& p : points_of(costs, series)) {
+      found = found || (p.x == 10 && std::abs(p.y - 90 * std::sqrt(14.0 / 3)) < 1e-9);
+    }
+  }
+  EXPECT_TRUE(found) << to_csv(costs);
+}
+
+// Runs of one packing that differ by noise are no independent ones.
+TEST(OwnPlot, IsADifferenceFromTheMeanOfSeveralPartners) {
+  std::vector<FigureRun> runs = runs_of_steps();
+  FigureRun clone = runs[0];  // the reference of packing 1
+  clone.run_id += "/clone";
+  clone.seed = 11;
+  for (CheckpointMeasures& checkpoint : clone.checkpoints) {
+    checkpoint.measures.numbers["phi"] += 0.002;
+  }
+  runs.push_back(clone);
+  PlotSpec mean = kErrors;
+  mean.show = Show::mean;
+  mean.log = LogAxes::none;
+  const FigureTable table = errors_of(runs, mean);
+  EXPECT_EQ(table.rows.size(), 3U);
+  // 0.003, -0.004 and 0.004.
+  expect_row(table, "engine=shearcell", 20, 0.001, std::sqrt((4 + 25 + 9) / 6.0) / 1000, 3);
+}
+
+TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
+  std::vector<FigureRun> runs = runs_of_steps();
+  runs.erase(runs.begin());  // the reference of packing 1
+  const FigureTable table = errors_of(runs);
+  expect_row(table, "engine=shearcell", 25, 0.004, 0, 2);
+  EXPECT_TRUE(table.chart.note.ends_with("with the same packing, which 3 of 9 runs lack"))
+      << table.chart.note;
+  for (FigureRun& run : runs) run.packing.clear();
+  EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
+  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("which 9 of 9 runs lack"));
+  runs = runs_of_steps();
+  runs.erase(runs.begin(), runs.begin() + 3);
+  EXPECT_TRUE(errors_of(runs).rows.empty());
+  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("No run has steps_per_cycle=100"));
+}
+
+TEST(OwnPlot, LeavesOutValuesThatAreNotThere) {
+  std::vector<FigureRun> runs = runs_of_steps();
+  runs[0].checkpoints[1].measures.numbers.erase("phi");  // of the reference of packing 1
+  runs[4].checkpoints[1].measures.numbers.erase("phi");  // of 10 steps, packing 2
+  const FigureTable table = errors_of(runs);
+  expect_row(table, "engine=shearcell", 30, 0.004, 0, 1);
+  expect_row(table, "engine=lammps", 450, 0.001, 0, 2);
+}
+
+TEST(OwnPlot, ComparesUnfinishedRunsAtTheCyclesOfBoth) {
+  PlotSpec last = kErrors;
+  last.cycle.reset();
+  std::vector<FigureRun> runs = runs_of_steps();
+  runs[1].checkpoints.pop_back();  // the reference of packing 2 has not reached cycle 2
+  expect_row(errors_of(runs, last), "engine=shearcell", 20, 0.004, 0, 3);  // cycle 1, that of all
+  last.cycle = 2;
+  // Packings 1 and 3, also in the mean of the core time.
+  expect_row(errors_of(runs, last), "engine=shearcell", 20, 0.008, 0, 2);
+  runs = runs_of_steps();
+  runs[3].checkpoints.pop_back();  // 10 steps, packing 1
+  expect_row(errors_of(runs, last), "engine=shearcell", 25, 0.008, 0, 2);
+  for (FigureRun& run : runs) run.checkpoints.clear();
+  EXPECT_TRUE(errors_of(runs, last).rows.empty());
+}
+
+TEST(OwnPlot, SaysThatADifferenceOfZeroIsNotOnALogarithmicAxis) {
+  PlotSpec at_start = kErrors;
+  at_start.cycle = 0;
+  const std::vector<FigureTable> tables = {errors_of(runs_of_steps(), at_start)};
+  EXPECT_EQ(tables[0].rows.size(), 3U);
+  expect_row(tables[0], "engine=shearcell", 20, 0, 0, 3);
+  const std::string caption = caption_of("Errors", tables);
+  EXPECT_TRUE(has(caption, "Values that are not positive are not drawn: 3.")) << caption;
+  EXPECT_NO_THROW(gnuplot_script(tables[0]));
+}
+
+TEST(OwnPlot, RefusesAReferenceOfSeveralVariants) {
+  PlotSpec of_engine = kErrors;
+  of_engine.minus = {{"engine", "shearcell"}};
+  EXPECT_EQ(message_of<UsageError>([&] { errors_of(runs_of_steps(), of_engine); }),
+            "plot own: 3 variants have engine=shearcell; `minus` must name one.");
+  of_engine.listed = true;
+  EXPECT_TRUE(errors_of(runs_of_steps(), of_engine).rows.empty());
+  EXPECT_TRUE(errors_of(runs_of_steps(), of_engine)
+                  .chart.note.ends_with("Several variants have engine=shearcell"));
+}
+
 /// phi rises by 0.001 a cycle; the percentage by one point a cycle from `first` on.
 FigureRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
   return made_up_run("fluid", fluid, seed, 60, [=](int n, Measures& m) {

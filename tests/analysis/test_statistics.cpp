@@ -33,6 +33,30 @@ std::optional<double> bootstrap_of_mean(const std::vector<double>& values) {
   return bootstrap_error(values.size(), mean_over(values));
 }
 
+TEST(RunStatistics, OfRootMeanSquares) {
+  const RunStatistics s = rms_over_runs(std::vector<double>{1, -2, std::nan(""), 2});
+  EXPECT_EQ(s.runs, 3U);
+  EXPECT_DOUBLE_EQ(s.mean.value(), std::sqrt(3));
+  EXPECT_DOUBLE_EQ(s.standard_error.value(), 1 / (2 * std::sqrt(3)));  // of 1, 4, 4: 3 +- 1
+  const RunStatistics zero = rms_over_runs(std::vector<double>{0, 0});
+  EXPECT_EQ(zero.mean, 0);
+  EXPECT_EQ(zero.standard_error, 0);
+  EXPECT_FALSE(rms_over_runs(std::vector<double>{-3}).standard_error);
+  EXPECT_EQ(rms_over_runs(std::vector<double>{-3}).mean, 3);
+  EXPECT_FALSE(rms_over_runs(std::vector<double>{}).mean);
+  // The error is that of many samples of 100 values.
+  std::vector<double> roots, errors;
+  for (std::uint32_t sample = 0; sample < 400; ++sample) {
+    const RunStatistics one = rms_over_runs(normal_numbers(sample, 100));
+    roots.push_back(one.mean.value());
+    errors.push_back(one.standard_error.value());
+  }
+  const double spread = over_runs(roots).standard_error.value() * std::sqrt(400);
+  std::printf("spread of the roots %.4f, mean error %.4f\n", spread,
+              over_runs(errors).mean.value());
+  EXPECT_NEAR(over_runs(errors).mean.value() / spread, 1, 0.1);
+}
+
 TEST(Bootstrap, OfAMeanIsItsStandardError) {
   const std::vector<double> values = normal_numbers(0, 10);
   EXPECT_NEAR(bootstrap_of_mean(values).value() / over_runs(values).standard_error.value(), 1,

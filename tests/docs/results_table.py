@@ -36,7 +36,7 @@ HEADLINES = [
 # Folders of results; a claim is shown as the first of them measured it.
 SOURCES = ("decide", "larger_step", "volume", "paper", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
-           "walls", "choices")
+           "walls", "choices", "accuracy")
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [

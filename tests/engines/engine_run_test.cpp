@@ -218,6 +218,10 @@ TEST_F(EngineRun, ReportsThatLammpsIsMissing) {
   expect(1, {"run", manifest, "--engine", "lammps"}, {"Debian package lammps"});
   EXPECT_FALSE(fs::exists(path("shearcell-store"))) << "nothing was begun";
   EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
+  const std::string both =
+      write("both.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
+  expect(1, {"run", both}, {"Debian package lammps", "`--variant engine=shearcell` computes the"});
+  expect(0, {"run", both, "--variant", "engine=shearcell", "--cycles", "0", "-q"});
 }
 
 TEST_F(EngineRun, IsNotResumedWithoutLammps) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plots and claims of a manifest, drawn from runs that several variants share or that are not
 // computed yet.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/lineage.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
 
@@ -113,6 +116,41 @@ TEST_F(OwnFigures, AClaimSaysThatItsRunsAreNotSelected) {
       EXPECT_TRUE(verdict.note.starts_with("only runs with fluid=cell are selected: "))
           << verdict.note;
     }
+  }
+}
+
+// Both computed cycle 1 first and were extended; what the packing took is not in it.
+TEST_F(OwnFigures, OfErrorAgainstCoreTime) {
+  const std::string text = tiny_manifest(
+      "",
+      "seeds: 3\nsweep: {grid: {steps_per_cycle: [20000, 40000]}}\nplots: [{name: cost, y: phi, "
+      "minus: {steps_per_cycle: 40000}, x: core_time_s, show: rms, log: xy, at_cycle: 2}]\n");
+  compute(store_, text, {.cycles = 1});
+  std::map<std::string, double> first;
+  for (const Stage& run : runs_of_kind(store_, "shear")) {
+    first[run.id] = computing_time(store_, run.id, 9).core_seconds;
+  }
+  compute(store_, text, {.cycles = 2});
+  double mean = 0;
+  for (const Stage& run : runs_of_kind(store_, "shear")) {
+    const double both = computing_time(store_, run.id, 9).core_seconds;
+    EXPECT_EQ(computing_time(store_, run.id, 1).core_seconds, first.at(run.id));
+    EXPECT_GT(first.at(run.id), 0);
+    EXPECT_GT(both, first.at(run.id));
+    EXPECT_LT(both, 1.2 * run.wall_seconds) << "one thread";
+    if (run.resolved.at("parameters").at("steps_per_cycle") == 20000) mean += both / 3;
+  }
+  draw("own", "cost");
+  const std::string csv = contents("own").at("cost.csv");
+  EXPECT_TRUE(csv.starts_with("variant,core_time_s,phi_rms,phi_standard_error,runs,cycle\n"))
+      << csv;
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 2) << "one variant";
+  EXPECT_TRUE(has(csv, fmt::format("steps_per_cycle=20000,{:.9g},", mean))) << csv << mean;
+  const RunTable table = run_table(store_, {}, RowPer::run, {});
+  const auto column = std::ranges::find(table.columns, "core_time_s", &TableColumn::name);
+  ASSERT_NE(column, table.columns.end());
+  for (const auto& row : table.rows) {
+    EXPECT_GT(row.at(static_cast<std::size_t>(column - table.columns.begin())), 0);
   }
 }
 

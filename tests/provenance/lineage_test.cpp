@@ -72,6 +72,69 @@ TEST_F(Lineage, ARejectedCheckpointIsMarkedUntilItIsRecomputed) {
   EXPECT_TRUE(run.attempts.back().host.empty()) << "none was recorded";
 }
 
+/// Shears run 3: cycles 1 and 2 take `seconds` of wall-clock time and `core_seconds` each.
+void shear_two_cycles(Store& store, const nlohmann::json& host, double seconds,
+                      std::optional<double> core_seconds) {
+  const std::string id = run_id(3);
+  store.declare_stage(sample_run(3));
+  const auto known = store.checkpoints(id);
+  store.start_stage(id, host, known.empty() ? std::nullopt : std::optional(known.back().sha256));
+  for (std::uint64_t cycle = 1; cycle <= 2; ++cycle) {
+    const std::uint64_t step = (cycle + known.size()) * kCycle;
+    store.record_checkpoint(id, sample_checkpoint(id, step), {seconds, 10, core_seconds});
+  }
+  store.interrupt_stage(id, "SIGTERM");
+}
+
+TEST_F(Lineage, ComputingTimeIsTheSumOverAllAttempts) {
+  const std::string id = run_id(3);
+  shear_two_cycles(store_, sample_host("aaaa"), 5, 2.5);
+  EXPECT_EQ(computing_time(store_, id, 9).core_seconds, 5);
+  EXPECT_EQ(computing_time(store_, id, 1).core_seconds, 2.5) << "up to cycle 1";
+  EXPECT_EQ(computing_time(store_, id, 0.5).core_seconds, 0);
+  nlohmann::json other = sample_host("bbbb");
+  other["cpu"] = "Another CPU";
+  shear_two_cycles(store_, other, 5, 1.5);
+  const ComputingTime both = computing_time(store_, id, 4);
+  EXPECT_EQ(both.core_seconds, 8);
+  EXPECT_EQ(both.processors, (std::set<std::string>{"A CPU", "Another CPU"}));
+  EXPECT_EQ(computing_time(store_, id, 2).processors, std::set<std::string>{"A CPU"});
+}
+
+// Logs of earlier versions have no processor time, and processes under mpirun do not report theirs.
+TEST_F(Lineage, ComputingTimeWithoutProcessorTimeIsThatOfTheClock) {
+  shear_two_cycles(store_, sample_host("aaaa"), 5, std::nullopt);
+  EXPECT_FALSE(
+      nlohmann::json::parse(store_.events("run/" + run_id(3), "CheckpointRecorded")[0].payload)
+          .contains("core_seconds"))
+      << "the payload of earlier versions";
+  EXPECT_EQ(computing_time(store_, run_id(3), 9).core_seconds, 10);
+  nlohmann::json mpi = sample_host("aaaa");
+  mpi["engine"] = {{"name", "LAMMPS"}, {"processes", 4}};
+  shear_two_cycles(store_, mpi, 5, std::nullopt);
+  EXPECT_EQ(computing_time(store_, run_id(3), 9).core_seconds, 10 + 4 * 10);
+}
+
+// Two machines computed the same cycles; a checkpoint that both have counts once.
+TEST_F(Lineage, ComputingTimeOfMergedStoresCountsEachCheckpointOnce) {
+  shear_two_cycles(store_, sample_host("aaaa"), 5, 2.5);
+  {
+    Store other(folder_.path() / "other", Access::create);
+    shear_two_cycles(other, sample_host("bbbb"), 5, 1);
+    shear_two_cycles(other, sample_host("bbbb"), 5, 1);
+  }
+  store_.merge({folder_.path() / "other"});
+  EXPECT_EQ(store_.checkpoints(run_id(3)).size(), 4U);
+  EXPECT_EQ(computing_time(store_, run_id(3), 9).core_seconds, 2 * 2.5 + 2 * 1);
+}
+
+TEST_F(Lineage, ComputingTimeOfADamagedPayloadNamesTheEvent) {
+  append_to_run(store_, history_.sheared, {"CheckpointRecorded", {{"cycle", "two"}}});
+  const auto read = [&] { computing_time(store_, history_.sheared, 9); };
+  EXPECT_TRUE(has(message_of<StoreDamaged>(read), "(CheckpointRecorded"))
+      << message_of<StoreDamaged>(read);
+}
+
 TEST_F(Lineage, ARegeneratedCheckpointIsSoundAgain) {
   store_.restore_checkpoint(store_.find_checkpoint(history_.rejected).value(),
                             sample_checkpoint(history_.sheared, 45600));

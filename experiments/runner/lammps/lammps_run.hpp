@@ -51,6 +51,11 @@ class LammpsRun {
   /// The newest step in its log.
   std::uint64_t step();
 
+  /// Its processor time; nothing under mpirun, whose processes are not ours.
+  std::optional<double> core_seconds() const {
+    return ranks_ > 1 ? std::nullopt : std::optional(process_->core_seconds());
+  }
+
  private:
   std::optional<State> take_frame();
   [[noreturn]] void fail(int code) const;
