@@ -12,16 +12,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Short cycles: their energies are simulated again for each measure of `heat`.
+constexpr std::uint64_t kShortCycle = 2500;  // steps
+
 class Prune : public ProgramTest {
  protected:
+  const std::string short_ = "  period_s: 0.25\n  steps_per_cycle: 2500\n";
   const std::string plots_ =
       "plots:\n"
       "  - {name: heat, y: dissipation_per_cycle_J, x: cycle, cycles: [1, 2], show: traces}\n"
       "  - {name: pairs, y: pair_correlation, at_cycle: 3}\n";
 
   void SetUp() override {
-    campaign(tiny_manifest("", kBothFluids + "seeds: 2\n" + plots_), {"--cycles", "5"});
-    keep_a_copy();
+    const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
+    campaign(manifest, {"--cycles", "5"});
+    // Measured once for all tests, with what it shows.
+    shared("measured " + manifest, "whole", [&](const std::string& folder) {
+      fs::copy(path("shearcell-store"), folder, fs::copy_options::recursive);
+      const std::string all = shown(folder);
+      std::ofstream(fs::path(folder) / "shown", std::ios::binary) << all;
+    });
+    shown_ = read_bytes(path("whole/shown"));
+    ASSERT_FALSE(shown_.empty());
+    fs::remove(path("whole/shown"));
   }
 
   void keep_a_copy() {
@@ -136,7 +149,7 @@ TEST_F(Prune, KeepsAStateThatCannotBeAnalysed) {
     const std::vector<CheckpointRecord> records = store.checkpoints(run);
     Checkpoint together = store.load_checkpoint(records[1]);
     together.state.position.col(1) = together.state.position.col(0);
-    together.state.step += kStepsPerCycle / 2;
+    together.state.step += kShortCycle / 2;
     together.cycle += 0.5;
     store.start_stage(run, {}, records[1].sha256, "", true);
     file = store.record_checkpoint(run, together).file;
@@ -167,7 +180,7 @@ TEST_F(Prune, AKillWhileItMeasuresLosesNothing) {
 
 TEST_F(Prune, MeasuresForEveryExperimentThatSharesAStage) {
   const std::string other = renamed(
-      tiny_manifest("", kBothFluids + "seeds: 2\ncheckpoints: {every_cycles: 2}\n"), "other");
+      tiny_manifest(short_, kBothFluids + "seeds: 2\ncheckpoints: {every_cycles: 2}\n"), "other");
   expect(0, {"run", write("other.yaml", other), "--cycles", "4", "-q"});
   keep_a_copy();
   start_again();

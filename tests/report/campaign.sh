@@ -26,12 +26,12 @@ labels: {"fluid=still": "<img src=x onerror='spoiled=true'>", "fluid=cell": "<a 
 plots: [{name: hostile_labels, y: phi, x: cycle}]
 scales: {smoke: {}}
 MANIFEST
-run "$hostile"
 for name in choices critical_size drag gravity nucleation_sites onset_amplitude spring_constant system_size; do
   set -- "$@" "experiments/$name.yaml"
 done
 shift 2  # the arguments of this script
 run "$@" --cycles 2
+run "$hostile"
 "$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"
 
 run experiments/*.yaml --cycles 2
