@@ -109,7 +109,7 @@ function layoutOf(chart, width, color) {
     margin: {l: left, r: right, t: chart.title.length > 0 ? 52 : 30, b: 44 + key}, hovermode: "closest",
     title: {text: markup(chart.title), font: {size: 13}, y: 1, yref: "container", yanchor: "top", pad: {t: 8}},
     legend: {orientation: "h", xref: "container", yref: "container", y: 0, yanchor: "bottom", x: 0, entrywidth: entry,
-      traceorder: "normal", tracegroupgap: 0},
+      traceorder: "normal", tracegroupgap: 0, maxheight: 1},
     xaxis: axisOf(chart.x, points.map(([x]) => x), color),
     yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
     shapes: chart.lines.map(shape), uirevision: "kept",
