@@ -777,8 +777,8 @@ bool is_done(const Store& store, const Stage& stage) {
 std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
                                                const Parameters& parameters) {
   const double cycle = static_cast<double>(parameters.start_cycle);
-  for (CheckpointRecord& record : store.checkpoints(stage.parent, Listed::and_pruned)) {
-    if (record.cycle == cycle) return std::move(record);
+  for (const CheckpointRecord& record : store.checkpoints(stage.parent, Listed::and_pruned)) {
+    if (record.cycle == cycle) return record;
   }
   return std::nullopt;
 }
