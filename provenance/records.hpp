@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// Where a stage stands in an experiment. A stage that two experiments share has two places.
+/// The place of a stage in an experiment. A stage that two experiments share has two places.
 struct Place {
   std::string experiment = {};
   std::string scale = {};                           ///< "" if the manifest has no scales

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/diagnosis.hpp"
@@ -151,6 +152,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   common.checkpoint_every = scale.checkpoints.every_cycles;
   common.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by the last stage's key
+  std::set<std::string> fitted;                   // packings into which the file fits
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds;
   std::ranges::copy_if(seeds, std::back_inserter(chosen_seeds), [&](std::uint64_t seed) {
@@ -176,7 +178,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     for (const std::uint64_t seed : chosen_seeds) {
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
-      if (plan.file) placed(*plan.file, run.packing, seed);  // or says why it cannot
+      if (plan.file && fitted.insert(run.prepare->id).second) {
+        placed(*plan.file, run.packing, seed);  // or says why it cannot
+      }
 
       const std::string& same = variant_of.emplace(run.stage.id, run.ask.variant).first->second;
       if (same == run.ask.variant || seed != chosen_seeds.front()) continue;

@@ -110,8 +110,8 @@ void fields(Scale& scale, const auto& visit) {
          .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "instead of loose grains that settle: the state of a recorded run, with noise that "
-                "each seed draws anew, or the grains of a file",
+         .doc = "instead of loose grains that settle: the state of a recorded run, with other "
+                "noise for each seed, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
