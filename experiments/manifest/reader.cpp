@@ -825,7 +825,9 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
     if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
     for (const Node& part : in.parts) {
-      const Field* field = find_field(part.key);
+      static const Field seeds = {
+          .name = "seeds", .range = {1, ManifestLimits::runs}, .whole = true};
+      const Field* field = part.key == seeds.name ? &seeds : find_field(part.key);
       if (field == nullptr) {
         reject_unknown(part, names_of(schema()));
         continue;

@@ -83,10 +83,10 @@ std::span<const Field> schema();
 /// The parameter of that name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the parameter is the length of a run. It does not distinguish runs, but a zip may give
-/// each variant its own.
+/// Whether the key is the length of a run or the number of seeds. Neither distinguishes runs, but a
+/// zip may give each variant its own.
 inline bool is_length(std::string_view key) {
-  return key == "cycles";
+  return key == "cycles" || key == "seeds";
 }
 
 /// What is wrong with a value, and what to write instead.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -29,6 +30,8 @@ struct Variant {
   std::vector<std::pair<std::string, const Setting*>> swept;
   Parameters parameters;
   Parameters packing;  ///< the same with what `settle` states
+  /// How many of the seeds it has, the first ones; default: all.
+  std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 
   std::string name() const;             ///< "fluid=cell", "base" when nothing is swept
   nlohmann::json swept_values() const;  ///< swept keys and values
