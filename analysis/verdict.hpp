@@ -54,6 +54,7 @@ struct Verdict {
   Counted counted = Counted::runs;
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
   std::string note;                        ///< how it was compared, what is missing
+  bool primary = false;  ///< its runs were made to decide it; others are exploratory
   Entered entered = {};
 };
 
@@ -75,10 +76,9 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 FigureTable entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"claim", "quantity", "estimate", "interval": [low, high], "level",
-/// "margin", "verdict", "runs", "counted", "runs_needed", "note"}]}. "verdict" is headline_of() or
-/// null. Numbers have six significant digits; null
-/// where there is none, for an infinite end of an interval too. The same verdicts give the same
-/// bytes.
+/// "margin", "verdict", "runs", "counted", "runs_needed", "note", and "primary" if it is}]}.
+/// "verdict" is headline_of() or null. Numbers have six significant digits; null where there is
+/// none, for an infinite end of an interval too. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed".

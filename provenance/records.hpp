@@ -109,6 +109,8 @@ bool same_computation(const auto& a, const auto& b) {
 struct PruneChoice {
   std::vector<std::string> runs;  ///< ids; empty for all
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
+  /// Also the files from which runs would continue and stages started, of completed stages.
+  bool last_too = false;
 };
 
 /// Work spent since the previous record of the same attempt.

@@ -190,6 +190,8 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
+  /// Statements of the claims that the runs of this scale are made to decide.
+  std::vector<std::string> primary = {};
   std::set<std::string> own = {};  ///< keys that an entry of `scales` states itself
 };
 

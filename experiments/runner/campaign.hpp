@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,10 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
 /// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
 /// that another program computes are left to it while there is other work, then waited for, and
 /// continued here when that program ends or its lease expires. Shows its progress on standard
-/// error, unless it is `quiet`.
+/// error, unless it is `quiet`. `when_done` is called with the id of each stage that is done, at
+/// once by several threads; what it throws ends the campaign.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            const Parallel& parallel = {}, bool quiet = false);
+                            const Parallel& parallel = {}, bool quiet = false,
+                            std::function<void(const std::string& stage)> when_done = {});
 
 }  // namespace shearcell
