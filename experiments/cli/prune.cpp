@@ -9,7 +9,6 @@
 #include <iostream>
 #include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "core/machine.hpp"
@@ -240,8 +239,10 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // In order of steps, so that each checkpoint of a run can start from the one before it.
-  std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });
+  // Parents first, and in order of steps, so that each can start from the one before it.
+  std::map<std::string, std::size_t> order;
+  for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
+  std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   for (const CheckpointRecord& record : records) {

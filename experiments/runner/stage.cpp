@@ -596,10 +596,11 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// If it is not, run_stage reports what is wrong with it.
+// If it is not, run_stage reports what is wrong with it. A pruned one can be regenerated.
 bool newest_is_sound(const Store& store, const Stage& run) {
-  const auto recorded = store.checkpoints(run.id);
-  return !recorded.empty() && store.load_if_readable(recorded.back());
+  const auto found = store.checkpoints(run.id, Listed::and_pruned);
+  return !found.empty() && (found.back().state == CheckpointState::pruned ||
+                            store.load_if_readable(found.back()));
 }
 
 // --- Computing again ---
