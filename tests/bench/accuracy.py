@@ -2,7 +2,6 @@
 """Prints the tables of core/ACCURACY.md from the files in experiments/results: python3 accuracy.py RESULTS_FOLDER"""
 
 import csv
-import json
 import pathlib
 import sys
 
@@ -37,9 +36,8 @@ def curve(motion, method):
     return [row for row in errors if (row["motion"], row["method"]) == (motion, method)]
 
 
-table("errors", ["motion: error", "method", "at 0.36", "order"] + ["local orders, from 0.71 of the limit down"],
-      ([title, method, number(rows[2]["relative_error"]), f"{float(rows[2]['fitted_order']):.2f}",
-        " ".join(f"{float(row['local_order']):.1f}" for row in rows if row["local_order"])]
+table("errors", ["motion: error", "method", "at 0.36", "order"],
+      ([title, method, number(rows[2]["relative_error"]), f"{float(rows[2]['fitted_order']):.2f}"]
        for motion, title in MOTIONS.items() for method in METHODS for rows in [curve(motion, method)]))
 
 table("costs", ["time step [s]", "of the limit"] +
@@ -59,23 +57,6 @@ table("divergence", ["time step [s]", "of the limit", "Lyapunov time [ms]"],
       ([number(row["time_step_s"], 3), f"{float(row['time_step_over_stability_limit']):.2f}",
         f"{1e3 * float(row['lyapunov_time_s']):.2f} +- {1e3 * float(row['standard_error_s']):.2f}"]
        for row in read("accuracy/accuracy-divergence.csv")))
-
-claims = []
-for folder in ("paper", "decide"):
-    verdict = json.loads((results / folder / "timestep/S3.verdict.json").read_text())
-    claims += [(folder, claim) for claim in verdict["claims"]
-               if "is the same" in claim["claim"] and " s" in claim["claim"] and "4.4e-5" in claim["claim"]]
-decided = {claim["claim"] for folder, claim in claims if folder == "decide"}
-rows = []
-for folder, claim in claims:
-    if folder == "paper" and ("percentage" in claim["claim"] or claim["claim"] in decided):
-        continue
-    low, high = claim["interval"]
-    rows.append([claim["claim"].split("steps of ")[1].split(" and")[0], claim["quantity"].replace("difference in ", ""),
-                 f"{claim['estimate']:+.2g} ({low:+.2g} to {high:+.2g})", str(claim["margin"]), str(claim["runs"]),
-                 claim["verdict"]])
-table("pairs", ["time step [s]", "difference from 4.4e-5 s", "estimate (90 %)", "margin", "pairs", "verdict"],
-      sorted(rows, key=lambda row: (float(row[0]), row[1])))
 
 stiffness = read("decide/spring_constant/S1.csv")
 hardest = stiffness[-1]
