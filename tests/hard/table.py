@@ -23,14 +23,15 @@ def with_all_numbers(texts):
 
 
 def in_short(came, expected):
-    """Without clauses that `expected` has too, without right values, and refusals without their remedies. Of clauses that
-    differ in their numbers alone the last."""
+    """Without clauses that `expected` has too, without right values, and of a stop or refusal the numbers alone. Of clauses
+    that differ in their numbers alone the last."""
     clauses = {}
     for clause in came.split("; "):
         clause = re.sub(r", right \S+, off by (\S+) \(of (\S+)\)", r", off by \1 (at most \2)", clause)
-        clauses[NUMBER.sub("#", clause)] = re.sub(r"^(refused: [^:;]*).*", r"\1", clause)
+        clause = re.sub(r"^stopped at (step \d+): .* is (\S+), limit (\S+)$", r"\1: \2, limit \3", clause)
+        clauses[NUMBER.sub("#", clause)] = clause
     new = [clause for clause in clauses.values() if clause not in expected]
-    return "; ".join(new or clauses.values())
+    return "refused" if came.startswith("refused: ") else "; ".join(new or clauses.values())
 
 
 cases = []
