@@ -13,6 +13,16 @@ case "${1:-} ${2:-}" in
   "pack "?*)
     "$program" merge "${SHEARCELL_STORE:-shearcell-store}" --store "$work/store"
     "$program" prune --last-too --yes --store "$work/store"
+    # Without what the published figures do not draw: curves, stresses, motion.
+    python3 - "$work/store/derived.sqlite" << 'END'
+import sqlite3
+import sys
+kept = sqlite3.connect(sys.argv[1], isolation_level=None)
+for name in ("lattices", "mechanics", "motion", "pair_correlation", "profiles", "sensitivity", "structure_factor",
+             "wall_distance"):
+    kept.execute("DELETE FROM derived WHERE measure LIKE ? || ' %'", (name,))
+kept.execute("VACUUM")
+END
     mkdir -p "$rows"
     tar -C "$work/store" --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -c store.sqlite derived.sqlite |
       xz -9e > "$rows/$2.tar.xz"

@@ -8,8 +8,8 @@ set mxtics 2
 set mytics 2
 set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
-set bars 0.5
 set output 'S1.svg'
+set key maxcols 1 width -9
 set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 set logscale x
@@ -68,12 +68,16 @@ plot keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title '{/:Italic �
      keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic ϕ}', \
      keyentry with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title '{/:Italic ϕ}_{u}, uncorrected, P on the moving wall', \
      keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic ϕ}, P on the moving wall', \
-     $series3 every 1 using 1:2:3:4 with xyerrorbars lc rgb '#d55e00' lw 0.7 pt 0 notitle, \
+     $series3 every 1 using ($1-$3>0?$1-$3:3.67094988e-05):2:($1+$3-($1-$3>0?$1-$3:3.67094988e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
      $series3 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series2 every 1 using 1:2:3:4 with xyerrorbars lc rgb '#d55e00' lw 0.7 pt 0 notitle, \
+     $series2 every 1 using ($1-$3>0?$1-$3:3.67094988e-05):2:($1+$3-($1-$3>0?$1-$3:3.67094988e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series2 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
      $series2 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series1 every 1 using 1:2:3:4 with xyerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
+     $series1 every 1 using ($1-$3>0?$1-$3:3.67094988e-05):2:($1+$3-($1-$3>0?$1-$3:3.67094988e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series1 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series0 every 1 using 1:2:3:4 with xyerrorbars lc rgb '#000000' lw 0.7 pt 0 notitle, \
+     $series0 every 1 using ($1-$3>0?$1-$3:3.67094988e-05):2:($1+$3-($1-$3>0?$1-$3:3.67094988e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle
 set output
