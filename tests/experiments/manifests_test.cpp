@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments";
 const std::vector<std::string> kScales = {"smoke", "desk", "paper"};
-const std::set<std::string> kMoreScales = {"decide", "fast", "larger_step"};  // of some
+const std::set<std::string> kMoreScales = {"decide", "fast", "larger_step", "pilot"};  // of some
 
 Plan plan(const std::string& experiment, const std::string& scale) {
   return expand(load_manifest(kFolder / (experiment + ".yaml")), {.scale = scale});
@@ -68,10 +68,10 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     }
     experiments.insert(experiment);
   }
-  EXPECT_EQ(experiments, (std::set<std::string>{"accuracy", "choices", "critical_size", "drag",
-                                                "gravity", "moving_wall", "nucleation_sites",
-                                                "onset_amplitude", "relaxation", "spring_constant",
-                                                "system_size", "timestep", "walls"}));
+  EXPECT_EQ(experiments, (std::set<std::string>{
+                             "accuracy", "choices", "committor_parents", "critical_size", "drag",
+                             "gravity", "moving_wall", "nucleation_sites", "onset_amplitude",
+                             "relaxation", "spring_constant", "system_size", "timestep", "walls"}));
 }
 
 TEST(Manifests, StateTheFiguresThatAreNotComputed) {
