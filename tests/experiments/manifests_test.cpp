@@ -15,7 +15,6 @@
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
-#include "experiments/runner/outlook.hpp"
 
 namespace shearcell::test {
 namespace {
@@ -159,22 +158,6 @@ TEST(Manifests, HaveTheSizesAndNumbersOfTheSupplement) {
   for (const PlannedRun& run : plan("nucleation_sites", "paper").runs) {
     EXPECT_EQ(run.parameters.grains, 18200U);
   }
-}
-
-// A night on two cores, at most.
-TEST(Manifests, OfScalePaperCostAtMost15e12ParticleSteps) {
-  std::vector<Plan> plans;
-  for (const auto& entry : fs::directory_iterator(kFolder)) {
-    if (entry.path().extension() == ".yaml" && entry.path().stem() != "committor") {
-      plans.push_back(plan(entry.path().stem(), "paper"));
-    }
-  }
-  double steps = 0;
-  for (const PlannedStage& stage : look_at(joined(plans), nullptr)) {
-    steps += stage.look.particle_steps;
-  }
-  EXPECT_LT(steps, 1.5e13);
-  EXPECT_GT(steps, 1e12);
 }
 
 // The default of choices.yaml is that of the program.
