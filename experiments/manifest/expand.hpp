@@ -23,8 +23,8 @@ struct ExpandOptions {
   std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these; empty for all
   std::optional<std::string> engine = {};      ///< instead of the manifest's; named in the variant
-  /// Runs of the store. Warnings then assume the lengths that this manifest gave them before, if
-  /// those are longer.
+  /// Runs of the store, and those that are computed before (add_as_computed). Warnings then assume
+  /// the lengths that this manifest gave them before, if those are longer.
   std::span<const Stage> known = {};
 };
 
@@ -46,6 +46,10 @@ struct Plan {
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
+
+/// Adds the runs of the plan to `known`, or extends them there, as they are when they have the
+/// cycles that the plan asks for: the start of another manifest may name them.
+void add_as_computed(const Plan& plan, std::vector<Stage>& known);
 
 /// The runs of one or more manifests, each once, with what all of them ask for.
 Plan joined(std::span<const Plan> plans);
