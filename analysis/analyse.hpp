@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// Of one packing. Means over no grain at all are not a number.
+/// Measures of one packing. A mean over no grain is not a number.
 struct PackingMeasures {
   std::size_t grains = 0;               ///< N
   std::size_t interior_grains = 0;      ///< N_inves, at least 1.5 d from the wall surfaces
@@ -67,10 +67,10 @@ double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) 
   return 100 * found / count;
 }
 
-/// 1 for crystalline interior grains, else 0.
+/// One entry per grain: 1 for crystalline interior grains, else 0.
 std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
 
-/// Of the cells of interior grains [d^2]; 0 without any.
+/// Mean surface of the cells of interior grains [d^2]; 0 without interior grains.
 double mean_surface(const GrainMeasures& grains);
 
 }  // namespace shearcell

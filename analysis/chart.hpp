@@ -106,7 +106,7 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
-  /// Of a curve with the same runs at each point: how many there are. 0 for other series.
+  /// Number of runs of a curve with the same runs at each point; 0 for other series.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that equal x do not hide each other
 };
@@ -130,7 +130,7 @@ struct Chart {
   std::string letter = {};   ///< of the panel: "a"
   std::string note = {};     ///< a sentence of the caption, without its full stop
   std::string sources = {};  ///< of published numbers; likewise
-  /// What the bars and bands are, for the caption, where they are not standard errors over runs.
+  /// For the caption: what bars and bands are if they are not standard errors over runs.
   std::string errors = {};
 };
 
@@ -168,9 +168,10 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 /// left out.
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 
-/// Adds to the title of each series how many runs its points are means of, as "(3 to 5 runs)", if
-/// that differs between the points or is less than Series::runs; once in the caption if all series
-/// have the same. A mean over other runs may differ for that reason alone.
+/// Adds the number of runs behind the points to the title of each series, as "(3 to 5 runs)", if
+/// this number differs between points or is less than Series::runs: a curve may rise or fall only
+/// because other runs enter the mean. If all series have the same numbers, the caption states them
+/// once.
 void name_run_counts(FigureTable& table);
 
 /// Nine significant digits, as in the CSV.

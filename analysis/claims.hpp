@@ -24,13 +24,13 @@ struct Scalar {
   bool relative = false;  ///< differences are relative: 0.03 is 3 %
 };
 
-/// Mean of a measure, called `name` in sentences, over the checkpoints of cycles first .. last, all
-/// of which the run must have.
+/// Mean of a measure over the checkpoints of cycles first .. last, all of which the run must have.
+/// Sentences call the measure `name`.
 Scalar over_cycles(const std::string& name, const std::string& measure, std::int64_t first,
                    std::int64_t last);
 
-/// Mean of a measure, called `name` in sentences, over a window of phi: the polygon through the
-/// means of the run's bins of phi (binning.hpp), integrated over that window.
+/// Mean of a measure over a window of phi: the polygon through the means of the run's bins of phi
+/// (binning.hpp), integrated over the window. Sentences call the measure `name`.
 Scalar over_phi(const std::string& name, const std::string& measure, double low, double high);
 
 /// A measure of the whole run.
@@ -39,7 +39,7 @@ Scalar of_whole_run(const Measure& measure);
 /// phi at the onset by method 1 (onset.hpp).
 Scalar onset_phi();
 
-/// The estimate of an increasing function of the quantity. The spread stays that of the quantity.
+/// Applies an increasing function to the value and the interval; the spread does not change.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
 /// The runs of a group by packing_of(), in the order of the group.
@@ -55,21 +55,23 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 /// The mean over runs less the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
-/// The cycle at which each run is first at `level` or more, or the last one.
+/// For each run the first cycle at which the measure is at least `level`; without one, the run's
+/// last cycle, as censored.
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& measure, double level);
 /// The same for the onset of crystallization by method 1.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
-/// log2 of how many times later the event is in `a`, by the log-rank test (statistics.hpp).
-/// `waits` gives the waiting times of runs; runs that end before the event are censored.
+/// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
+/// (statistics.hpp). `waits` gives the waiting times of runs; runs that end before the event are
+/// censored.
 Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
 
-/// A table of what entered a verdict, with these columns after the run's group (its variant), seed
-/// and packing.
+/// An empty table of what entered a verdict: group (the run's variant), seed, packing, then these
+/// columns.
 Entered entered_with(const std::vector<std::string>& columns);
-/// Adds a row: the values of the columns after the run's.
+/// Adds the row of a run, with the values of the columns after group, seed and packing.
 void enter(const FigureRun& run, const TableRow& values, Entered& entered);
 
 }  // namespace shearcell

@@ -49,11 +49,11 @@ struct Crystallites {
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
                           double least_face);
 
-/// The crystallites of one checkpoint, with their places and grains, as they are stored to follow
-/// them from checkpoint to checkpoint.
+/// The crystallites of one checkpoint with their centres and grains. The measures keep this map, so
+/// that crystallites can be followed from checkpoint to checkpoint.
 struct CrystalliteMap {
   std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
-  std::vector<std::int32_t> label;      ///< crystallite of each of them
+  std::vector<std::int32_t> label;      ///< crystallite of each of these grains
   std::vector<std::int32_t> size;       ///< grains in each crystallite
   std::vector<Eigen::Vector3d> centre;  ///< of mass of each crystallite [d]; see crystallite_map()
   double width = 0;                     ///< of the cell [d]

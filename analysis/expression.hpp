@@ -10,7 +10,7 @@
 
 namespace shearcell {
 
-/// Whether the text is meant as more than a name: it has an operator or a number.
+/// Whether the text is more than a name: it has an operator or a number.
 bool is_expression(std::string_view text);
 
 /// The names in an expression, each once, in order. Of a name alone, that name.
@@ -19,8 +19,9 @@ std::vector<std::string> names_in(std::string_view text);
 /// What an expression may contain, for messages.
 std::string expression_syntax();
 
-/// What is wrong with the expression, whatever its names mean, as in "is no expression: ..."; ""
-/// if it can be evaluated. Anything but expression_syntax() is wrong, and more than 200 bytes.
+/// What is wrong with the expression, whatever its names mean, such as "is no expression: ..."; ""
+/// if it can be evaluated. Wrong is anything outside expression_syntax() and a text of more than
+/// 200 bytes.
 std::string wrong_in_expression(const std::string& text);
 
 /// The value of a name.

@@ -35,16 +35,15 @@ struct FigureRun : Place {
   bool named = false;                           ///< by a label of the manifest
   nlohmann::json parameters;                    ///< of all its stages, by their keys in a manifest
   std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
-  double end = 0;  ///< its last cycle so far, whether the figure takes that or not
+  double end = 0;  ///< last cycle of the run so far, also if the figure leaves it out
   /// Computing time up to its end; known to figures that need the provider "cost".
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 using RunGroup = std::span<const FigureRun* const>;
 
-/// Why a run has no number: it lacks a checkpoint of that cycle (`checkpoint`), ends before it,
-/// begins after it, or the quantity does not exist in it (`undefined`: phi without interior
-/// grains).
+/// Why a run has no number: it lacks the checkpoint of the cycle, ends before the cycle, begins
+/// after the cycle, or has no such quantity (`undefined`, as phi without interior grains).
 enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
 template <>
 inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoint", "ends before",
@@ -68,9 +67,9 @@ struct FigureResult {
 };
 
 /// `table` shows the runs of all experiments, each run once per experiment, with its last
-/// checkpoint only, which is not measured. The others show the runs of one experiment: `curves` has
-/// one curve for each variant; `groups` averages over variants with the same values of the figure's
-/// `keys`.
+/// checkpoint, which is not measured. `curves` and `groups` show the runs of one experiment:
+/// `curves` one curve for each variant, `groups` the means over variants with the same values of
+/// the figure's `keys`.
 enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement.
@@ -82,24 +81,24 @@ struct Figure {
   std::vector<std::string> keys = {};  ///< parameters that its curves compare
   /// Names of the providers (measures.hpp) that it needs besides "scalars".
   std::vector<std::string> needs = {};
-  /// Needs the checkpoints of these cycles, first to last, those at phases of a cycle included;
-  /// other figures are of whole cycles.
+  /// First and last cycle whose checkpoints the figure takes, also those at phases of a cycle.
+  /// Without it the figure takes whole cycles only.
   std::optional<std::array<std::uint64_t, 2>> within = {};
-  /// The cycles, first to last, of which it needs what is simulated; default: all that it takes.
+  /// First and last cycle for which simulated measures are needed; default: all cycles.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
-  /// Whether it uses the run, whose checkpoints are not read yet; empty: it uses all.
+  /// Whether the figure uses the run, whose checkpoints are not read yet; empty: it uses all runs.
   std::function<bool(const FigureRun& run)> uses = {};
 };
 
 /// The value of a parameter, swept or not; null if the run has no such key.
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key);
-/// The id of the packing that the run descends from; the run's own if it has none. Runs of one
-/// packing are not independent.
+/// The id of the packing that the run descends from; the id of the run if there is no packing. Runs
+/// of one packing are not independent.
 const std::string& packing_of(const FigureRun& run);
-/// One number for each packing, in the order of the runs: the mean of those of its runs, one value
-/// per run. Values that are not finite are left out.
+/// Averages the values of runs, one per run, over the runs of each packing; in the order of the
+/// runs. Values that are not finite are left out.
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
-/// The same as a number; NaN if it is not a number.
+/// The value of a parameter as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 
 /// Whether a value is as stated. Numbers may differ by a millionth, since a manifest may round
@@ -108,28 +107,29 @@ bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated);
 /// Whether the run has these parameters.
 bool has_parameters(const FigureRun& run, const nlohmann::json& where);
 
-/// Whether its engine is one of its swept values: `run --engine` adds such runs to an experiment.
+/// Whether the engine is one of the run's swept values: `run --engine` adds such runs to an
+/// experiment.
 bool sweeps_engine(const FigureRun& run);
 
-/// The keys that distinguish the variants: each of them varies, and without it two variants would
-/// be equal. Of keys that advance together the first stays. `variants` are objects of swept keys
-/// and values.
+/// Returns those of `keys` that distinguish the variants: each of them varies, and without it two
+/// variants would be equal. Of keys that advance together only the first is returned. `variants`
+/// are objects of swept keys and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 
-/// A swept key over whose values curves would average, one for each set of values of `keys`: it
-/// differs between variants of one curve. "" if there is none. For each variant: its values of
-/// `keys`, and its swept keys and values.
+/// If there is one curve for each set of values of some keys: a swept key whose values differ
+/// within one curve, so that the curve would average over them; "" if there is none. `variants`:
+/// for each variant its values of these keys, and all its swept keys and values.
 std::string averaged_key(
     std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants);
 
-/// Throws UsageError if curves of these keys' values would average over values of another swept
-/// key. Keys that change together with `keys` are allowed. The message ends with `remedy`.
+/// Throws UsageError if averaged_key() finds a key for curves by `keys`. Keys that change together
+/// with `keys` are allowed. The message ends with `remedy`.
 void require_told_apart(const std::string& figure, std::span<const FigureRun> runs,
                         const std::vector<std::string>& keys, const std::string& remedy);
 
-/// The swept keys of the runs that distinguish their variants; `first` stays of those that advance
-/// together with it.
+/// The swept keys that distinguish the variants of the runs, by keys_telling_apart(). Of keys that
+/// advance together with `first`, `first` is returned.
 std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::string_view first = "");
 
 /// The figures with an analysis of their own (analysis/figures/), in the order of the supplement.

@@ -77,18 +77,18 @@ struct Measure {
   bool waits = false;           ///< the cycle of an event, before which a run may end
 };
 
-/// Over one cycle of all grains and the moving wall [m d^2/s^2].
+/// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
 struct CycleEnergies {
   double work_of_walls = 0, dissipation = 0, stored = 0;
 };
 
-/// What measures need of the run that a checkpoint is of. The program that measures fills it in
+/// What measures need to know of the run of a checkpoint. The runner fills it in
 /// (experiments/runner/measure_sources.hpp), since analysis knows neither manifests nor protocols.
 struct RunFacts {
   nlohmann::json parameters = {};   ///< by their keys in a manifest
   std::optional<Drive> drive = {};  ///< of a shear
-  /// The state so many seconds after the checkpoint, between upright walls that are held in place.
-  /// Throws NumericalFailure, as does the next one.
+  /// The state `seconds` after the checkpoint, between upright walls that are held in place. `rest`
+  /// and `next_cycle` throw NumericalFailure.
   std::function<State(const Checkpoint& from, double seconds)> rest = {};
   /// Energies of the cycle that begins at the checkpoint, sampled every `stride` steps.
   std::function<CycleEnergies(const Checkpoint& from, std::uint64_t stride)> next_cycle = {};
@@ -101,19 +101,20 @@ struct RunFacts {
 struct MeasureInput {
   const Analysis* analysis = nullptr;  ///< of the checkpoint; a simulation must not count on it
   const Checkpoint* checkpoint = nullptr;
-  /// The same run's checkpoint so many cycles earlier, valid until the next call; null where the
-  /// run has none.
+  /// The checkpoint of the same run `cycles` earlier, valid until the next call; null if the run
+  /// has no such checkpoint.
   std::function<const Checkpoint*(std::uint64_t cycles)> earlier = {};
   const CheckpointRecord* record = nullptr;
   const RunFacts* run = nullptr;
 };
 
-/// SI values of the units of mechanics at the checkpoint, whose springs may have been made stiffer;
-/// not a number where the run's parameters are unknown.
+/// SI values of the units of Mechanics at the checkpoint, after any stiffening; not a number if the
+/// run's parameters are unknown.
 MechanicalUnits mechanical_units(const MeasureInput& input);
 
-/// What a provider needs: the record of a checkpoint in the log; its file; a simulation that begins
-/// at the file, which takes longer than an analysis; or the measured checkpoints of a whole run.
+/// What a provider needs: `record`, the checkpoint's record in the log; `checkpoint`, its file;
+/// `simulation`, a simulation that begins at the checkpoint, which takes longer than an analysis;
+/// `history`, the measured checkpoints of a whole run.
 enum class ComputedFrom { record, checkpoint, simulation, history };
 
 struct Provider {
@@ -121,8 +122,9 @@ struct Provider {
   nlohmann::json parameters =
       nlohmann::json::object();        ///< on which results depend besides the checkpoint
   std::vector<Measure> measures = {};  ///< all of each grain, or none
-  /// An object: a value for each measure, by name. A curve is {"x", "y"}; a measure of each grain
-  /// is an array. Measures that need a checkpoint or a shear that the run lacks are left out.
+  /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
+  /// each grain is an array. A measure is left out if the run lacks the checkpoint or the shear
+  /// that it needs.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
   std::vector<std::uint64_t> earlier = {};  ///< cycles back to the other checkpoints it needs
   ComputedFrom from = ComputedFrom::checkpoint;
@@ -132,22 +134,22 @@ struct Provider {
 
   /// Name and parameters as one text: equal texts, equal computation.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Those of a record follow from the log, and measures of each grain
-  /// would take more room than the checkpoint.
+  /// Whether results are stored. Results of `record` follow from the log, and measures of each
+  /// grain would take more room than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
-  /// Adds a result to the measures. Throws AnalysisError for a result of something else.
+  /// Adds a result to the measures. Throws AnalysisError if another provider made the result.
   void read(const nlohmann::json& result, Measures& measures) const;
 };
 
 /// In the order of the columns of tables.
 std::span<const Provider> all_providers();
-/// The one of that name, which must exist.
+/// The provider of that name, which must exist.
 const Provider& provider(std::string_view name);
 
 /// The measures of one kind, of all providers. Numbers include counts.
 std::vector<const Measure*> all_measures(MeasureKind kind);
-/// Their names, of several kinds.
+/// The names of all measures of these kinds.
 std::vector<std::string_view> measure_names(std::initializer_list<MeasureKind> kinds);
 /// The measure of that name and kind, or null. Numbers include counts.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);

@@ -11,19 +11,18 @@
 
 namespace shearcell {
 
-/// In units of the spring constant k, the grain's mass m and diameter d, which a checkpoint does
-/// not need to know; MechanicalUnits has their values. Stress is positive in compression and is
-/// that of the interior grains over their Voronoi cells:
-///   sigma = 1/V sum_i sum_j f_ij (x) l_ij,  l_ij from the contact to the grain's centre,
-/// (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing shear
+/// Units are the spring constant k and the grain's mass m and diameter d; MechanicalUnits has their
+/// SI values. Stress is positive in compression and is that of the interior grains over their
+/// Voronoi cells, sigma = 1/V sum_i sum_j f_ij (x) l_ij, with l_ij from the contact to the grain's
+/// centre (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing shear
 /// strain du_x/dy is resisted by a negative sigma_xy. Means over no grain are not a number.
 struct Mechanics {
   double stress_xx = 0, stress_yy = 0, stress_zz = 0;  ///< of contacts [k/d]
   double stress_xy = 0, stress_xz = 0, stress_yz = 0;  ///< [k/d]
   double pressure = 0;                                 ///< trace / 3 [k/d]
   double deviator = 0;                                 ///< sqrt(s:s / 2), s the deviator [k/d]
-  /// Kinetic part of the pressure, of velocities less their mean, for v_x less its linear profile
-  /// in y [m/(d s^2)].
+  /// Kinetic part of the pressure [m/(d s^2)], from velocities minus their mean; from v_x its
+  /// linear profile in y is subtracted.
   double kinetic_pressure = 0;
   double coordination = 0;  ///< contacts per interior grain
   /// Interior grains [%] with fewer than four contacts with walls and grains that are not rattlers.

@@ -29,13 +29,13 @@ struct Motion {
   std::vector<double> nonaffine;
 };
 
-/// Throws AnalysisError when they do not have the same grains.
+/// Throws AnalysisError if the checkpoints do not have the same grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later);
-/// The same; not a number for each grain of `now` if there is no earlier checkpoint.
+/// motion(), with values that are not a number if there is no earlier checkpoint.
 Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now);
 
-/// Of each of the `crystalline` grains (1 or 0): 1 if a neighbour, at most motion_neighbour_d away,
-/// is not.
+/// One entry per grain: 1 for a crystalline grain with a neighbour, at most motion_neighbour_d
+/// away, that is not crystalline; else 0. `crystalline` has 1 or 0 for each grain.
 std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                                            std::span<const std::uint8_t> crystalline);
 

@@ -36,17 +36,17 @@ double critical_size_for(const FigureRun& run);
 RunOnset onset_by_size(const FigureRun& run);
 
 /// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
-/// straight line, by least squares, through the checkpoints within `slope_window / 2`; at least
-/// four checkpoints that span half of the window, and no crystallite counts as one grain; a run
-/// without such a window is unclear. One whose largest crystallite never has the critical size
-/// has not crystallized and is censored. [choice]
+/// least-squares line through the checkpoints within `slope_window / 2` of phi. There must be at
+/// least four such checkpoints, which span half of the window; a run without such a window is
+/// unclear. A packing without a crystallite counts as one grain. A run whose largest crystallite
+/// never has the critical size is censored. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FigureRun& run);
 
 using OnsetMethod = RunOnset (*)(const FigureRun& run);
 
-/// Over independent runs. Censored runs do not enter the mean. They are counted, because without
-/// them the mean is biased towards early onsets.
+/// The onset over independent runs. Censored runs do not enter the mean, which is therefore biased
+/// towards early onsets; they are counted.
 struct Onset {
   RunStatistics phi;                ///< over observed runs
   std::optional<double> phi_error;  ///< of the mean, bootstrap over runs

@@ -90,8 +90,8 @@ struct PlotSpec {
   /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
   /// parameters, or of measures of a run and parameters.
   std::string y;
-  /// Parameters and their values, of one variant: `y` is less that of its run with the same packing
-  /// at the same cycle. Empty: `y` itself.
+  /// Parameters and their values that single out one variant. The plot then shows `y` minus the `y`
+  /// of that variant's run with the same packing at the same cycle. Empty: `y` itself.
   nlohmann::json minus = nlohmann::json::object();
   /// "cycle", a number of a checkpoint, a parameter, a number of the whole run (drawn at its mean
   /// over the runs of each variant), or an expression of these; unused by curves.
@@ -105,13 +105,15 @@ struct PlotSpec {
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   std::vector<ColumnSpec> also = {};  ///< further scalar measures for the CSV, against the cycle
-  /// Of curves, or with a parameter as x; default: the last one that all runs have.
+  /// The cycle of a curve measure, or of `y` against a parameter; default: the last cycle that all
+  /// runs have.
   std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
-  /// Of a figure that a manifest lists and does not state. Labels of that manifest come before
-  /// those of `series`, and styles are used only where the runs differ in their parameters alone.
+  /// A manifest lists the figure in `figures` and does not state it. Labels of that manifest then
+  /// come before those of `series`, and styles are used only if the runs differ in no other
+  /// parameters.
   bool listed = false;
 
   bool operator==(const PlotSpec&) const = default;
@@ -121,22 +123,25 @@ struct ClaimSpec {
   std::string name;
   std::string figure = {};  ///< as PlotSpec::figure
   std::string compare;      ///< as PlotSpec::y, but no curve
-  /// One of these three, nothing for a run measure: the measure's mean over cycles, first to last;
-  /// its mean over a window of phi; the first cycle at which it has at least this value.
+  /// What is compared of a measure of checkpoints, one of three: its mean over cycles, first to
+  /// last; its mean over a window of phi; the first cycle at which it has at least this value. None
+  /// of them for a measure of the whole run.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::optional<std::array<double, 2>> phi = {};
   std::optional<double> reaches = {};
-  /// Parameters and their values, of one variant each. The second one is empty if the first is
-  /// compared with published numbers.
+  /// Two variants, each by parameters and their values. The second is empty if the first is
+  /// compared with a published number.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// Of onset_size_cycle and `reaches`, of log2 of the ratio. 0: the published number is a bound.
+  /// In units of the measure; for onset_size_cycle and `reaches`, of log2 of the ratio. 0: the
+  /// published number is a bound.
   double margin = 0;
   bool relative = false;       ///< the margin is of the relative difference
   std::string statement = {};  ///< what the claim says, for people; "": from its keys
   Relation is = Relation::same;
   bool optional = false;  ///< no verdict if a side has no runs
-  /// As PlotSpec::listed. A side that is not one variant has no runs, and is not refused.
+  /// As PlotSpec::listed. A side that is not one variant then has no runs; otherwise it is an
+  /// error.
   bool listed = false;
 
   bool operator==(const ClaimSpec&) const = default;
@@ -145,25 +150,27 @@ struct ClaimSpec {
 /// "fluid=still, walls=rough" of parameters and their values.
 std::string words_of(const nlohmann::json& values);
 
-/// A column that the CSV of means against the cycle would have twice; "" for none.
+/// The name of a column that occurs twice in the CSV of means against the cycle; "" if there is
+/// none.
 std::string repeated_column(const PlotSpec& plot);
 
 /// Whether the x of a plot is one number of a run: it names neither the cycle nor a measure of
 /// checkpoints.
 bool is_parameter(std::string_view x);
-/// Whether it names a measure of the whole run, so that runs of one variant differ in it.
+/// Whether `x` names a measure of the whole run, which differs between runs of one variant.
 bool is_measured_of_run(std::string_view x);
 
-/// How many variants the runs are of.
+/// The number of variants among the runs.
 std::size_t count_variants(RunGroup runs);
 
-/// The runs with these parameters; if they are of several variants, without those of another engine
-/// that `run --engine` added.
+/// The runs with these parameters. If they belong to several variants, runs that `run --engine`
+/// added are left out.
 std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
                                         std::span<const FigureRun> runs);
 
-/// A copy of the runs with the value of each expression, and of each run measure: of a number of
-/// the run, one of its parameters; else one of the measures of each checkpoint.
+/// Returns a copy of the runs with the values of the expressions and run measures in `texts`. A
+/// number of the whole run becomes one of its parameters; any other value becomes a measure of each
+/// checkpoint.
 std::vector<FigureRun> with_values(std::span<const FigureRun> runs,
                                    const std::vector<std::string>& texts);
 
@@ -177,22 +184,21 @@ bool draws_every_cycle(const PlotSpec& plot);
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
 
-/// The measure against `x`, as the supplement's figures are drawn: one panel NAME, or with
-/// PlotSpec::panel panels NAME_1, NAME_2, ... with equal ranges. Against phi, runs are averaged in
-/// bins; against another measure, at each cycle; a curve measure against its own x, at one cycle;
-/// against a parameter, at one cycle or a number of the whole run. `names` names curves that
-/// several variants share by what these have in common; without it they are called "fluid=still".
+/// The figure of a plot: one panel NAME, or with PlotSpec::panel panels NAME_1, NAME_2, ... with
+/// equal ranges. Against phi, runs are averaged in bins of phi; against another measure, at each
+/// cycle; against a parameter, at one cycle. A curve measure is drawn against its own x at one
+/// cycle. `names` gives curves their titles; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
-/// Why `minus` names no variant, or several, a sentence; "" if it names one. `variants`: how many
-/// have its values.
+/// A sentence on why `minus` does not name exactly one variant; "" if it does. `variants`: how many
+/// variants have its values.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
-/// Why the sides of a claim cannot be compared, a sentence each. `variants`: how many variants have
-/// the values of each side; `same`: whether both are the same runs.
+/// One sentence for each reason why the sides of a claim cannot be compared. `variants`: how many
+/// variants have the values of each side; `same`: whether both sides have the same runs.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
                                            const std::array<std::size_t, 2>& variants, bool same);
 
@@ -201,7 +207,7 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
 Figure claim_figure(const ClaimSpec& claim);
 
 /// The figures of a manifest, in the order of their first plots and claims. `question` is the title
-/// of those with several parts.
+/// of figures with several parts.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question = {});
 

@@ -11,7 +11,8 @@
 
 namespace shearcell {
 
-/// Where the centres of interior grains are: between planes parallel to the walls, periodic in z.
+/// The region of the centres of interior grains: between planes parallel to the walls, periodic in
+/// z.
 struct InteriorRegion {
   double left = 0;    ///< x of the left border at y = bottom [d]
   double bottom = 0;  ///< [d]
@@ -22,7 +23,7 @@ struct InteriorRegion {
 
   double volume() const { return width * height * depth; }
 };
-/// Its width or height is negative in a cell that is too small for interior grains.
+/// Width or height of the result are negative if the cell is too small for interior grains.
 InteriorRegion interior_region(const Cell& cell, const WallPose& pose);
 
 inline constexpr double pair_bin_d = 0.02;  ///< [d]
@@ -30,16 +31,17 @@ inline constexpr double pair_reach_d = 5;   ///< largest r, or half the depth if
 inline constexpr double wave_bin_per_d = 0.25;    ///< [1/d]
 inline constexpr double largest_wave_per_d = 25;  ///< [1/d]
 
-/// Pair correlation of the interior grains: pairs at a distance r over those of as many grains
-/// placed at random in the interior region, whose shape is taken out exactly (the set covariance of
-/// a parallelepiped; Ohser, Math. Operationsforsch. Statist. 14, 63 (1983)).
+/// Pair correlation of the interior grains: the number of pairs at a distance r over the expected
+/// number for as many grains placed at random in the same region. The expected number follows
+/// exactly from the set covariance of the region, a parallelepiped (Ohser, Math. Operationsforsch.
+/// Statist. 14, 63 (1983)).
 MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
                                const Eigen::Matrix3Xd& grains,
                                std::span<const std::uint8_t> interior);
 
 /// Structure factor of the interior grains, |sum exp(i k r)|^2 / n, as a mean over wave vectors of
-/// the region's reciprocal lattice, for which a uniform density gives zero. Of each bin in |k| at
-/// most 48 vectors are taken, evenly spaced in their lexical order.
+/// the region's reciprocal lattice, for which a uniform density gives zero. Each bin in |k| takes
+/// at most 48 vectors, evenly spaced in their lexical order.
 MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
                                const Eigen::Matrix3Xd& grains,
                                std::span<const std::uint8_t> interior);

@@ -19,9 +19,9 @@ std::string gnuplot_script(const FigureTable& table);
 /// How every script begins.
 inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg size ";
 
-/// Throws NotOurs if it would overwrite a file that this program did not write. A script is
-/// recognized by its first words, the CSV by its header or by a script of the same name, drawings
-/// by that script.
+/// Throws NotOurs if drawing the table would overwrite a file that this program did not write.
+/// Scripts are recognized by their first words, a CSV file by its header or by the script of the
+/// same name, drawings by the script of the same name.
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it

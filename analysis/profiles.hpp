@@ -33,12 +33,11 @@ struct Core {
 };
 Core core(const Checkpoint& checkpoint, const GrainMeasures& grains);
 
-/// How the crystalline grains and crystallites depend on the criteria: results (y) against one
-/// criterion (x) while the others stay. Crystalline grains among interior grains [%] against the
-/// half width of the window of q6.
+/// Crystalline grains among interior grains [%] against the half width of the window of q6; the
+/// other criteria stay.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains);
 
-/// The same against the threshold of phi_local.
+/// Crystalline grains among interior grains [%] against the threshold of phi_local.
 MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains);
 
 /// Grains in the largest crystallite against the least connecting face, as a share of the mean

@@ -23,8 +23,8 @@ RunStatistics over_runs(std::span<const double> values);
 /// The root mean square, as `mean`, with the error of the mean square over twice the root.
 RunStatistics rms_over_runs(std::span<const double> values);
 
-/// A number computed from a selection of the runs, in which a run may occur several times. The
-/// bootstrap takes 1000 selections, drawn with replacement by core's counter-based generator: the
+/// A number computed from a selection of runs, in which a run may occur several times. The
+/// bootstrap takes 1000 selections, drawn with replacement by a counter-based generator, so the
 /// same input gives the same values.
 using RunStatistic = std::function<std::optional<double>(std::span<const std::size_t>)>;
 
@@ -33,13 +33,13 @@ using RunStatistic = std::function<std::optional<double>(std::span<const std::si
 /// two runs, or if fewer than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
-/// Of every interval. An interval at 90 % within a margin is the two one-sided tests at 5 % of
-/// Schuirmann, J. Pharmacokinet. Biopharm. 15, 657 (1987).
+/// Confidence level of all intervals. A 90 % interval that lies within a margin is equivalent to
+/// two one-sided tests at 5 %: Schuirmann, J. Pharmacokinet. Biopharm. 15, 657 (1987).
 inline constexpr double confidence_level = 0.9;
 
 /// With fewer runs, or fewer pairs of runs, nothing is estimated. [choice]
 inline constexpr std::size_t least_runs = 3;
-/// The same for the bootstrap. Its interval of a mean cannot extend beyond the smallest and the
+/// Fewest runs for the bootstrap. The interval of a mean cannot extend beyond the smallest and the
 /// largest run, which enclose the median with a probability of 1 - 2^(1 - runs): 75 % for 3 runs,
 /// 94 % for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
@@ -57,7 +57,7 @@ struct Estimate {
   double spread = 0;       ///< the standard error would be spread / sqrt(n) with n runs a group
 };
 
-/// Of an interval whose ends are `quantile` standard errors from its middle.
+/// The estimate with an interval whose ends are `quantile` standard errors from its middle.
 Estimate estimate_with(double value, const Interval& interval, double quantile, std::size_t runs);
 
 /// Quantiles of Student's t with `freedom` degrees of freedom and of the normal distribution.
@@ -71,11 +71,11 @@ std::optional<Estimate> mean_of(std::span<const double> values);
 /// Biometrika 34, 28 (1947).
 std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b);
 
-/// A statistic of a selection of runs that is not a mean. Expanded percentile interval of the
-/// bootstrap, which has the length of Student's interval where the statistic is a mean: T. C.
-/// Hesterberg, The American Statistician 69, 371 (2015). A selection's statistic may be infinite.
-/// Selections that have none widen the interval at both ends. None for fewer than
-/// least_bootstrap_runs, or when all runs together have no finite statistic.
+/// Estimates a statistic that is not a mean, with the expanded percentile interval of the
+/// bootstrap: T. C. Hesterberg, The American Statistician 69, 371 (2015). For a mean this interval
+/// would have the length of Student's interval. The statistic of a selection may be infinite;
+/// selections without a statistic widen the interval at both ends. None for fewer than
+/// least_bootstrap_runs, or if all runs together have no finite statistic.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
 
 /// Where 90 % of repetitions with `chosen` runs lie: 5 and 95 % quantiles of the statistic of so
@@ -90,8 +90,9 @@ Estimate ratio(const Estimate& a, const Estimate& b);
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the
 /// truth with 90 % probability; on both sides of the truth if `both_sides`. Normal theory, with
 /// Student's t for both errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
-/// (2008), section 3.2. None when it is more than 10000. It is as uncertain as the square of the
-/// spread: from 3 runs the right number is 0.3 to 20 times as large, from 6 runs 0.5 to 4 times.
+/// (2008), section 3.2. None if the number is more than 10000. The number is as uncertain as the
+/// square of the spread: the right number is 0.3 to 20 times that from 3 runs, and 0.5 to 4 times
+/// that from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
@@ -103,7 +104,7 @@ struct Waiting {
   bool observed = false;
 };
 
-/// Probability to wait longer than `cycle`, from that cycle on.
+/// Probability to wait longer than `cycle`; it holds until the next step.
 struct SurvivalStep {
   double cycle = 0;
   double survival = 1;
@@ -113,9 +114,8 @@ struct SurvivalStep {
 /// Stat. Assoc. 53, 457 (1958).
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
-/// The first cycle after which less than half of the runs still wait; the middle of the cycles
-/// between which exactly half do, as the median of an even number of values. None if more than half
-/// wait at the end.
+/// The first cycle after which less than half of the runs still wait. If exactly half of the runs
+/// wait between two cycles, the middle of these cycles. None if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
 /// The log-rank statistic: events of `a` observed and expected if both groups wait alike, over the
@@ -123,12 +123,12 @@ std::optional<double> median_wait(std::span<const Waiting> runs);
 /// N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
-/// log2 of the factor by which the waits of `a` are longer than those of `b`: the one at which the
-/// log-rank statistic of `a` against the scaled `b` vanishes. The interval holds the factors that
-/// the log-rank test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test compares
-/// with Student's t, n + m - 2 degrees of freedom: with the normal distribution the intervals of 4
-/// to 12 runs a group cover 86 to 88 %. The interval is infinite where too few events were
-/// observed. None for fewer than least_runs in a group, or without an event.
+/// log2 of the factor by which the waits of `a` are longer than those of `b`. With this factor the
+/// log-rank statistic of `a` against the scaled waits of `b` vanishes. The interval holds the
+/// factors that the log-rank test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The
+/// test compares with Student's t, n + m - 2 degrees of freedom: with the normal distribution the
+/// intervals of 4 to 12 runs a group cover 86 to 88 %. The interval is infinite where too few
+/// events were observed. None for fewer than least_runs in a group, or without an event.
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b);
 
 }  // namespace shearcell

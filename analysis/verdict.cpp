@@ -50,17 +50,19 @@ json claim_of(const Verdict& verdict) {
                 rounded(verdict.interval.high, significant)};
   }
   if (verdict.runs_needed) runs_needed = *verdict.runs_needed;
-  return {{"claim", verdict.claim},
-          {"quantity", verdict.quantity},
-          {"estimate", estimate},
-          {"interval", interval},
-          {"level", confidence_level},
-          {"margin", rounded(verdict.margin, significant)},
-          {"verdict", name_of(verdict.ruling)},
-          {"runs", verdict.runs},
-          {"counted", name_of(verdict.counted)},
-          {"runs_needed", runs_needed},
-          {"note", verdict.note}};
+  json claim = {{"claim", verdict.claim},
+                {"quantity", verdict.quantity},
+                {"estimate", estimate},
+                {"interval", interval},
+                {"level", confidence_level},
+                {"margin", rounded(verdict.margin, significant)},
+                {"verdict", name_of(verdict.ruling)},
+                {"runs", verdict.runs},
+                {"counted", name_of(verdict.counted)},
+                {"runs_needed", runs_needed},
+                {"note", verdict.note}};
+  if (verdict.primary) claim["primary"] = true;
+  return claim;
 }
 
 }  // namespace
@@ -138,6 +140,7 @@ std::string numbers_of(const Verdict& verdict) {
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
+  if (verdict.primary) text += ", primary claim";
   return text;
 }
 

@@ -54,31 +54,32 @@ struct Verdict {
   Counted counted = Counted::runs;
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
   std::string note;                        ///< how it was compared, what is missing
+  bool primary = false;  ///< its runs were made to decide it; others are exploratory
   Entered entered = {};
 };
 
 /// agrees, supported: the interval lies where the claim puts it. differs, refuted: the interval
-/// lies wholly outside. undecided: otherwise, and without an estimate. runs_needed decides with 90
-/// % probability if the true value is 0 or twice the margin. If the interval excludes 0, or there
-/// are as many runs already, the true value is taken to be the estimate. It is always more than the
-/// runs of the estimate.
+/// lies wholly outside. undecided: otherwise, and without an estimate. `runs_needed` runs would
+/// decide with 90 % probability if the true value is 0 or twice the margin. If the interval
+/// excludes 0, or that many runs exist already, the true value is taken to be the estimate.
+/// `runs_needed` is always more than the runs of the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note);
 
-/// How many claims have each ruling; without those that no claim has.
+/// The number of claims with each ruling, without rulings that no claim has.
 std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 
 /// "1 agrees, 1 refuted"; "" without claims.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
-/// The rows of all verdicts, each after its claim, with the columns of all.
+/// The rows of all verdicts in one table, each row after its claim, with the columns of all
+/// verdicts.
 FigureTable entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"claim", "quantity", "estimate", "interval": [low, high], "level",
-/// "margin", "verdict", "runs", "counted", "runs_needed", "note"}]}. "verdict" is headline_of() or
-/// null. Numbers have six significant digits; null
-/// where there is none, for an infinite end of an interval too. The same verdicts give the same
-/// bytes.
+/// "margin", "verdict", "runs", "counted", "runs_needed", "note", and "primary" if it is}]}.
+/// "verdict" is headline_of() or null. Numbers have six significant digits; null where there is
+/// none, for an infinite end of an interval too. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed".

@@ -41,7 +41,8 @@ struct VoronoiDiagram {
 enum class WallGrainCells : std::uint8_t { skip, measure };
 
 /// Cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth), inside the walls in the
-/// given pose. With WallGrainCells::measure all volumes together are the volume of the sheared box.
+/// given pose. With WallGrainCells::measure the volumes of all cells add up to that of the sheared
+/// box.
 ///
 /// Cells are the dual of CGAL's Delaunay triangulation of sites and images: polygons of
 /// circumcentres, clipped by the walls. The faces of a grain are in ascending order of kind,

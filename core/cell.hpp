@@ -34,8 +34,8 @@ inline constexpr double kLongestCell = 1e5;
 /// boundaries.
 inline constexpr double kShallowestCell = 3;
 
-/// The largest volume of a cell for each of N + 100 grains [d^3]. An analysis takes memory for each
-/// layer of the cell.
+/// The largest volume of a cell, divided by N + 100 [d^3]. An analysis takes memory for each layer
+/// of the cell.
 inline constexpr double kLoosestCell = 1e4;
 
 /// Geometry that does not change during a run. Lengths in grain diameters d.
@@ -92,8 +92,8 @@ Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose, cons
 /// Centres of all wall grains in a pose, 3 x n [d], in their permanent order.
 Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose);
 
-/// Their velocities [d/s], the time derivative of these positions, while tan(theta) changes at
-/// `shear_rate` [1/s] and the moving wall moves at `wall_velocity` [d/s].
+/// Velocities of all wall grains [d/s] while tan(theta) changes at `shear_rate` [1/s] and the
+/// moving wall moves at `wall_velocity` [d/s].
 Eigen::Matrix3Xd wall_grain_velocities(const Cell& cell, const WallPose& pose, double shear_rate,
                                        double wall_velocity);
 

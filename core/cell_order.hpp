@@ -28,8 +28,8 @@ class CellOrder {
 
   const CellGrid& grid() const { return grid_; }
   std::size_t size() const { return site_.size(); }
-  /// About how many places after a site its farthest neighbours are, a multiple of 8; 0 in a cell
-  /// that fits in a core's cache.
+  /// Distance in places from a site to its farthest neighbours, roughly, as a multiple of 8; 0 in a
+  /// cell that fits in a core's cache.
   std::size_t ahead() const { return ahead_; }
   /// Index in the given sites of the site at each place.
   const std::vector<std::int32_t>& site() const { return site_; }

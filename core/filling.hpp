@@ -43,9 +43,9 @@ double fill_height(const Geometry& geometry);
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains: wider or higher than kLongestCell, with more than
-/// half of kLoosestCell for each grain (its wall may yet move outwards), or with more wall grains
-/// than 10^4 + 1000 N. Placing those takes up to 6000 attempts each.
+/// Whether the cell is too large for its grains: wider or higher than kLongestCell; larger than
+/// half of kLoosestCell, since the wall may still move outwards; or with more than 10^4 + 1000 N
+/// wall grains, each of which may take 6000 attempts to place.
 bool too_large(const Geometry& geometry);
 
 /// The cell at its fill height, with its wall grains placed by random sequential addition.
@@ -58,7 +58,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed,
                 const Poll& poll = {});
 
 /// Moves each grain by independent normal noise of standard deviation `noise` [d] along x, y and z.
-/// It depends on seed and number of the grain only.
+/// The noise depends on the seed and the number of the grain only.
 void add_noise(State& state, double noise, std::uint64_t seed);
 
 }  // namespace shearcell

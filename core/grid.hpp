@@ -28,8 +28,8 @@ struct Grid {
   std::array<double, 3> per_cell{};  ///< cells per d in x, y, z
 
   Grid() = default;
-  /// As many cells of at least these sizes [d] as fit, of which there are at most about four per
-  /// point, so that a nearly empty cell costs no more than its points. One strip.
+  /// As many cells of at least these sizes [d] as fit, but at most about four for each point, so
+  /// that a nearly empty grid costs no more than its points. One strip.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
   /// The number of cells.
@@ -42,7 +42,7 @@ struct Grid {
   /// border cell.
   std::uint32_t cell_of(const double* point) const;
 
-  /// The place among all lines of cells along x of the line at `row` and `layer`.
+  /// Index of the line of cells along x at `row` and `layer`.
   std::int32_t line_of(std::int32_t row, std::int32_t layer) const {
     const std::int32_t first = layer - layer % strip;
     return first * rows + row * std::min(strip, layers - first) + layer - first;

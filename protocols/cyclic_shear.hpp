@@ -9,8 +9,8 @@
 
 namespace shearcell {
 
-/// Checkpoints after every so many cycles, at these steps of each cycle that follows one, and at
-/// the end of the last cycle; none after that.
+/// When checkpoints are due: after every `every_cycles` cycles, at the `steps` of each cycle that
+/// follows such a checkpoint, and at the end of the last cycle.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
@@ -23,8 +23,8 @@ std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const
 
 class CyclicShear final : public Protocol {
  public:
-  /// Shears for `cycles` cycles; a checkpoint is due after every `checkpoint_cycles` of them, and
-  /// where `more` has one.
+  /// Shears for `cycles` cycles. Checkpoints are due after every `checkpoint_cycles` cycles and by
+  /// the cadences `more`.
   CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles,
               std::vector<CheckpointCadence> more = {});
   Drive drive() const override { return drive_; }

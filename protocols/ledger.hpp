@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy balance of a driven cell: what the tilting walls put in is what is stored and what
-// drag takes out, up to an error of the integrator's order.
+// The energy balance of a driven cell: the work of the tilting walls equals the stored energy and
+// the loss by drag, up to an error of the integrator's order.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace shearcell {
 /// Of all grains and the moving wall, over some steps [m d^2/s^2].
 struct Ledger {
   double work_of_walls = 0;  ///< of the drive, which tilts the walls; not of the load
-  /// To the fluid, by drag: sum of b v.(v - u); negative if the fluid drives them.
+  /// Energy that the grains lose to the fluid, sum of b v.(v - u); negative if the fluid drives the
+  /// grains.
   double lost_by_grains = 0;
   double lost_by_wall = 0;   ///< by the moving wall's own drag
   double elastic = 0;        ///< change of the energy of all contacts

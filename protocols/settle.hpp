@@ -21,9 +21,10 @@ struct SettleParameters {
       WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
 };
 
-/// Time [s] in which the moving wall presses loose grains of this height [d] together, `per_area`
-/// grains per d^2: the time from there to a dense packing at the speed at which the drags of the
-/// wall and of all grains balance the pressure, and half a second more.
+/// Time [s] for which the moving wall presses loose grains together: until they are dense, and half
+/// a second more. The wall is assumed to move at the speed at which its drag and the drag of all
+/// grains balance the pressure. The loose grains are `height` [d] high, with `per_area` grains per
+/// d^2 of wall.
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has had time to press the grains together.
@@ -34,9 +35,9 @@ double pressing_time(const Scene& scene, double height, double per_area);
 /// moving wall, its speed and the kinetic energy per grain are below their tolerances. The speed
 /// enters as the drag force B_w y' over P A_w, so that a creeping wall does not count as balanced.
 ///
-/// While it presses, the wall may catch a grain between its own wall grains and those of a side
-/// wall and push it out with its whole force: overlaps up to half a diameter are accepted until
-/// then.
+/// While the wall presses, overlaps up to half a diameter are accepted: the wall may catch a grain
+/// between its own wall grains and those of a side wall, and push the grain out with the whole
+/// load.
 class Settle final : public Protocol {
  public:
   /// `scene` is the final one, with gravity.
@@ -49,14 +50,16 @@ class Settle final : public Protocol {
   /// pressure.
   std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
-  /// The part of them without gravity: all, but 0 if the scene has no gravity.
+  /// The compaction steps before gravity is switched on: all of them, or 0 if the scene has no
+  /// gravity.
   std::uint64_t steps_without_gravity(const Cell& cell, std::size_t grains) const;
 
-  /// The first step after this one at which the tolerances are checked.
+  /// The first step after `step` at which the tolerances are checked.
   std::uint64_t next_check(std::uint64_t step) const;
 
  private:
-  /// Whether the packing has settled at a check; throws NumericalFailure at one beyond the limit.
+  /// Whether the packing has settled, at a check. Throws NumericalFailure at a check after the time
+  /// limit.
   bool finished(const Simulation& simulation) const;
   bool settled(const Simulation& simulation) const;
 
@@ -66,8 +69,8 @@ class Settle final : public Protocol {
   std::uint64_t limit_steps_;
 };
 
-/// The grains pressed together without gravity for as long as Settle does it: a dense packing that
-/// has not come to rest. Its step is 0.
+/// Presses the grains together without gravity for as long as Settle does: a dense packing that has
+/// not come to rest, at step 0.
 State pressed(const Cell& cell, const State& loose, Scene scene);
 
 }  // namespace shearcell

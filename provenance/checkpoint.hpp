@@ -27,7 +27,7 @@ struct Checkpoint {
   std::map<std::string, double> observables;  ///< name with unit -> value
 };
 
-/// The walls at its time.
+/// The walls at the time of the checkpoint.
 inline WallPose pose_of(const Checkpoint& checkpoint) {
   return wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
 }
@@ -41,10 +41,11 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
 /// Throws StoreDamaged, naming the place in the file, when a length, position or tilt is outside
-/// the range of any cell. A run or an analysis could otherwise overflow or never end.
+/// the range of any cell; with such a value a run or an analysis could overflow or never end.
 void require_plausible(const Checkpoint& checkpoint);
 
-/// SHA-256 (hex) of the exact state and cell. Runs continue identically if and only if it is equal.
+/// SHA-256 (hex) of the exact state and cell. Runs continue identically if and only if their hashes
+/// are equal.
 std::string state_hash(const Checkpoint& checkpoint);
 
 }  // namespace shearcell

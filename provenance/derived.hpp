@@ -37,7 +37,7 @@ class DerivedCache {
   /// With Access::read nothing is created, replaced or stored.
   explicit DerivedCache(const std::filesystem::path& store_folder, Access access = Access::create);
 
-  /// In the order of `keys`; nothing for those that are not stored.
+  /// Contents in the order of `keys`; nothing for objects that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
   /// Stores all or none; replaces objects with the same key.
@@ -49,8 +49,8 @@ class DerivedCache {
   static constexpr const char* kFile = "derived.sqlite";
 
  private:
-  /// Opens the file if it is not open and does the work; once more with a new file if this one is
-  /// damaged.
+  /// Opens the file if it is not open and does the work. If the file is damaged, does the work once
+  /// more with a new file.
   template <typename Work>
   void attempt(Work&& work);
   void open();

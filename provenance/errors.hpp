@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors by what the caller can do about them. experiments/cli/main.cpp gives each its exit code.
+// Errors, by what the caller can do about them. experiments/cli/main.cpp turns them into exit
+// codes.
 #pragma once
 
 #include <stdexcept>

@@ -23,7 +23,7 @@ inline constexpr std::int64_t kSchemaVersion = 3;
 /// changing events. With Access::read the tables of an older schema are derived in memory; the file
 /// is still opened for writing if possible, so that SQLite can roll back the transaction of a
 /// crashed program. Throws StoreDamaged when the file is not a store or has a newer schema, and
-/// MachineError when it is to be written and this user may not.
+/// MachineError when this user may not write a file that is to be written.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.

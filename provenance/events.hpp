@@ -39,7 +39,7 @@ struct PackingRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  Stage run;  ///< without its id, and as nobody began it
+  Stage run;  ///< without its id, in the state `declared`
   Ask ask;
   static void fields(auto& e, auto field) {
     field("parent", e.run.parent), field("kind", e.run.kind), field("resolved", e.run.resolved);

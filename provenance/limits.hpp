@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The limits of a store's content. Stores are untrusted input; experiments/README.md lists all
-// limits of the program.
+// The limits of a store's content, which is untrusted.
 #pragma once
 
 #include <cstddef>

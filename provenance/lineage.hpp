@@ -49,7 +49,7 @@ struct Attempt {
   std::vector<std::string> checkpoints;  ///< SHA-256 of its checkpoints, in order
 };
 
-/// One checkpoint in the state in which later events left it.
+/// One checkpoint, with its state after all events.
 struct CheckpointHistory {
   CheckpointRecord record;
   std::string recorded_at;  ///< UTC
@@ -74,10 +74,10 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id
 
-/// Adds the run and the stages before it, unless they are there.
+/// Adds the lineage of the run and of the stages before it, unless it is there.
 void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages);
 
-/// What it took to compute a stage.
+/// Processor time of a stage, and the processors.
 struct ComputingTime {
   /// Processor time of all steps up to recorded checkpoints, over all attempts. Where none was
   /// recorded (by earlier versions, and of LAMMPS under mpirun), wall-clock time times processes.
@@ -85,8 +85,8 @@ struct ComputingTime {
   std::set<std::string> processors;  ///< their names, of the attempts that recorded checkpoints
 };
 
-/// Of the checkpoints up to this cycle. Throws StoreDamaged, naming the event, for a damaged
-/// payload.
+/// The time up to the checkpoint of `last_cycle`. Throws StoreDamaged, naming the event, for a
+/// damaged payload.
 ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle);
 
 struct ManifestText {

@@ -20,8 +20,8 @@ class ObjectStore {
   /// The folder must exist; the first put creates `objects` in it.
   explicit ObjectStore(std::filesystem::path store_folder);
 
-  /// When this returns their SHA-256, the bytes are on the disk under that name. An existing object
-  /// is kept if it is valid and replaced if not. Throws std::system_error, and StoreDamaged when
+  /// Writes the bytes and returns their SHA-256; the object is then on the disk. An existing object
+  /// is kept if it is valid, else replaced. Throws std::system_error, and StoreDamaged when
   /// `objects` or a folder in it is not a folder.
   std::string put(std::span<const std::byte> bytes);
 

@@ -181,7 +181,7 @@ class Projector {
     run("UPDATE runs SET wall_seconds = wall_seconds + ?2, particle_steps = particle_steps + ?3 "
         "WHERE id = ?1",
         id_, e.effort.wall_seconds, e.effort.particle_steps);
-    move_to_furthest_checkpoint();
+    move_to_furthest_from(c.sha256);
   }
 
   void operator()(const events::CheckpointRejected& e) const {
@@ -189,14 +189,16 @@ class Projector {
     run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
         "step = (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)",
         id_, e.sha256);
-    move_checkpoint(e.sha256, "rejected");
+    mark_checkpoint(e.sha256, "rejected");
+    move_to_furthest_from(e.sha256);
   }
 
   void operator()(const events::CheckpointPruned& e) const {
-    move_checkpoint(e.checkpoint.sha256, "pruned");
+    mark_checkpoint(e.checkpoint.sha256, "pruned");
   }
   void operator()(const events::CheckpointRegenerated& e) const {
-    move_checkpoint(e.checkpoint.sha256, "recorded");
+    mark_checkpoint(e.checkpoint.sha256, "recorded");
+    move_to_furthest_from(e.checkpoint.sha256);
   }
 
   void operator()(const events::FigureGenerated& e) const {
@@ -231,17 +233,18 @@ class Projector {
     run("UPDATE runs SET state = ?2, error = ?3 WHERE id = ?1", id_, state, error);
   }
 
-  void move_checkpoint(const std::string& sha256, std::string_view state) const {
+  void mark_checkpoint(const std::string& sha256, std::string_view state) const {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
-    move_to_furthest_checkpoint();
   }
 
-  void move_to_furthest_checkpoint() const {
+  /// To the furthest recorded checkpoint, unless the run is further than this one: where files of
+  /// last checkpoints were pruned, the run stays as far as it was.
+  void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
         "WHERE run = ?1 AND state = 'recorded' ORDER BY step DESC, seq DESC LIMIT 1)) "
-        "WHERE id = ?1",
-        id_);
+        "WHERE id = ?1 AND step <= (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)",
+        id_, sha256);
   }
 
   Database& database_;

@@ -16,27 +16,28 @@
 
 namespace shearcell {
 
-/// Schemas 1 and 2 lack the last two, and columns of the first two.
+/// Schemas 1 and 2 lack the last two tables, and columns of the first two.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
 /// Creates the empty tables.
 void create_projections(sqlite::Database& database);
-/// The same in memory, for the events of a log that may be damaged or forged; errors name it
-/// `name`.
+/// Empty tables in memory, for the events of a log that may be damaged or forged; errors call the
+/// database `name`.
 sqlite::Database empty_projections(const std::string& name);
 
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
 /// nothing. Throws StoreDamaged when the payload lacks what its type requires.
 void apply(sqlite::Database& database, const Event& event);
-/// The same, and checks the digest of a manifest. Returns why the event cannot be applied, or "".
+/// Checks the digest of a manifest, then applies the event. Returns why the event cannot be
+/// applied, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.
 void derive_projections(sqlite::Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& lock);
-/// Derives them in memory, in place of those of an older schema, for a connection that only reads.
-/// Events that cannot be applied are left out; `verify` names them.
+/// Derives the tables in memory, in place of the tables of an older schema, for a connection that
+/// only reads. Events that cannot be applied are left out; `verify` names them.
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
 /// The rows of a table in ascending order, each cell as an SQL literal.

@@ -31,8 +31,8 @@ struct Ask : Place {
   std::uint64_t target_cycles = 0;             ///< length
   nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
-  /// Whether its manifest is the version registered last of those that declared a stage at the
-  /// scale; set by the store.
+  /// Whether the manifest is the last registered version among those that declared a stage at the
+  /// scale. The store sets it.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -40,7 +40,7 @@ struct Ask : Place {
     field("labels", m.swept), field("seed", m.seed), field("manifest", m.manifest);
     field("checkpoint_every", m.checkpoint_every);
   }
-  /// Those that are recorded if they are given.
+  /// Members that are recorded only if they are stated.
   static void optional_fields(auto& m, auto field) {
     field("until", m.until), field("checkpoint_phases", m.checkpoint_phases);
   }
@@ -51,10 +51,10 @@ inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
 
-/// Which checkpoints are listed: recorded ones; also pruned ones; also rejected ones.
+/// Which checkpoints are listed: recorded ones; recorded and pruned ones; all, with rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
-/// In the order in which a merge prefers them when two attempts reached the same step.
+/// Ascending in the order in which a merge prefers a stage over its copy with as many steps.
 enum class StageState { declared, running, interrupted, failed, completed };
 
 template <>
@@ -62,7 +62,7 @@ inline constexpr auto kNames<StageState> = names_in_order<StageState>("declared"
                                                                       "interrupted", "failed",
                                                                       "completed");
 
-/// Whether nothing more is computed, unless the run is asked for again.
+/// Whether the stage is completed or failed: nothing more is computed unless it is asked for again.
 inline bool has_ended(StageState state) {
   return state == StageState::completed || state == StageState::failed;
 }
@@ -90,8 +90,8 @@ struct Stage {
   std::vector<Ask> asks;   ///< in the order in which they were declared
 };
 
-/// What a user counts, lists and averages: a stage in one of its places, with the packing that it
-/// begins from. A stage of two experiments is a run of each.
+/// What a user counts, lists and averages: a stage in one of its places. A stage of two experiments
+/// is a run of each.
 struct Run {
   Stage stage = {};  ///< the last one: shear or stiffening
   Ask ask = {};
@@ -109,6 +109,8 @@ bool same_computation(const auto& a, const auto& b) {
 struct PruneChoice {
   std::vector<std::string> runs;  ///< ids; empty for all
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
+  /// Also the files from which runs would continue and stages started, of completed stages.
+  bool last_too = false;
 };
 
 /// Work spent since the previous record of the same attempt.

@@ -65,8 +65,8 @@ class Database {
  private:
   friend class Statement;
   void require_same_file() const;
-  /// Throws MachineError if this error of SQLite comes from a journal that a killed program left
-  /// and that this user cannot play back.
+  /// Throws MachineError if the error `code` comes from a journal that a killed program left and
+  /// that this user cannot play back.
   void require_journal_can_be_played_back(int code) const;
   using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
@@ -99,7 +99,7 @@ class Statement {
   bool step();
   /// Runs a statement that gives no rows and makes it ready to run again.
   void run();
-  /// Makes it ready to run again before its last row was read.
+  /// Makes the statement ready to run again, even if rows are left to read.
   void reset();
 
   // The current row. A value of another type is converted as SQLite does; NULL is empty or 0.
@@ -139,7 +139,7 @@ class Statement {
   Database::Prepared handle_;
 };
 
-/// The destructor rolls it back unless it was committed.
+/// The destructor rolls the transaction back unless it was committed.
 class Transaction {
  public:
   ~Transaction();
@@ -160,7 +160,7 @@ struct WriteTransaction : Transaction {
   explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
 };
 
-/// All reads in it see the same state of the database.
+/// All reads within the transaction see the same state of the database.
 struct ReadTransaction : Transaction {
   explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED") {}
 };

@@ -549,13 +549,14 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
-    bool kept = false;
+    const bool all = choice.last_too && run.state == StageState::completed;
+    bool kept = all;
     while (!records.empty() && !kept) {
       kept = load_if_readable(records.back()).has_value();
       records.pop_back();
     }
     for (CheckpointRecord& record : records) {
-      if (needed.contains(record.sha256) || kept_by_cadence(choice, record)) continue;
+      if (kept_by_cadence(choice, record) || (!all && needed.contains(record.sha256))) continue;
       found.push_back(std::move(record));
     }
   }
@@ -580,8 +581,9 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
       const auto run = query_stage(database_, record.run);
-      if (!now || now->state != CheckpointState::recorded || !run || now->step >= run->step)
-        continue;
+      const bool last = run && now && now->step >= run->step;
+      if (!now || !run || now->state != CheckpointState::recorded) continue;
+      if (last && run->state != StageState::completed) continue;
       append(run_stream(record.run), encode(events::CheckpointPruned{{*now}}), lock);
     }
     lock.commit();

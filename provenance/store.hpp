@@ -46,7 +46,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< kept elsewhere, it proves later that the log only grew
+  Head head;                      ///< keep it elsewhere: it proves later that the log only grew
 
   /// Without errors.
   bool ok() const;
@@ -60,9 +60,9 @@ struct MergeReport {
   std::uint64_t bytes = 0;        ///< size of these files
 };
 
-/// Decodes the file of a record of this run. Throws StoreDamaged also when it is not plausible, or
-/// when its run, step, cycle, time, units, number of grains, observables or state are not those
-/// that the record and the run's parameters say.
+/// Decodes the file of a checkpoint of this run. Throws StoreDamaged if the file is damaged or not
+/// plausible, or if its run, step, cycle, time, units, number of grains, observables or state
+/// differ from the record or from the run's parameters.
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
                            const Stage& run);
 
@@ -77,10 +77,10 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 /// leases.
 class Store {
  public:
-  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or, if it is to be
-  /// written, has lost the folder of its checkpoints; NotFound when it is missing and `access` does
-  /// not create it. A lease that is not renewed for `lease_seconds` expires; at most
-  /// kLongestLeaseMs.
+  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or is to be written
+  /// and has lost the folder of its checkpoints. Throws NotFound when the folder is missing and
+  /// `access` does not create it. A lease that is not renewed for `lease_seconds` (at most
+  /// kLongestLeaseMs) expires.
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();
@@ -107,12 +107,12 @@ class Store {
   /// a SHA-256, belongs to other parameters, or the parent was never declared.
   void declare_stage(const Stage& run);
 
-  /// Starts an attempt and returns its number, from 1. With `from_sha256` it continues from this
-  /// checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when the run or
-  /// the checkpoint is unknown, RunHeld when another program computes the run, ConcurrencyConflict
-  /// when this object holds it, when it is completed, or when a later checkpoint was recorded. With
-  /// `fill` it must be completed: the attempt records checkpoints that the run lacks before its
-  /// last one, and completes it again.
+  /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
+  /// from this checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when
+  /// the run or the checkpoint is unknown, RunHeld when another program computes the run, and
+  /// ConcurrencyConflict when this object holds the run, when the run is completed, or when a later
+  /// checkpoint was recorded. With `fill` the run must be completed: the attempt records missing
+  /// checkpoints before the last one, and completes the run again.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);
@@ -130,7 +130,7 @@ class Store {
   void interrupt_stage(const std::string& id, const std::string& why);
   void fail_stage(const std::string& id, const std::string& why,
                   const nlohmann::json& numbers = nlohmann::json::object());
-  /// `target_cycles` is the length that was reached; a run whose target is longer is declared
+  /// `target_cycles` is the length that was reached. A run with a longer target becomes `declared`
   /// again.
   void complete_stage(const std::string& id,
                       const nlohmann::json& summary = nlohmann::json::object(),
@@ -139,8 +139,9 @@ class Store {
   /// Excludes the checkpoint from now on; its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before a step that can be loaded. With `damage`, the errors of missing
-  /// or damaged ones are appended to it and these are rejected (with Access::read: skipped).
+  /// The newest checkpoint before a step that can be loaded. With `damage`, missing and damaged
+  /// checkpoints are rejected (with Access::read: skipped), and their errors are appended to
+  /// `damage`.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -157,7 +158,7 @@ class Store {
 
   std::vector<Stage> stages() const;  ///< in the order of their declaration
   Stage stage(const std::string& id) const;
-  std::vector<Lease> leases() const;  ///< that have not lapsed
+  std::vector<Lease> leases() const;  ///< leases that have not lapsed
   /// The run with this prefix of the id. Throws NotFound, with the candidates if it is ambiguous.
   Stage find_stage(std::string_view prefix) const;
   /// In ascending order of step.
@@ -168,7 +169,7 @@ class Store {
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
   /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or FilePruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
-  /// The same; nothing when it is damaged or was pruned.
+  /// load_checkpoint(); nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
   /// Events of one stream ("run/<id>", ...), or of all (""); of one type, or of all ("").
@@ -179,35 +180,35 @@ class Store {
 
   /// Derives the tables again from the events.
   void rebuild();
-  /// Damage is reported as findings, and the check continues. With `against`, a head of earlier, a
-  /// log that does not extend it is damaged. Throws only when the machine fails.
+  /// Reports damage as findings. With `against`, an earlier head, a log that does not extend that
+  /// head is damaged. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
-  /// The checkpoints that `prune` would free. Never among them: the newest checkpoint of a run, the
-  /// newest that can be read, and initial states of other stages.
+  /// The checkpoints that `prune` would free: never the newest checkpoint of a run, the newest that
+  /// can be read, or the initial state of another stage.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files a crash left behind.
   std::vector<CheckpointRecord> prune_leftovers() const;
-  /// Records the checkpoints as pruned, then deletes their files. Checkpoints that may no longer be
-  /// pruned are skipped. Returns the number of bytes freed.
+  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that may no
+  /// longer be pruned. Returns the number of bytes freed.
   std::uint64_t prune(const std::vector<CheckpointRecord>& records);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
   /// Appends ReplayVerified or ReplayDiverged.
   void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
-  /// Merges other stores into this one (merge.cpp); with `runs`, only these runs, which must
-  /// include the parents of each, and the manifests. Throws NotFound when there is no store,
-  /// MachineError while a program computes a run of this one, and StoreDamaged, before anything is
-  /// written, when a source is damaged, or when two stores hold different states of the same run at
-  /// the same step or different runs under one id.
+  /// Merges other stores into this one (merge.cpp). With `runs` merges only the manifests and these
+  /// runs, which must include the parents of each. Throws NotFound when a source is no store and
+  /// MachineError while a program computes a run of this store. Throws StoreDamaged, before
+  /// anything is written, when a source is damaged, or when two stores hold different states of one
+  /// run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
  private:
   /// Appends one event and applies it.
   void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
-  /// The same in a transaction of its own. Throws ConcurrencyConflict when the stream does not hold
+  /// append() in a transaction of its own. Throws ConcurrencyConflict when the stream does not hold
   /// exactly `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);

@@ -17,16 +17,18 @@
 
 namespace shearcell {
 
-/// How the curve of the runs with these parameters is drawn. A style is used only if one curve fits
-/// it. What a style does not state, and other curves, follow from what varies: its names, a colour
-/// for each value of the first parameter and a symbol for the others.
+/// How a manifest or a figure wants the curve of the runs with these parameters drawn. A style that
+/// fits several curves is ignored. A curve without a style, or whose style leaves something out,
+/// gets a title from its variant, a colour from its value of the first parameter that varies, and a
+/// symbol from its values of the other parameters.
 struct CurveStyle {
   nlohmann::json where;     ///< parameters and their values
   Text title = {};          ///< empty: not stated
   std::string colour = {};  ///< "#rrggbb"; empty: not stated
   int point = -1;           ///< as in Series; -1: not stated
-  /// Stated in a manifest. Others are used only if the runs differ in the parameters of styles
-  /// alone, and their titles only if no label of the manifest names the variant.
+  /// A manifest states the style. A style that a manifest does not state is used only if the runs
+  /// differ in no other parameters than those of the styles. Its title then gives way to a label of
+  /// the manifest.
   bool of_manifest = false;
 };
 
@@ -38,7 +40,7 @@ struct CurvePoint {
 };
 
 struct Curve {
-  std::string variant;    ///< as the manifest names it, with ';' for ','
+  std::string variant;    ///< its name, with ';' for ','
   CurveStyle style = {};  ///< complete, without `where`
   std::vector<const FigureRun*> runs;
   std::vector<CurvePoint> points;  ///< by cycle
@@ -60,8 +62,8 @@ Axis onset_axis();      ///< phi at the onset
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
 std::vector<ReferenceLine> onset_lines();
 
-/// Colours that readers with any colour vision tell apart (Okabe and Ito, jfly.uni-koeln.de/color),
-/// and their names in manifests.
+/// Colours for readers with any colour vision (Okabe and Ito, jfly.uni-koeln.de/color), and their
+/// names in manifests.
 inline constexpr std::array<const char*, 7> safe_colours = {
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 inline constexpr std::array<std::string_view, 7> colour_names = {
@@ -87,18 +89,19 @@ struct MeasureColumn {
   std::string unit;  ///< as part of a column's name: "d", "percent" or ""
   std::string measure;
   double least = -std::numeric_limits<double>::infinity();  ///< lower values count as this
-  std::string known = {};  ///< only where this measure is known too; "" for none
+  std::string known = {};  ///< left out where this measure is unknown; "" for none
   bool rms = false;        ///< the root mean square over runs in place of the mean
 
   double of(const Measures& measures) const;
   RunStatistics over(std::span<const double> values) const;  ///< one value of each run
 };
 
-/// Name of a column: "mean" (that of the root mean square, too), "standard_error".
+/// Name of the column of a statistic, "mean" or "standard_error". "mean" is the root mean square if
+/// `rms`.
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);
-/// Columns of x, by name, of the measure's mean with its error, and of the number of runs.
+/// The columns to draw: x, the measure's mean with its error, and the number of runs.
 SeriesColumns columns_against(std::string x, const MeasureColumn& y);
 
 /// A row for each variant and cycle. The first measure is drawn.

@@ -14,13 +14,13 @@ namespace shearcell {
 
 std::vector<const FigureRun*> pointers(std::span<const FigureRun> runs);
 
-/// Ascending. Runs without the number are left out.
+/// Runs by the value of a parameter, ascending. Runs without a number are left out.
 std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
                                                         const std::string& parameter);
 
 /// Mean over runs of the measure at their first checkpoint; NaN if there is none.
 double at_start(RunGroup runs, const std::string& measure);
-/// The supplement's N_inves of a packing of that size; none if it has no such size.
+/// The supplement's N_inves for N = `grains`; none if the supplement has no such N.
 std::optional<double> published_interior(double grains);
 /// The claim that runs of `grains` grains, a size of the supplement, have the supplement's N_inves.
 Verdict interior_is_published(double grains, RunGroup runs);

@@ -15,6 +15,7 @@
 #include "analysis/figures/groups.hpp"
 #include "analysis/onset.hpp"
 #include "analysis/published.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -219,6 +220,45 @@ std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, Ru
               without, with)};
 }
 
+/// The slope of phi at the onset against ln N_inves, by least squares over the runs that have one.
+Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
+  struct Point {
+    double ln_size, phi;
+  };
+  std::vector<Point> points;
+  std::set<double> sizes;
+  Entered entered = entered_with({"interior_grains", "onset_phi"});
+  for (const FigureRun& run : runs) {
+    const RunOnset onset = onset_by_size(run);
+    if (onset.observed != Observed::yes) continue;
+    const double interior = run.checkpoints.front().measures.number("interior_grains");
+    if (!(interior > 0)) continue;
+    points.push_back({std::log(interior), onset.phi});
+    sizes.insert(number_of(run, "grains"));
+    enter(run, {interior, onset.phi}, entered);
+  }
+  const auto slope = [&](std::span<const std::size_t> selection) -> std::optional<double> {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const std::size_t k : selection) {
+      const auto& [ln_size, phi] = points[k];
+      n += 1;
+      x += ln_size;
+      y += phi;
+      xx += ln_size * ln_size;
+      xy += ln_size * phi;
+    }
+    return (xy - x * y / n) / (xx - x * x / n);
+  };
+  Verdict verdict =
+      decide({"C: phi at the onset does not depend on the size of the cell", margin_onset_slope},
+             "change of phi at the onset with ln N_inves",
+             sizes.size() < 2 ? std::nullopt : bootstrapped(points.size(), slope), points.size(),
+             fmt::format("{} of {} runs have their onset, in cells of {}", points.size(),
+                         runs.size(), counted(sizes.size(), "size")));
+  verdict.entered = std::move(entered);
+  return verdict;
+}
+
 }  // namespace
 
 FigureResult figure_s5a(std::span<const FigureRun> runs) {
@@ -268,6 +308,7 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   if (!groups.contains(smallest_size)) {
     result.verdicts.push_back(interior_is_published(smallest_size, {}));
   }
+  if (groups.size() > 1) result.verdicts.push_back(onset_is_of_any_size(runs));
   constexpr double most_grains = 20000;
   table.chart = {
       .x = {.name = "grains", .symbol = italic("N"), .low = 0, .high = most_grains},

@@ -14,8 +14,8 @@ namespace shearcell::bench {
 /// none for walls, the seam in z, or the fluid.
 double multiplications(std::size_t lanes, double slots);
 
-/// Fused multiply-adds per second of one core, in vectors of `lanes` doubles: 8, 4 or 2 as
-/// kernels_here() offers them, 1 for scalars. The best of several short runs that do nothing else.
+/// Fused multiply-adds per second of one core, in vectors of `lanes` doubles: 8, 4 or 2 if
+/// kernels_here() has them, 1 for scalars. The fastest of several short runs that do nothing else.
 double peak_multiplications(std::size_t lanes);
 
 struct SpeedOptions {

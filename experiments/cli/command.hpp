@@ -89,21 +89,21 @@ struct LoadedManifests {
   std::vector<Plan> plans;  ///< one for each manifest
 };
 
-/// Reads and expands each manifest once; warn() gets the warnings, also of what the store has, and
-/// of two different manifests of one `experiment`.
+/// Reads and expands each manifest once. warn() gets the warnings, also about runs of the store and
+/// about two different manifests of one `experiment`.
 LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
                                Context& context);
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// A run with those of its places that are selected.
+/// A stage with its selected places.
 struct PlacedRun {
   Stage stage;
   std::vector<Ask> places;
 };
 
-/// Each run once, in the order of its first place.
+/// The stages of the runs, each once, in the order of their first places.
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// An error message if the text is not a decimal number from `low` to `high`; else "". A double may

@@ -9,7 +9,6 @@
 #include <iostream>
 #include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "core/machine.hpp"
@@ -46,10 +45,10 @@ std::vector<std::string> selected_ids(const Store& store, RunSelection selection
 std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store& store) {
   PruneChoice choice = options.choice;
   const bool filtered = selects(options.selection);
-  if (choice.runs.empty() && !filtered && choice.keep_every == 0) {
+  if (choice.runs.empty() && !filtered && choice.keep_every == 0 && !choice.last_too) {
     throw CLI::ValidationError("prune",
                                "choose what to delete: --keep-every K, --experiment E, --state "
-                               "STATE, or runs; see prune --help");
+                               "STATE, --last-too, or runs; see prune --help");
   }
   for (std::string& run : choice.runs) run = store.find_stage(run).id;
   if (filtered) {
@@ -240,8 +239,10 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // In order of steps, so that each checkpoint of a run can start from the one before it.
-  std::ranges::sort(records, {}, [](const auto& c) { return std::tie(c.run, c.step); });
+  // Parents first, and in order of steps, so that each can start from the one before it.
+  std::map<std::string, std::size_t> order;
+  for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
+  std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   for (const CheckpointRecord& record : records) {
@@ -265,12 +266,15 @@ void add_prune(CLI::App& app, Context& context) {
   add_selection_options(*command, options->selection, true);
   add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
              1'000'000'000);
+  command->add_flag("--last-too", options->choice.last_too,
+                    "Of completed stages, also the last file and those that others start from");
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(
       *command, context,
       R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
-deletes nothing unless --yes is given. Never deletes the newest checkpoint of a run, those that
-other stages started from, or those of LAMMPS.
+deletes nothing unless --yes is given. Keeps the newest checkpoint of a run and those that other
+stages started from, unless --last-too is given: then events and measures alone remain, small enough
+to publish, and figures, tables and merges still work. Never deletes checkpoints of LAMMPS.
 Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
 plots need, and what the figures of the store's manifests simulate. The results are in
 derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its
@@ -278,6 +282,7 @@ file. Cycles that a run adds later lack measures over the pruned ones, as msd_10
 Records stay, and `regenerate` recomputes files.
 Examples:
   shearcell prune --keep-every 10
+  shearcell prune --last-too
   shearcell prune --experiment drag --scale smoke --keep-every 10
   shearcell prune --state failed --yes)");
 }

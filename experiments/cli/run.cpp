@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
+#include "experiments/figures/keep_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
@@ -32,6 +34,7 @@ struct RunOptions {
   ExpandOptions expand;
   std::size_t jobs = 0;
   Parallel parallel;
+  std::uint64_t keep_every = 0;
   bool quiet = false;
   bool leave_failed = false;
   bool task = false;    ///< of a job that `submit` queued
@@ -71,9 +74,21 @@ std::size_t workers(const RunOptions& options) {
   return std::max<std::size_t>(1, usable_cores() / each);
 }
 
-CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options) {
+CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
+                       Context& context) {
   if (!options.task) catch_stop_signals();
-  return run_campaign(store, jobs, workers(options), options.parallel, options.quiet);
+  // What `prune --keep-every` does, as soon as a stage is done.
+  const auto prune = [&](const std::string& stage) {
+    std::vector<CheckpointRecord> records = store.prunable({{stage}, options.keep_every});
+    if (records.empty() || why_not_again(store.stage(stage))) return;
+    const MeasureOutcome outcome = keep_measures(store, records, {});
+    store.prune(records);
+    static std::mutex printing;
+    const std::lock_guard lock(printing);
+    print_problems(outcome, "its file is kept, since it could not be measured", context);
+  };
+  return run_campaign(store, jobs, workers(options), options.parallel, options.quiet,
+                      options.keep_every > 0 ? prune : std::function<void(const std::string&)>());
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -90,7 +105,7 @@ void run(const RunOptions& options, Context& context) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }
-  print_result(compute(store, jobs, options), context);
+  print_result(compute(store, jobs, options, context), context);
 }
 
 // Removes the jobs that failed and those that depend on them. Returns whether there were any.
@@ -105,14 +120,15 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
 }
 
 // Computes what is unfinished. `failed_before`: whether failed runs were left out.
-CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before) {
+CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before,
+                            Context& context) {
   std::vector<StageJob> jobs = stages_to_resume(store, options.inputs);
   if (options.leave_failed) failed_before = leave_failed(store, jobs);
   const auto by_lammps = [&](const StageJob& job) {
     return engine_of(store.stage(job.id).resolved) == EngineKind::lammps;
   };
   require_lammps_for_ranks(options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
-  return compute(store, jobs, options);
+  return compute(store, jobs, options, context);
 }
 
 // For Repeated: an action that prints its error instead of throwing. It is repeated next time.
@@ -162,7 +178,7 @@ void resume_task(const RunOptions& options, Context& context) {
     const Repeated reports(kReportEvery, tried(report, kReportEvery));
     std::optional<Repeated> saves;
     if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
-    result = compute_rest(*store, options, failed_before);
+    result = compute_rest(*store, options, failed_before, context);
   }
   report();
   if (is_copy) {
@@ -182,7 +198,7 @@ void resume_runs(const RunOptions& options, Context& context) {
   if (options.task) return resume_task(options, context);
   Store store(context.store, Access::write);
   bool failed_before = false;
-  print_result(compute_rest(store, options, failed_before), context);
+  print_result(compute_rest(store, options, failed_before, context), context);
   if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
@@ -193,6 +209,11 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(command, "--mpi", options.parallel.ranks,
              "Processes of each run in LAMMPS, by mpirun; it changes the last digits", "N", 1,
              65536);
+  add_number(
+      command, "--keep-every", options.keep_every,
+      "When a run is done, measure its checkpoints and delete files, as `prune` does, except "
+      "those of every K-th cycle",
+      "K", 1, 1'000'000'000);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }
 

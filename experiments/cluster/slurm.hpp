@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slurm's programs and the texts that they read. They are called with argument vectors, never by a
-// shell, and variables of the environment that would change what they do are removed.
+// Calls Slurm's programs and makes the texts that they read. The programs are called without a
+// shell, and without environment variables that would contradict the arguments.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ std::string unfit_value(std::string_view text);
 /// would expand.
 std::string unfit_scratch(const std::string& text);
 
-/// The folder that such a text names on this node. Throws UsageError when a variable is not set
-/// here, or when the folder is not absolute.
+/// The folder on this node that the text names. Throws UsageError when a variable is not set here,
+/// or when the folder is not absolute.
 std::filesystem::path scratch_here(const std::string& text);
 
 /// Seconds of a time limit: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS". Nothing
@@ -55,8 +55,8 @@ struct QueuedTask {
 void require_slurm();
 
 /// Writes the job's script into the folder, queues the job from there and returns its number.
-/// Throws ProgramError when it is not in the queue: then sbatch refused it. Throws MachineError
-/// when nobody can tell; the job may be queued.
+/// Throws ProgramError when sbatch refused the job, which is then not in the queue, and
+/// MachineError when the job may or may not be queued.
 std::string queue_job(const Job& job, const std::filesystem::path& folder);
 
 /// The jobs of these names that wait, run or are about to end, of all users and partitions. Asks

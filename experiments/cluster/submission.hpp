@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A submission: work that is neither done nor being computed, shared out among the tasks of an
-// array job, each with a store of its own, and a job that merges these stores.
+// A submission: an array job whose tasks, each with a store of its own, share the work that is
+// left, and a job that merges the stores of the tasks.
 //
 // CampaignSubmitted is recorded in the log before the jobs are queued, and JobQueued afterwards.
 // The jobs have the submission's name, so they are found in the queue even after a crash between
@@ -21,7 +21,8 @@
 
 namespace shearcell {
 
-/// Work for one task. Runs that start from one packing stay together, so that it is settled once.
+/// Work for one task. Runs that start from one packing stay together, so that the packing is
+/// settled once.
 struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages that start from them
@@ -35,9 +36,8 @@ struct Share {
 /// for each packing, in the order of the plans.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Distributes the shares of packings, the longest first, each to the task with the least core
-/// time; equal ones in turn. At most `tasks` shares, none empty. The same input gives the same
-/// shares.
+/// Joins the shares of packings into at most `tasks` shares, none empty: the longest packing first,
+/// each to the task with the least core time so far. The same input gives the same shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.
@@ -62,8 +62,7 @@ struct Proposal {
 };
 
 /// Leaves out every packing that is busy or has a busy run, with its runs. If `job.cpus` is 0, a
-/// task gets one core for each thread of each of its runs, but at most 16, and at least the cores
-/// of one run.
+/// task gets one core for each thread of each of its runs: at most 16, but enough for one run.
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -94,9 +93,9 @@ Job array_job(const Submission& submission, const std::filesystem::path& store,
 Job merge_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options, const std::string& array);
 
-/// Makes a store for each task with copies of all records of its runs, and records the submission:
+/// Makes a store for each task, with copies of all records of its runs, and records the submission:
 /// `facts`, the runs of each task and the command. Throws ConcurrencyConflict when another program
-/// submitted since `seen` such events were read.
+/// has submitted since the caller read the first `seen` submissions.
 Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::json facts,
                               std::size_t seen);
 
@@ -110,8 +109,8 @@ std::vector<Submission> unfinished_submissions(const Store& store);
 /// new checkpoints.
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
-/// Runs that are queued or being computed: those of submissions in the queue, those that programs
-/// on this machine hold, and the packings of both that are not settled yet.
+/// Runs that are queued or being computed: runs of submissions in the queue, runs that programs on
+/// this machine hold, and the unsettled packings of these runs.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
 /// Writes `FOLDER.progress.json`, whole or not at all, for the task's store FOLDER. No other

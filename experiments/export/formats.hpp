@@ -16,8 +16,8 @@ using FrameWriter = std::function<void(const Frame&)>;
 
 /// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as Frame::type),
 /// mass, radius and the measures of each grain; observables with every scalar; the run and its
-/// parameters as attributes of the group parameters. Lengths in nm, since MDAnalysis does not know
-/// metres. `frames`: their number, here and below.
+/// parameters as attributes of the group parameters. Lengths are in nm, since MDAnalysis does not
+/// know metres. `frames`: the number of frames that will be written.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
 enum class Lengths { diameters, metres };
@@ -40,9 +40,9 @@ FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, a row for each contact. The particles are
-/// numbered as in the other formats; `other` is 0 for a wall's plane. `wall_side` is that of the
-/// wall, as Frame::type, and 0 between grains. The force on `grain` is force_N along the normal;
-/// that on `other` is the opposite one.
+/// numbered as in the other formats; `other` is 0 for a wall's plane. `wall_side` is the side of a
+/// wall contact, as Frame::type, and 0 between grains. The force on `grain` is force_N along the
+/// normal; the force on `other` is opposite.
 FrameWriter contacts_writer(const std::filesystem::path& folder);
 
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",

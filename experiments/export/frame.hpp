@@ -31,8 +31,8 @@ struct FrameContact {
   Eigen::Vector3d normal;            ///< unit vector towards `grain`, the direction of its force
 };
 
-/// Particles in SI units. Wall grains have measures of zero, and classes of -1. Velocities of
-/// grains and of the moving wall are half a time step before `step`, those of the shear at `step`.
+/// Particles in SI units. Measures of wall grains are 0, classes -1. Velocities of grains and of
+/// the moving wall are half a time step before `step`, velocities of the tilting walls at `step`.
 struct Frame : Particles {
   std::uint64_t step = 0;
   double time_s = 0;

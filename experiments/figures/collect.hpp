@@ -26,15 +26,15 @@ struct WantedFigure {
 
 /// The figures that registered manifests list.
 struct WantedFigures {
-  /// By experiment; for each, figures of the supplement in its order, then plots and claims. Tables
-  /// of several experiments are last.
+  /// By experiment: figures in the order of the supplement, then plots and claims. Figures of all
+  /// experiments are last.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// The figures, plots and claims that the newest manifests state: all, or those in `names`; of all
-/// experiments, or of `experiments`, which need not list the figures in `names`. Throws NotFound,
-/// with the nearest name, for an unknown figure or experiment.
+/// The figures, plots and claims of the newest manifests: all or those in `names`, of all
+/// experiments or of `experiments`. The manifests of `experiments` need not list the figures in
+/// `names`. Throws NotFound, with the nearest name, for an unknown figure or experiment.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
@@ -57,9 +57,9 @@ struct CollectedRuns {
   std::vector<std::string> notes;
 };
 
-/// The selected newest_runs() of the experiment that the figure uses, at the scale declared last,
-/// with their checkpoints up to end_for(). A figure of all experiments has a run once per
-/// experiment. Throws NotFound if there is no such run.
+/// The selected newest_runs() of the figure's experiment, at the scale that was declared last, with
+/// their checkpoints up to end_for(). A figure of all experiments has a run once per experiment.
+/// Throws NotFound if there is no such run.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

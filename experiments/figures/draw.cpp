@@ -16,6 +16,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/host.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
@@ -197,6 +198,21 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
+/// Sets Verdict::primary as the newest manifest states at the scale.
+void mark_primary(const Store& store, const FigureSummary& summary,
+                  std::vector<Verdict>& verdicts) {
+  for (const RegisteredManifest& registered : newest_manifests(store)) {
+    const std::optional<Manifest> manifest = parsed(registered);
+    if (registered.experiment != summary.experiment || !manifest) continue;
+    for (const Scale& scale : scales_of(*manifest)) {
+      if (scale.name != summary.scale) continue;
+      for (Verdict& verdict : verdicts) {
+        verdict.primary = std::ranges::count(scale.primary, verdict.claim) > 0;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
@@ -233,6 +249,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
         fmt::format("only runs with {} are selected{}{}", fmt::join(options.runs.variants, ", "),
                     verdict.note.empty() ? "" : ": ", verdict.note);
   }
+  mark_primary(store, summary, computed.result.verdicts);
   for (FigureTable& table : computed.result.tables) name_run_counts(table);
   summary.verdicts = computed.result.verdicts;
   for (const FigureTable& table : computed.result.tables) {

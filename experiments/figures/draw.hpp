@@ -41,21 +41,21 @@ struct ComputedFigure {
   nlohmann::json lineage;  ///< the figure's record; `outputs` is empty
 };
 
-/// Computes tables, verdicts and inputs of a figure. Writes nothing but measures into
-/// derived.sqlite; options.folder is not used. A checkpoint whose measures are cached is not read.
-/// If they are not cached, a damaged or pruned checkpoint is left out and named. Throws NotFound if
-/// the store holds no run for the figure, and UsageError if the figure would average over a
-/// parameter that the experiment varies.
+/// Computes tables, verdicts and inputs of a figure. Writes only measures into derived.sqlite;
+/// options.folder is not used. A checkpoint whose measures are cached is not read. A damaged or
+/// pruned checkpoint without cached measures is left out and named. Throws NotFound if the store
+/// holds no run for the figure, and UsageError if the figure would average over a parameter that
+/// the experiment varies.
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options);
 
 /// Computes the figure and writes into FOLDER/EXPERIMENT/SCALE (FOLDER/SCALE for a figure of all
 /// experiments), where SCALE is scale_name(): PANEL.csv, .svg and, with librsvg, .pdf of each
 /// panel, NAME.caption.txt if something is drawn, NAME.verdict.json and NAME.verdict.csv (what
-/// entered it) if there are claims, and NAME.lineage.json. Deletes a caption or verdict that an
-/// older figure left. Records a FigureGenerated event with host and build, unless the newest event
-/// of this figure says the same, or a drawing failed (gnuplot may be missing). The same checkpoints
-/// give the same bytes. Throws as compute_figure() and require_own_files().
+/// entered it) if there are claims, and NAME.lineage.json. Deletes a caption or verdict of an older
+/// figure that the new one lacks. Records a FigureGenerated event with host and build, unless the
+/// newest event of this figure says the same or a drawing failed (gnuplot may be missing). The same
+/// checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
 FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

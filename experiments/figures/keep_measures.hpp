@@ -9,12 +9,13 @@
 
 namespace shearcell {
 
-/// Computes what tables and figures may need of these checkpoints' files and caches it: every
-/// derived measure of all checkpoints of their runs, since a later checkpoint may need an earlier
-/// one, for each cadence that an experiment asks for; and the simulated measures that a figure of a
-/// registered manifest needs. Removes from `records` those with a measure that could not be
-/// computed, unless it needs a file that was pruned before; the outcome says why. Removes all if
-/// measures cannot be cached. The cache is on disk when this returns.
+/// Computes and caches the measures for which tables and figures may need the files of these
+/// checkpoints. These are all derived measures of all checkpoints of the runs, for each cadence
+/// that an experiment asks for, since a later checkpoint may need an earlier one; and the simulated
+/// measures that a figure of a registered manifest needs. Removes from `records` each checkpoint
+/// with a measure that could not be computed, unless the measure needs a file that was pruned
+/// before; the outcome says why. Removes all if measures cannot be cached. The cache is on disk
+/// when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

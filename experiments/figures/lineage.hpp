@@ -23,8 +23,8 @@ using Cycles = std::vector<std::array<double, 3>>;
 /// "0:120:1, 133.5:133.5:1".
 std::string to_text(const Cycles& cycles);
 
-/// States of a run, as a published lineage file names them. The hashes of states do not depend on
-/// the version of HDF5, as those of files do.
+/// States of a run, as a published lineage file names them. Unlike the hashes of files, the hashes
+/// of states do not depend on the version of HDF5.
 struct States {
   Cycles cycles;           ///< of the states
   std::string state_hash;  ///< of the last one
@@ -33,7 +33,7 @@ struct States {
   bool operator==(const States&) const = default;
 };
 
-/// By step.
+/// The states of checkpoints in the order of their steps.
 States states_of(const std::vector<CheckpointRecord>& checkpoints);
 
 /// A run of the figure.
@@ -93,8 +93,8 @@ struct PublishedFile {
   bool matches() const { return sha256 == recorded; }
 };
 
-/// Finds the record of a file by the SHA-256 of its bytes, else by the lineage file beside it, else
-/// by its name. Nothing if the store has no such record. Throws NotFound if there is no such
+/// Finds the record of a file by the SHA-256 of the bytes, else by the lineage file beside it, else
+/// by its name. Nothing if the store has no such record. Throws NotFound if the path is not a
 /// regular file.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 

@@ -39,19 +39,19 @@ struct RunTable : MeasureOutcome {
   }
 };
 
-/// The table of the selected newest_runs(), in their order, then by cycle. It has
-/// their checkpoints_for() up to end_for(). Onsets come from the checkpoints at whole cycles, as in
-/// the figures. `simulated` names providers whose measures are added, which takes longer than an
-/// analysis. Throws NotFound as select_runs().
+/// The table of the selected newest_runs(), in their order, then by cycle, with their
+/// checkpoints_for() up to end_for(). Onsets come from the checkpoints at whole cycles, as in
+/// figures. `simulated` names simulating providers whose measures are added. Throws NotFound as
+/// select_runs().
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated = {});
 
-/// The same with a row for each value of a measured curve at each checkpoint: the run's columns,
-/// the cycle, the checkpoint, x and y.
+/// A table with a row for each value of a measured curve at each checkpoint: the run's columns, the
+/// cycle, the checkpoint, x and y.
 RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options);
 
-/// The providers of all columns of a checkpoint but the simulated ones. The first is "scalars".
+/// The providers of all columns of a checkpoint except simulated ones. The first is "scalars".
 std::vector<std::string> table_providers();
 std::vector<std::string> simulating_providers();
 

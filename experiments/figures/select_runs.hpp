@@ -21,9 +21,9 @@ struct RunSelection {
   bool packings = false;                 ///< settled packings too, whose variant is "packing"
 };
 
-/// In the order of declaration, without names. Of a run whose manifest was later declared with
-/// another one in its place, `newest` is false. Throws NotFound for an experiment, scale, variant
-/// or seed that the store does not have, and names those that it has.
+/// Returns the runs in the order of declaration, without names. Ask::newest is false for a run of
+/// an older version of its manifest, and for a run whose place another run took later. Throws
+/// NotFound for an unknown experiment, scale, variant or seed, and names the known ones.
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
@@ -31,13 +31,14 @@ struct NewestRuns {
   std::vector<std::string> notes;  ///< what was left out
 };
 
-/// The runs that figures and tables show: those of each manifest as it stands, the version
-/// registered last of those that have runs at the scale. Each seed of a variant is listed once: a
-/// run counted twice would make errors too small. A run that is several variants is listed for
-/// each. Settled packings are left out.
+/// Returns the runs that figures and tables show: for each experiment and scale, the runs of the
+/// manifest's version that was registered last and has runs at that scale. Each seed of a variant
+/// is listed once, because a run that is counted twice would make errors too small. A stage that is
+/// several variants is listed for each of them. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
-/// A run that no experiment declared, as a damaged store may hold it, has an empty ask.
+/// The first recorded ask of the stage; an empty one for a stage that no experiment declared, as in
+/// a damaged store.
 Ask first_ask(const Stage& run);
 
 }  // namespace shearcell

@@ -31,7 +31,7 @@ inline constexpr double kMostPauseSteps = 1e9;
 /// pause_s in time steps of the shear, not rounded.
 double pause_time_steps(const Parameters& parameters);
 
-/// The scene of a stiffening: that of settling without a time step.
+/// The scene of a stiffening: the scene of settling without a time step.
 Scene stiffen_scene(const Parameters& parameters);
 
 /// Length of the stage after settling: cycles of shear, or stiffnesses.
@@ -42,9 +42,9 @@ Geometry geometry(const Parameters& parameters);
 
 double shear_time_step_s(const Parameters& parameters);
 
-/// Largest stable time step [s]: 2/omega_max of the leapfrog, with omega_max^2 = 8 k/m. An FCC
-/// contact network, the densest there is, has its fastest mode there (twelve springs, the zone
-/// boundary X, longitudinal); looser or disordered packings vibrate more slowly.
+/// Largest stable time step of the leapfrog [s]: 2/omega_max with omega_max^2 = 8 k/m, the fastest
+/// mode of an FCC contact network (twelve springs, longitudinal, at the zone boundary X). FCC is
+/// the densest network; looser or disordered packings vibrate more slowly.
 double stability_limit_s(const Parameters& parameters);
 
 /// Whether pressure_at has an effect: only if a moving bottom wall lifts grains with weight.
@@ -77,23 +77,23 @@ bool takes_auto(std::string_view key);
 /// Table I give Table I's time step. The result may be out of range (check_value).
 void resolve_auto(std::string_view key, Parameters& parameters);
 
-/// Mean overlap of touching grains at rest [d], to leading order in it: 0.75 p d/k. By the virial
-/// the mean pressure of a packing with n grains per volume and z contacts of each is p = n z k
-/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k, which is 0.78 for n d^3 = 1.22 and z = 6.36
-/// (found at N = 2000). Rough side walls bear a part of the pressure: 0.75 fits five settled
-/// packings within 7 % (core/ACCURACY.md). p is the pressure at half the height: P minus half the
-/// grains' weight per area if P acts on a moving bottom wall, P plus that if P acts at the top.
+/// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
+/// packing with n grains per volume and z contacts per grain has the mean pressure p = n z k
+/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.78 for n d^3 = 1.22 and z =
+/// 6.36 (found at N = 2000); because rough side walls bear a part of the pressure, 0.75 fits five
+/// settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
+/// weight per area if P acts on a moving bottom wall, P plus half of it if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
-/// Time [s] in which drag brings the grains to rest: 18 m/b, since the energy of weakly damped
-/// vibrations falls by exp(-b t/m), and from pressing to the default settle_kinetic_tolerance by
-/// about exp(18). At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and 3.0 s at
-/// 0.156 s; larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite without
-/// drag; there the energy only rises (twofold in 16 s).
+/// Time [s] in which drag brings the grains to rest: 18 m/b. The energy of weakly damped vibrations
+/// falls as exp(-b t/m), and must fall by about exp(18) to reach the default
+/// settle_kinetic_tolerance. At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and
+/// 3.0 s at 0.156 s; larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite
+/// without drag.
 double damping_time_s(const Parameters& parameters);
 
-/// Time [s] in which the moving wall presses the loose grains together (protocols/settle.hpp):
-/// proportional to the drag if that is large. Settling cannot end earlier.
+/// pressing_time() of protocols/settle.hpp [s], proportional to a large drag. Settling cannot end
+/// earlier.
 double pressing_time_s(const Parameters& parameters);
 
 /// Expected number of interior grains (analysis/packing_fraction.hpp) at the nominal height; 0 in a

@@ -701,6 +701,14 @@ void check_variants(const Manifest& manifest) {
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();
+    const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
+    for (const Setting& number :
+         numbers == nullptr ? std::span<const Setting>() : numbers->values) {
+      if (number.value.get<std::uint64_t>() <= seeds) continue;
+      problems.add(number.at, path + ".sweep.zip.seeds", "is more seeds than the scale has",
+                   number.value.dump(),
+                   format("State `seeds: {}`, or list as many.", number.value.dump()));
+    }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,
                    format("the manifest expands to more than {} runs", ManifestLimits::runs), "",

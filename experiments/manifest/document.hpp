@@ -21,7 +21,7 @@ struct Node {
   bool quoted = false;           ///< written in quotes or as a block
   std::vector<Node> parts = {};  ///< items of a list, or values of a map, whose keys differ
   std::string key = {};          ///< of a value of a map
-  Position key_at = {};          ///< of this key; of an item, of the key of its list
+  Position key_at = {};          ///< place of the key; of an item, that of its list
   std::string path = {};         ///< to this key, as in "scales.smoke.grains"
 
   bool is_scalar() const { return kind == Kind::scalar; }
@@ -37,10 +37,9 @@ struct Node {
 /// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
-/// Whether a key is a number: what a decimal comma in braces leaves, as "05" in `{amplitude_rad:
-/// 0,05}`.
+/// Whether a key is a number, as after a decimal comma in braces: "05" in `{amplitude_rad: 0,05}`.
 bool is_number(std::string_view key);
-/// What to do about such a key.
+/// The remedy for a key that is a number.
 inline constexpr const char* kDecimalPoint =
     "If it follows a comma: a number takes a decimal point, as in 0.05.";
 
@@ -57,8 +56,8 @@ std::string printable(std::string_view text, std::size_t longest = 60);
 /// which some scripts need.
 std::string without_controls(std::string_view text);
 
-/// The text as a reader sees it, to compare names: without invisible characters, blanks of any kind
-/// and number as one space, none at the ends. "" if there is nothing to see.
+/// The text as a reader sees it, to compare names: without invisible characters and blanks at the
+/// ends, with one space for other blanks. "" if there is nothing to see.
 std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

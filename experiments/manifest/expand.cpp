@@ -134,7 +134,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   if (options.cycles) {
     check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));
     scale.settings["cycles"] = {*options.cycles, {}};
-    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return is_length(axis.key); });
+    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return axis.key == "cycles"; });
+  }
+  if (options.seeds) {
+    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return axis.key == "seeds"; });
   }
   if (options.engine) set_engine(manifest, *options.engine, scale);
   const std::vector<std::uint64_t> seeds = choose_seeds(manifest, scale.seeds, options.seeds);
@@ -175,7 +178,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (scale.start.is_recorded()) {
       recorded = &recorded_run(manifest, scale, variant, options.known);
     }
+    const auto first = seeds.begin();
+    const auto last =
+        first + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(variant.seeds, seeds.size()));
     for (const std::uint64_t seed : chosen_seeds) {
+      if (std::find(first, last, seed) == last) continue;
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {

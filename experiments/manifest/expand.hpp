@@ -17,29 +17,29 @@
 namespace shearcell {
 
 struct ExpandOptions {
-  std::optional<std::string> scale = {};     ///< default: `desk`, or `base` without scales
-  std::optional<std::uint64_t> cycles = {};  ///< instead of the manifest's
-  std::optional<std::uint64_t> seeds = {};   ///< how many; of listed seeds the first ones
-  std::vector<std::string> variants = {};  ///< only those with these swept values, as "fluid=cell"
+  std::optional<std::string> scale = {};       ///< default: `desk`, or `base` without scales
+  std::optional<std::uint64_t> cycles = {};    ///< instead of the manifest's
+  std::optional<std::uint64_t> seeds = {};     ///< how many; of listed seeds the first ones
+  std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these; empty for all
-  std::optional<std::string> engine = {};      ///< instead of the manifest's; named in the variant
-  /// Runs of the store. Warnings then assume the lengths that this manifest gave them before, if
-  /// those are longer.
+  std::optional<std::string> engine = {};      ///< instead of the manifest's; part of the variant
+  /// Stages of the store. If this manifest asked them for more cycles before, warnings assume that
+  /// larger number.
   std::span<const Stage> known = {};
 };
 
-/// A run that no store has yet. Its stage has the asks of all joined plans, its own first; its
-/// scale is empty when the manifest has none, and its variant "base" when nothing is swept.
+/// A run as a manifest states it. `stage` has the asks of all joined plans, those of this run
+/// first. The scale is empty if the manifest has no scales, the variant "base" if nothing is swept.
 struct PlannedRun : Run {
-  std::optional<Stage> prepare;  ///< the packing; none where it begins with a recorded state
+  std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;
-  Parameters packing;  ///< those with which it settles
+  Parameters packing;  ///< parameters with which the packing settles
 };
 
 struct Plan {
   std::string experiment;
   std::string scale;
-  std::optional<PackingText> file = {};  ///< of which the packings are made
+  std::optional<PackingText> file = {};  ///< the grains of all packings
   std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
   std::vector<std::string> warnings;     ///< sound but unlikely to be meant; one line each
 };
@@ -47,10 +47,10 @@ struct Plan {
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// The runs of one or more manifests, each once, with what all of them ask for.
+/// The runs of one or more plans. A stage of several plans occurs once, with the asks of all.
 Plan joined(std::span<const Plan> plans);
 
-/// Whether LAMMPS computes any of its runs.
+/// Whether LAMMPS computes any run of the plan.
 bool asks_for_lammps(const Plan& plan);
 
 }  // namespace shearcell

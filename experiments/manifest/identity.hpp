@@ -21,8 +21,8 @@ struct StartFile {
   bool settles = false;                 ///< the grains settle further; else they stay as placed
 };
 
-/// A stage, as read from its `resolved` record. Parameters that do not affect it, and lengths, have
-/// their defaults; the protocol of a stiffening is `stiffen`.
+/// A stage, as read from its `resolved` record. Lengths, and parameters that do not affect the
+/// stage, have their defaults; the protocol of a stiffening is `stiffen`.
 struct StageInputs {
   StageKind stage = StageKind::prepare;
   std::string parent;
@@ -31,21 +31,20 @@ struct StageInputs {
   std::optional<StartFile> file = {};  ///< of a packing
 };
 
-/// The preparation: fill, or place the grains of the file, and settle. A stage that nobody asks for
-/// yet; its id is the hash of `resolved`, which `read_stage` reads back. Equal ids mean equal
-/// trajectories, so a stage is computed once.
+/// The preparation: fill the cell, or place the grains of the file, and settle. The result has no
+/// asks; its id is the hash of `resolved`. Equal ids mean equal trajectories.
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
                     const std::optional<StartFile>& file = {});
 
-/// Shear or stiffening, by the protocol, of the packing that `parent` prepares.
+/// The shear or, by the protocol, the stiffening that begins with the last state of `parent`.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
 /// check a recorded run against its id.
 std::string stage_key(const nlohmann::json& resolved);
 
-/// A record of a stage that is damaged, or that another version of the program wrote. The message
-/// names the key.
+/// The record of a stage is damaged, or another version of the program wrote it. The message names
+/// the key.
 struct UnreadableRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -55,8 +54,8 @@ struct UnreadableRecord : std::runtime_error {
 StageInputs read_stage(const nlohmann::json& resolved);
 
 /// The parameters that affect the stage: those that the record states, and those that it omits at
-/// the value of all older runs, without constants of the record (Identity::recorded_as), which are
-/// not what the run had. Of a damaged record, those that it states.
+/// the value of all older runs. Left out are constants of the record (Identity::recorded_as), since
+/// the run may have had other values. For a damaged record, the stated parameters.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
 /// The engine that a record names, even if the record is damaged otherwise.

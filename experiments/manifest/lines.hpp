@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the lines of a manifest that define a run, and the values that the command line replaced.
+// Finds the lines of a manifest that state a run, and the values that the command line replaced.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -23,9 +23,9 @@ struct ManifestLine {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 
-/// Where a shear run differs from its manifest, since the command line gave --cycles, --seeds or
-/// --engine: {"cycles", "seed" or "engine": {"run": VALUE, "manifest": VALUE}}; for "seed", the
-/// manifest's value is its list of seeds. Null if nothing differs or the manifest cannot be read.
+/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: {"cycles",
+/// "seed" or "engine": {"run": VALUE, "manifest": VALUE}}. The manifest's value of "seed" is its
+/// list of seeds. Null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Ask& ask);
 
 }  // namespace shearcell

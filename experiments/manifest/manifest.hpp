@@ -20,8 +20,7 @@
 
 namespace shearcell {
 
-/// Limits of a manifest's text and of its expansion; experiments/README.md lists all limits of the
-/// program. The ranges of the parameters (N, cycles, ...) are in the schema.
+/// Limits of a manifest's text and of its expansion. The schema has the ranges of the parameters.
 struct ManifestLimits {
   static constexpr std::size_t bytes = 1 << 20;
   static constexpr std::size_t nodes = 100'000;
@@ -78,7 +77,7 @@ class ProblemList {
   std::set<std::string> texts_;
 };
 
-/// Throws a ManifestError of this problem alone.
+/// Throws a ManifestError with this problem.
 [[noreturn]] void refuse(std::string_view file, Position at, std::string key, std::string problem,
                          std::string got, std::string remedy);
 
@@ -102,7 +101,7 @@ struct Sweep {
   std::vector<SweepAxis> zip;
 };
 
-/// 1..n when a manifest states a count, or the seeds that it lists.
+/// The seeds 1..n if a manifest states a count, else those that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
@@ -144,7 +143,7 @@ struct StatedUntil {
 /// `checkpoints`, and where it was written.
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
-  std::vector<double> phases = {};  ///< of each cycle after one of these; ascending, 0 < p < 1
+  std::vector<double> phases = {};  ///< of the cycle after a checkpoint; ascending, 0 < p < 1
   Position at = {};
 };
 
@@ -169,16 +168,16 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};       ///< "" for that of the shear
   std::string variant = {};     ///< swept values; "" if the experiment has one variant
-  std::string checkpoint = {};  ///< instead of these, RUN@CYCLE
-  std::string run = {};         ///< the beginning of its id
+  std::string checkpoint = {};  ///< RUN@CYCLE, instead of experiment, scale and variant
+  std::string run = {};         ///< the beginning of the id in `checkpoint`
   Settings settings = {};       ///< start_seed, start_cycle, start_noise_d
   Position at = {};
 
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }
 };
 
-/// An entry of `scales` with what it takes from the manifest, or what the manifest states for all
-/// scales.
+/// A scale: an entry of `scales` completed from the top level of the manifest, or that top level
+/// itself.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
   Position at = {};
@@ -190,6 +189,8 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
+  /// Statements of the claims that the runs of this scale are made to decide.
+  std::vector<std::string> primary = {};
   std::set<std::string> own = {};  ///< keys that an entry of `scales` states itself
 };
 
@@ -207,7 +208,7 @@ struct Manifest {
   std::vector<Scale> scales;  ///< in the order of the text
 };
 
-/// The scales of the manifest; the base if it has none.
+/// The scales of the manifest; `base` if it has no scales.
 inline std::vector<Scale> scales_of(const Manifest& manifest) {
   return manifest.scales.empty() ? std::vector{manifest.base} : manifest.scales;
 }
@@ -218,7 +219,7 @@ inline constexpr std::size_t kLongestName = 64;
 /// digits, '-' and '_', the first not a '-'.
 bool is_name(std::string_view text);
 
-/// The bytes of a file, of a longer one the first `limit` + 1. Throws ManifestError.
+/// The bytes of a file, at most the first `limit` + 1. Throws ManifestError.
 std::string read_text(const std::filesystem::path& path, std::size_t limit);
 
 /// Reads a file. Throws ManifestError.
@@ -231,9 +232,9 @@ Manifest parse_manifest(std::string_view text, std::string_view file);
 /// The table of the keys at the top level in experiments/REFERENCE.md.
 std::string manifest_markdown();
 
-/// The same without the checks of the variants: only keys, types and ranges. Plots and claims may
-/// have the names of figures of the supplement if the manifest is `shipped`. Throws ManifestError
-/// with all problems.
+/// Reads a text and checks keys, types and ranges, not the variants. In a `shipped` manifest plots
+/// and claims may have the names of figures of the supplement. Throws ManifestError with all
+/// problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
 }  // namespace shearcell

@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// Of the lengths of a file: metres or grain diameters.
+/// Unit of the lengths of a file: metres or grain diameters.
 enum class LengthUnit : std::uint8_t { m, d };
 template <>
 inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
@@ -41,11 +41,10 @@ struct PackingFacts {
 /// Largest text [bytes].
 inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
-/// Reads the text of a file of this name. The format is that of the content; the name decides what
-/// is said of a text that has none of the formats. Positions are not moved, except that z is
-/// wrapped into the box. Throws ManifestError, with line, value and remedy, if the text is not a
-/// packing of equal grains within its box that overlap by at most facts.largest_overlap, across the
-/// periodic boundary in z too if there is a box.
+/// Reads a text in the format that its content shows; `file` is the name for messages. Positions
+/// are not moved, except that z is wrapped into the box. Throws ManifestError, with line, value and
+/// remedy, unless the text is a packing of equal grains within its box that overlap by at most
+/// facts.largest_overlap, across the periodic boundary in z too if there is a box.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 }  // namespace shearcell

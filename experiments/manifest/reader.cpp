@@ -128,6 +128,11 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "ends a run `extra_cycles` after the measure reaches the value; default: at "
                 "`cycles`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}"});
+  visit(scale.primary, {.name = "primary",
+                        .doc = "statements of the claims that these runs are made to decide; all "
+                               "others are exploratory",
+                        .example = "[\"B.6: phi is the same\"]",
+                        .longest = 300});
 }
 
 void fields(SeriesSpec& series, const auto& visit) {
@@ -712,19 +717,20 @@ struct Reader {
     }
   }
 
-  // Figures of the supplement.
-  void read(const Node& in, const Field& about, std::vector<string>& figures) {
+  // Figures of the supplement, or claims.
+  void read(const Node& in, const Field& about, std::vector<string>& names) {
     for (const Node& item : items_of(in, about.example)) {
-      string figure;
-      read(item, {}, figure);
-      if (figure.empty()) continue;
-      if (std::ranges::find(figures, figure) != figures.end()) {
-        reject_value(item, "names a figure twice", "Keep one of them.");
-      } else if (find_figure(figure) == nullptr) {
-        reject_value(item, with_nearest("names an unknown figure", figure, names_of(all_figures())),
+      string name;
+      read(item, {.longest = about.longest}, name);
+      if (name.empty()) continue;
+      if (std::ranges::find(names, name) != names.end()) {
+        reject_value(item, format("names a {} twice", about.name == "primary" ? "claim" : "figure"),
+                     "Keep one of them.");
+      } else if (about.name != "primary" && find_figure(name) == nullptr) {
+        reject_value(item, with_nearest("names an unknown figure", name, names_of(all_figures())),
                      "`shearcell figures --help` lists them.");
       }
-      figures.push_back(figure);
+      names.push_back(name);
     }
   }
 
@@ -825,7 +831,9 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
     if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
     for (const Node& part : in.parts) {
-      const Field* field = find_field(part.key);
+      static const Field seeds = {
+          .name = "seeds", .range = {1, ManifestLimits::runs}, .whole = true};
+      const Field* field = part.key == seeds.name ? &seeds : find_field(part.key);
       if (field == nullptr) {
         reject_unknown(part, names_of(schema()));
         continue;

@@ -18,12 +18,12 @@
 namespace shearcell {
 
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
-/// stages, since settling comes first; another one enters the record of its own stage only.
+/// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
   std::optional<StageKind> stage = {};     ///< first stage that it affects; nothing: in no key
   std::optional<ProtocolKind> under = {};  ///< only under this protocol
-  /// The record omits the parameter at this value (as in a manifest). For a parameter that is
-  /// younger than the stores: the value of all older runs, which may differ from the default.
+  /// The record omits the parameter if it has this value, written as in a manifest: the value of
+  /// all runs that are older than the parameter. It may differ from the default.
   std::string_view omitted_at = {};
   /// Every record holds this value, whatever the parameter is. For a parameter that is no longer
   /// part of the identity; the records of older runs may hold other values.
@@ -57,7 +57,7 @@ struct Field {
   std::span<const std::string_view> names = {};  ///< of a choice: the values
   std::string_view besides = {};                 ///< what a choice takes besides its names
   bool whole = false;                            ///< takes whole numbers alone
-  std::span<const std::string_view> terms = {};  ///< numbers of which it takes expressions too
+  std::span<const std::string_view> terms = {};  ///< names for expressions, if it takes expressions
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};                  ///< "a map of settings"
   bool required = false;
@@ -69,7 +69,7 @@ struct Field {
   bool is_choice() const { return !names.empty(); }
 };
 
-/// The same key with the kind of values that a member of type T holds.
+/// The field, completed with the kind of values of a member of type T.
 template <class T>
 constexpr Field with_type(Field field) {
   if constexpr (std::is_enum_v<T>) field.names = kNames<T>;
@@ -83,10 +83,10 @@ std::span<const Field> schema();
 /// The parameter of that name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the parameter is the length of a run. It does not distinguish runs, but a zip may give
-/// each variant its own.
+/// Whether the key is the length of a run or the number of seeds. Neither distinguishes runs, but a
+/// zip may give each variant its own.
 inline bool is_length(std::string_view key) {
-  return key == "cycles";
+  return key == "cycles" || key == "seeds";
 }
 
 /// What is wrong with a value, and what to write instead.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures of the supplement: those that analysis/figures/ computes, and those that the shipped
-// manifests state, whose texts are part of the program. So `figures: [S2]` means the plots and
-// claims of drag.yaml in any manifest, also in one that an older program registered.
+// The figures of the supplement. analysis/figures/ computes some of them; shipped manifests, whose
+// texts are part of the program, state the others. So `figures: [S2]` in any manifest means the
+// plots and claims of drag.yaml.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a shear begins, if not with loose grains that settle: with the recorded state of another
-// run, or with the grains of a file.
+// Starts other than loose grains that settle: the recorded state of another run, or the grains of a
+// file.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct PlacedGrains {
   State state;  ///< at step 0; the moving wall is at rest
 };
 
-/// The cell of the parameters, with the wall grains of the seed, and in it the grains of the text.
+/// Places the grains of the text in the cell of the parameters, with the wall grains of the seed.
 /// The box of the file must be as wide and deep as the cell; without a box the walls touch the
 /// outermost grains. Throws ManifestError with the reason and the remedy if they do not fit.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,

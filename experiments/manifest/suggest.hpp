@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names as people write them, and lists of names in messages: the name that is nearest to an
-// unknown one, the first of many.
+// Names in messages: the known name that is nearest to an unknown one, and lists of names.
 #pragma once
 
 #include <fmt/format.h>

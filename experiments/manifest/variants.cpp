@@ -216,7 +216,7 @@ std::vector<Variant> variants_of(const Scale& scale) {
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
   std::vector<Variant> variants(variant_count(scale.sweep), Variant{{}, base, {}});
   for (std::uint64_t index = 0; index < variants.size(); ++index) {
-    auto& [swept, parameters, packing] = variants[index];
+    auto& [swept, parameters, packing, seeds] = variants[index];
     // Number of grid points that have equal values on the axes before this one.
     std::uint64_t block = variants.size() / rows;
     for (const SweepAxis& axis : grid) {
@@ -226,7 +226,9 @@ std::vector<Variant> variants_of(const Scale& scale) {
     }
     for (const SweepAxis& axis : zip) {
       const Setting& setting = axis.values[index % rows];
-      if (is_length(axis.key)) {
+      if (axis.key == "seeds") {
+        seeds = setting.value.get<std::uint64_t>();
+      } else if (is_length(axis.key)) {
         apply(axis.key, setting, parameters);
       } else {
         swept.emplace_back(axis.key, &setting);

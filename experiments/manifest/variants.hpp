@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,33 +18,38 @@
 
 namespace shearcell {
 
-/// The value of a parameter that is not swept, or "auto".
+/// The value of a parameter at this scale, if it is not swept; or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// Whether the setting is `auto`, which variants_of() resolves.
 bool is_auto(const Setting& setting);
 
-/// Points into the scale.
+/// A combination of swept values. Refers to the scale, which must outlive it.
 struct Variant {
-  /// In the order of the manifest, without the length of the run.
+  /// Swept keys in the order of the manifest, without `cycles`.
   std::vector<std::pair<std::string, const Setting*>> swept;
   Parameters parameters;
-  Parameters packing;  ///< the same with what `settle` states
+  Parameters packing;  ///< `parameters`, with those of `settle` in their place
+  /// How many of the seeds it has, the first ones; default: all.
+  std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 
   std::string name() const;             ///< "fluid=cell", "base" when nothing is swept
   nlohmann::json swept_values() const;  ///< swept keys and values
 };
 
-/// Selects by values named on the command line. A value fits a wanted one if it has all its parts:
-/// "fluid=cell" fits "fluid=cell,amplitude_rad=0.1", and so does "b=1.28e-3 kg/s".
+/// Selects variants, experiments or seeds by texts of the command line. A variant such as
+/// "fluid=cell,amplitude_rad=0.1" has the parts "fluid=cell" and "amplitude_rad=0.1". It fits a
+/// text if it has all parts of the text, in any order; numbers may be written in any way, and with
+/// a unit.
 class Filter {
  public:
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the value fits one of the wanted values of each set of keys; true if none are wanted.
+  /// Whether to select the value. Texts with the same keys are alternatives; a value must fit one
+  /// text for each set of keys. True if no texts were given.
   bool passes(const std::string& value);
-  /// The first wanted value that no value fitted, or null.
+  /// The first text that no tried value fitted, or null.
   const std::string* unfound() const;
   /// The values that were tried, each once, in order.
   const std::vector<std::string>& seen() const { return seen_; }
@@ -56,16 +62,16 @@ class Filter {
   };
   std::vector<Wanted> wanted_;
   std::vector<std::string> seen_;
-  std::set<std::string> known_;  ///< those of seen_
+  std::set<std::string> known_;  ///< the values in seen_
 };
 
-/// Whether the variant (swept keys and values) has all values of the label.
+/// Whether the label applies to the variant, an object of swept keys and values.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
 
-/// Names for people of variants, which are objects of swept keys and values; identity and CSV files
-/// use Variant::name() instead. A label replaces the keys that it states, labels with more keys
-/// first. The other keys that distinguish the variants follow: "fluid at rest, A=0.05 rad". "base"
-/// if nothing is swept. Variants may be repeated.
+/// Returns display names of variants, which are objects of swept keys and values and may be
+/// repeated. (Ids and CSV files use Variant::name().) A label replaces the keys that it states;
+/// labels with more keys come first. The keys that still distinguish the variants follow: "fluid at
+/// rest, A=0.05 rad". The name is "base" if nothing is swept.
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 
@@ -75,8 +81,9 @@ const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 /// The number of variants; saturates at 2^64 - 1.
 std::uint64_t variant_count(const Sweep& sweep);
 
-/// In manifest order: the first grid axis varies slowest, the rows of the zip fastest. The scale
-/// must be complete, outlive the result, and have at most ManifestLimits::runs variants.
+/// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
+/// zip fastest. The scale must be complete, outlive the result, and have at most
+/// ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell

@@ -34,8 +34,9 @@ struct Packings {
 };
 
 /// Packs checkpoints of the experiments, in their order. If the chosen checkpoints exceed the
-/// budget, each run shows fewer, evenly spaced, including the first and the last. If not even the
-/// last ones fit, the last runs are left out. The same store gives the same value.
+/// budget, each run shows fewer checkpoints, evenly spaced, with the first and the last. If the
+/// last checkpoints alone exceed the budget, the last runs are left out. The same store gives the
+/// same value.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers,

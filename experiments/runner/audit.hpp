@@ -14,17 +14,17 @@
 
 namespace shearcell {
 
-/// An error for each run whose id is not the hash of its parameters, or whose kind, parent, number
-/// of grains, seed, swept values or variant contradict them, or that was started from another state
-/// than that at which its parent was completed; a note when this program does not know its
-/// parameters.
+/// An error for each stage whose id is not the hash of its parameters; whose kind, parent, number
+/// of grains, seed, swept values or variant contradict the parameters; or that did not start from
+/// the last state of its parent. A note for each stage whose parameters this program does not know.
 std::vector<Finding> check_runs(const Store& store);
 
 /// Every checkpoint that can be replayed, pruned ones included, in the order of runs and steps.
-/// Checkpoints of another engine cannot.
+/// Checkpoints of LAMMPS cannot be replayed.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
-/// `count` of the records without repetition, or all; the same for the same seed.
+/// A random sample of `count` records without repetition, or all records; the same for the same
+/// seed.
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed);
 
@@ -43,9 +43,9 @@ struct MeasureCheck {
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 
-/// Store::merge; then copies the measures that the sources keep for checkpoints of the store. No
-/// measures are copied from a source if one of three sampled checkpoints has a wrong one; the error
-/// is added to `refused`.
+/// Store::merge(); then copies the cached measures of the sources. If one of three sampled
+/// checkpoints of a source has a wrong measure, none is copied from this source, and the error is
+/// added to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

@@ -8,9 +8,11 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include "core/filling.hpp"
 #include "core/threads.hpp"
@@ -142,11 +144,13 @@ class Progress {
 
 class Campaign {
  public:
-  Campaign(Store& store, const std::vector<StageJob>& jobs, const Parallel& parallel, bool quiet)
+  Campaign(Store& store, const std::vector<StageJob>& jobs, const Parallel& parallel, bool quiet,
+           std::function<void(const std::string&)> when_done)
       : store_(store),
         jobs_(jobs),
         progress_(jobs.size(), quiet),
         parallel_(parallel),
+        when_done_(std::move(when_done)),
         states_(jobs.size()) {}
 
   CampaignResult run(std::size_t workers) {
@@ -306,6 +310,7 @@ class Campaign {
         const std::lock_guard lock(mutex_);
         ++result_.already;
       }
+      if (when_done_) when_done_(job.id);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(j);
@@ -319,6 +324,7 @@ class Campaign {
       case StageOutcome::completed:
       case StageOutcome::already: {
         const bool now = outcome == StageOutcome::completed;
+        if (when_done_) when_done_(job.id);
         finish(job, now ? &CampaignResult::completed : &CampaignResult::already, done_text(job),
                true);
         return JobState::done;
@@ -380,6 +386,7 @@ class Campaign {
   const std::vector<StageJob>& jobs_;
   Progress progress_;
   Parallel parallel_;
+  std::function<void(const std::string&)> when_done_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::vector<Job> states_;
@@ -475,8 +482,9 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
 }
 
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            const Parallel& parallel, bool quiet) {
-  return Campaign(store, jobs, parallel, quiet).run(workers);
+                            const Parallel& parallel, bool quiet,
+                            std::function<void(const std::string& stage)> when_done) {
+  return Campaign(store, jobs, parallel, quiet, std::move(when_done)).run(workers);
 }
 
 }  // namespace shearcell

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,16 +36,18 @@ struct CampaignResult {
 /// first and otherwise in the plan's order.
 std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan);
 
-/// The stages of the store that are not done by their Outlook, or those whose id begins with one of
-/// `prefixes`, with the stages before them. Throws NotFound for a prefix that fits no stage or
-/// several.
+/// The stages of the store that are not done by their Outlook, with the stages before them; with
+/// `prefixes` only stages whose ids begin with one of these. Throws NotFound for a prefix that fits
+/// no stage or several.
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
-/// Computes every job that is not done. A failure stops only the stages that depend on it. Stages
-/// that another program computes are left to it while there is other work, then waited for, and
-/// continued here when that program ends or its lease expires. Shows its progress on standard
-/// error, unless it is `quiet`.
+/// Computes every job that is not done. A failure stops only the stages that depend on the failed
+/// stage. A stage that another program computes is left to that program, and continued here if the
+/// program ends or its lease expires before the stage is done. Shows progress on standard error
+/// unless `quiet`. `when_done` is called with the id of each stage that is done, by several threads
+/// at once; what it throws ends the campaign.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
-                            const Parallel& parallel = {}, bool quiet = false);
+                            const Parallel& parallel = {}, bool quiet = false,
+                            std::function<void(const std::string& stage)> when_done = {});
 
 }  // namespace shearcell

@@ -25,14 +25,14 @@ using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 struct MeasureOptions {
   std::size_t workers = 1;
   ReadProgress report = {};  ///< called as checkpoints are computed
-  /// Cycles between the checkpoints that the experiment asks of a run, by its id; 1 for others.
-  /// Measures over two checkpoints do not use those that interruptions and other experiments left.
+  /// Cycles between the checkpoints that the experiment asks of a run, by the run's id; 1 if not
+  /// given. Measures over two checkpoints use checkpoints of this cadence only.
   std::map<std::string, std::uint64_t> cadence = {};
-  /// Names of further providers, whose results are cached too whenever a checkpoint is analysed, so
-  /// that one analysis serves many callers. None may need earlier checkpoints.
+  /// Names of further providers, whose results are computed and cached whenever a checkpoint is
+  /// analysed, so that one analysis serves many callers. They must not need earlier checkpoints.
   std::vector<std::string> also = {};
-  /// Cycles, first to last, outside which nothing is simulated (ComputedFrom::simulation): those
-  /// checkpoints then lack such measures, as if the run had none.
+  /// First and last cycle of the checkpoints for which measures are simulated
+  /// (ComputedFrom::simulation). Other checkpoints lack these measures.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
@@ -45,31 +45,31 @@ struct UnreadCheckpoints {
 struct MeasureOutcome : UnreadCheckpoints {
   std::size_t measured = 0;  ///< checkpoints that were analysed now
   std::size_t cached = 0;    ///< checkpoints whose results were in the cache
-  /// SHA-256 of the earlier checkpoints that measures were taken from too, by run and step.
+  /// SHA-256 of the earlier checkpoints that entered measures, by run and step.
   std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
   std::string cache_trouble;  ///< why results cannot be cached; "" if they can
 };
 
 struct MeasuredCheckpoints : MeasureOutcome {
   std::vector<Measures> measures;  ///< in the order of the records
-  /// In the order of the records: names of the providers without a result, because the checkpoint,
-  /// or an earlier one that they need, could not be read.
+  /// For each record: names of the providers without a result, because the checkpoint or an earlier
+  /// one could not be read.
   std::vector<std::vector<std::string>> lacking;
 
   bool lacks(std::size_t record, std::string_view provider) const;
 };
 
-/// The measures of these providers, and those that follow from the log (ComputedFrom::record).
-/// Results are cached under the checkpoint's recorded SHA-256, so for a cached result the file is
-/// not read and may be missing; `verify` checks files. Cached and computed results are the same
-/// bytes. Throws AnalysisError, with a remedy, for a cached result that is not what its key says.
+/// The measures of these providers, and the measures that follow from the log
+/// (ComputedFrom::record). Results are cached under the checkpoint's recorded SHA-256: for a cached
+/// result the file is not read and may be missing. Cached and computed results are the same bytes.
+/// Throws AnalysisError, with a remedy, for a cached result that does not match its key.
 MeasuredCheckpoints measure_checkpoints(const Store& store,
                                         std::span<const CheckpointRecord> records,
                                         std::span<const std::string> providers,
                                         const MeasureOptions& options);
 
-/// The analysis of a stored checkpoint. Throws StoreDamaged, which names the checkpoint and its
-/// run, if analyse() throws AnalysisError: this program records no such state.
+/// The analysis of a stored checkpoint. If analyse() throws AnalysisError, throws StoreDamaged,
+/// which names checkpoint and run, since this program records no such state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Adds lines; `all` stays sorted and without repetitions.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the measures of a store's checkpoints are computed from: the checkpoint, earlier ones of its
-// run, and the run.
+// Inputs of the measures of a store's checkpoints: the checkpoint, earlier checkpoints of its run,
+// and the run.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,15 @@ class MeasureSources {
   /// `cadence` is MeasureOptions::cadence.
   explicit MeasureSources(const Store& store, std::map<std::string, std::uint64_t> cadence = {})
       : store_(&store), cadence_(std::move(cadence)) {}
-  /// Of one run, under this id, without its earlier checkpoints.
+  /// For one run, called `id`, without its earlier checkpoints.
   MeasureSources(const std::string& id, const Stage& run);
 
-  /// Reads the log, unless it has. The other functions need this of the checkpoint's run, and then
-  /// any number of threads may call them.
+  /// Reads the log of a run, once. Call this before the other functions take a checkpoint of the
+  /// run; any number of threads may then call them.
   void read_run(const std::string& run);
 
-  /// The checkpoint of the same run so many cycles earlier, which the experiment asks for; null if
-  /// it does not exist. Valid as long as this object.
+  /// The checkpoint of the same run `cycles` earlier, on the cadence of the experiment; null if
+  /// there is none. Valid as long as this object.
   const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles) const;
 
   /// The key under which a result is cached; it also names the earlier checkpoints that the
@@ -41,7 +41,7 @@ class MeasureSources {
   Checkpoint load(const CheckpointRecord& record) const { return store_->load_checkpoint(record); }
 
   /// The provider's result; nothing, and a line in `unread`, if an earlier checkpoint cannot be
-  /// read. Without `checkpoint`, for a provider that needs only the record.
+  /// read. `checkpoint` may be null if the provider needs only the record.
   std::optional<nlohmann::json> compute(const Provider& provider, const CheckpointRecord& record,
                                         const Checkpoint* checkpoint, const Analysis* analysis,
                                         UnreadCheckpoints& unread) const;
@@ -49,8 +49,8 @@ class MeasureSources {
   /// Adds the measures that follow from the log.
   void add_recorded(const CheckpointRecord& record, Measures& measures) const;
 
-  /// The measures of a loaded checkpoint by these providers, and those that follow from the log,
-  /// without those that need an earlier checkpoint that cannot be read.
+  /// The measures of a loaded checkpoint by these providers, and the measures that follow from the
+  /// log. Measures whose earlier checkpoint cannot be read are left out.
   Measures measures_of(const CheckpointRecord& record, const Checkpoint& checkpoint,
                        const Analysis& analysis, bool (*wanted)(const Provider&)) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A state as other programs hold it: every particle, wall grains included, and the box, in units of
-// the caller's choice.
+// A state for other programs: every particle, wall grains included, and the box, in units that the
+// caller chooses.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 namespace shearcell {
 
 /// The grains by id, then the wall grains in the order of the cell. Arrays have one entry, or one
-/// column, per particle. Units are those of `units` in particles_of, so SI in an export.
+/// column, per particle. particles_of() sets the units: SI in an export.
 struct Particles {
   /// The cell: its lower left corner, and its edges as columns. Only the third is periodic.
   Eigen::Vector3d origin;

@@ -22,24 +22,23 @@ struct RegisteredManifest {
   std::string text;
 };
 
-/// By the time of registration. A version that was registered again after another one appears
-/// again. Throws StoreDamaged for an event that does not hold a manifest.
+/// The registrations, oldest first. A version that was registered again after another version
+/// occurs again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store);
 
 /// The parsed manifest; nothing if this version of the program cannot read it.
 std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 
-/// Display names of all variants in a store, from the labels of each manifest and the values that
-/// vary in it (experiments/manifest/variants.hpp). No sweep names settled packings: each is called
-/// "packing" or, if an experiment has several at one scale, also by the values in which they
-/// differ: "packing N=600".
+/// Display names of all variants in a store, by variant_names() of each manifest. A settled packing
+/// is called "packing". If an experiment has packings that differ at one scale, the values that
+/// differ follow: "packing N=600".
 class VariantNames {
  public:
   VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
-  /// In this place of the run; if unknown, the variant itself.
+  /// The name of the run in this place; if unknown, the variant.
   std::string of(const Stage& run, const Place& place) const;
-  /// The same; not of a packing.
+  /// The name of a variant; not for packings.
   std::string of(const Place& place) const;
 
  private:

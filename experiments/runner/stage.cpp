@@ -192,7 +192,7 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::st
         "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
         run.parent, run.id,
         recorded ? fmt::format("`shearcell regenerate {:.12}` restores its file",
-                               store.checkpoints(run.parent).back().sha256)
+                               store.checkpoints(run.parent, Listed::and_pruned).back().sha256)
                  : "`shearcell resume` recomputes it first"));
   }
   parent->checkpoint.state.step = 0;
@@ -596,10 +596,11 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// If it is not, run_stage reports what is wrong with it.
+// If it is not, run_stage reports what is wrong with it. A pruned one can be regenerated.
 bool newest_is_sound(const Store& store, const Stage& run) {
-  const auto recorded = store.checkpoints(run.id);
-  return !recorded.empty() && store.load_if_readable(recorded.back());
+  const auto found = store.checkpoints(run.id, Listed::and_pruned);
+  return !found.empty() &&
+         (found.back().state == CheckpointState::pruned || store.load_if_readable(found.back()));
 }
 
 // --- Computing again ---

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes one stage from its record in the store and records the result; or computes a recorded
-// state again, to prove it or to restore its file.
+// Computes one stage from its record in the store and records the result; computes a recorded state
+// again, to verify it or to restore its file.
 #pragma once
 
 #include <cstddef>
@@ -21,9 +21,9 @@ struct Parallel {
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
-/// How a stage ended in this process. `already`: it was completed and nothing was left to compute.
-/// `held`: another program holds it; nothing was started. `lost`: another program took its lease,
-/// completed it or recorded a later state meanwhile.
+/// How a stage ended in this process. `already`: nothing was left to compute. `held`: another
+/// program holds the stage; nothing was started. `lost`: meanwhile another program took the lease,
+/// completed the stage or recorded a later state.
 enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
 
 /// The progress of a running stage.
@@ -43,21 +43,20 @@ struct StageOptions {
   std::function<void(const StageStatus&)> report;   ///< called a few times a second
 };
 
-/// Computes the stage `id` until its target, then the checkpoints that it lacks. Starts from its
-/// newest valid checkpoint; without one, from the state at which its parent was completed, or a
-/// fresh filling. Between chunks of steps of about 50 ms it checks stop_requested() and whether the
-/// store still holds the run. Throws StoreDamaged when the parent is not completed or its last
-/// state cannot be read, or the recorded parameters do not give the id; GeometryError for a cell
-/// that cannot be filled; TooLittleMemory; and ProgramError when the stage's engine is not
-/// installed, all before an attempt is recorded. A stage that is interrupted while its cell is
-/// filled records nothing.
+/// Computes the stage `id` until its target, then its missing checkpoints. Starts from the newest
+/// valid checkpoint; without one, from the last state of the parent, or a new filling. Between
+/// chunks of steps of about 50 ms it checks stop_requested() and whether the store still holds the
+/// run. Throws, before an attempt is recorded: StoreDamaged when the parent is not completed, its
+/// last state cannot be read, or the recorded parameters do not give the id; GeometryError for a
+/// cell that cannot be filled; TooLittleMemory; ProgramError when the stage's engine is not
+/// installed. A stage that is interrupted while its cell is filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is done and its last state can be read.
 bool is_done(const Store& store, const Stage& stage);
 
-/// The checkpoint, recorded or pruned, with whose state a shear of these parameters begins, if the
-/// stage before it is a shear too: that at `start_cycle`. Nothing if it was never recorded.
+/// The checkpoint, recorded or pruned, at `start_cycle` of the parent, if the parent is a shear:
+/// the state with which a shear of these parameters begins. Nothing if it was never recorded.
 std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 
@@ -91,8 +90,9 @@ std::optional<std::string> why_not_again(const Stage& run);
 /// observables), and records ReplayVerified or ReplayDiverged.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
-/// The same; also writes the file, so that a pruned, missing or damaged checkpoint is restored with
-/// the same SHA-256. If the bytes differ, ReplayDiverged is recorded and no file is written.
+/// verify_by_replay() that also writes the file, so that a pruned, missing or damaged checkpoint is
+/// restored with the same SHA-256. If the bytes differ, ReplayDiverged is recorded and no file is
+/// written.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -11,11 +11,11 @@ namespace shearcell {
 /// SIGPIPE: nobody needs to read the progress of a campaign.
 void catch_stop_signals();
 
-/// The same for a task of a batch system, which announces the end by SIGTERM or SIGUSR1, perhaps
-/// several times, and kills the task later. Only the first signal counts.
+/// catch_stop_signals() for a task of a batch system, which announces the end by SIGTERM or
+/// SIGUSR1, perhaps several times, and kills the task later. Only the first signal counts.
 void catch_batch_signals();
 
-/// Whether one of them arrived.
+/// Whether a signal arrived that asks to stop.
 bool stop_requested();
 
 /// Thrown when a stop is requested before there is a state to record.

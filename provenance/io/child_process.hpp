@@ -24,7 +24,7 @@ class ProgramError : public std::runtime_error {
 /// The text in single quotes: one word for a POSIX shell and for fish.
 std::string shell_quoted(std::string_view text);
 
-/// The same, without quotes where a shell needs none.
+/// The text as one word for a shell, in quotes only if it needs them.
 std::string shell_word(std::string_view text);
 
 /// The executable file of this name: the name itself if it has a slash, else the first on PATH.
@@ -55,13 +55,13 @@ class ChildProcess {
   /// The exit code, or 128 + the number of the signal that ended it; nothing while it runs.
   std::optional<int> exit_code();
 
-  /// Waits for its end and returns exit_code().
+  /// Waits for the end of the program and returns exit_code().
   int wait();
 
   /// Peak memory of the ended process [bytes]; 0 while it runs.
   std::size_t peak_bytes() const { return peak_bytes_; }
 
-  /// Its processor time so far, without that of its own children.
+  /// Processor time of the program so far, without that of its children.
   double core_seconds() const;
 
  private:

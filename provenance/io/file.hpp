@@ -43,7 +43,7 @@ void sync(const Descriptor& file, const std::filesystem::path& path);
 
 enum class Durability {
   renamed,  ///< a reader sees the old file or the whole new one
-  synced    ///< and it survives a power cut: file and folder are synced
+  synced    ///< and the new file survives a power cut
 };
 
 /// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0644
@@ -67,14 +67,14 @@ std::optional<std::string> read_plain(const std::filesystem::path& path, std::si
 using Recognize = std::function<bool(std::string_view beginning)>;
 
 /// Throws NotOurs unless the path is free or a regular file that `ours` recognizes, and
-/// std::system_error when this user may not look.
+/// std::system_error when this user may not read the file.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
 /// Writes a whole file under a temporary name beside `path` and renames it (replace_file).
 void write_output(const std::filesystem::path& path, std::string_view bytes);
 
-/// A new file that is written in parts; an existing file is never overwritten. Both functions throw
-/// std::system_error that names the file, and nothing is left of one that could not be written.
+/// A new file that is written in parts; an existing file is never overwritten. If writing fails,
+/// both functions delete the file and throw std::system_error, which names it.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often each kind of claim is decided, by simulation: made-up runs of a stated spread go
-// through the estimates and verdicts of the program. Prints the table of analysis/README.md:
+// through the estimates and verdicts of the program. Prints a row for each kind:
 //   test_analysis --gtest_filter='Power.*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>

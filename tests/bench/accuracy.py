@@ -1,86 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Prints the tables of core/ACCURACY.md from the files in experiments/results: python3 accuracy.py RESULTS_FOLDER"""
+"""Prints the table of core/ACCURACY.md from accuracy-order.csv: python3 accuracy.py FOLDER"""
 
 import csv
-import json
 import pathlib
 import sys
 
-results = pathlib.Path(sys.argv[1])
 MOTIONS = {"collision": "two grains collide: speed after it",
            "wall": "one grain swings on a wall, ten periods: position over amplitude",
            "wave": "fastest wave in a row of 8 grains: frequency"}
 METHODS = ("engine", "PEFRL", "Runge-Kutta")
 
-
-def read(name):
-    with open(results / name, newline="") as file:
-        return list(csv.DictReader(file))
+with open(pathlib.Path(sys.argv[1]) / "accuracy-order.csv", newline="") as file:
+    rows = list(csv.DictReader(file))
 
 
-def table(name, heading, rows):
-    print(f"<!-- {name} -->\n| {' | '.join(heading)} |\n|{'---|' * len(heading)}")
-    for row in rows:
-        print(f"| {' | '.join(row)} |")
-    print("<!-- end -->")
+def error_and_order(motion, method):
+    row = [row for row in rows if (row["motion"], row["method"]) == (motion, method)][2]  # at Table I's time step
+    error = f"{float(row['relative_error']):.2g}".replace("e-0", "e-")
+    return f"{error} ({float(row['fitted_order']):.2f})"
 
 
-def number(text, digits=2):
-    value = float(text)
-    return f"{value:.0f}" if value >= 100 else f"{value:.{digits}g}".replace("e-0", "e-")
-
-
-errors = read("accuracy/accuracy-order.csv")
-
-
-def curve(motion, method):
-    return [row for row in errors if (row["motion"], row["method"]) == (motion, method)]
-
-
-table("errors", ["motion: error", "method", "at 0.36", "order"] + ["local orders, from 0.71 of the limit down"],
-      ([title, method, number(rows[2]["relative_error"]), f"{float(rows[2]['fitted_order']):.2f}",
-        " ".join(f"{float(row['local_order']):.1f}" for row in rows if row["local_order"])]
-       for motion, title in MOTIONS.items() for method in METHODS for rows in [curve(motion, method)]))
-
-table("costs", ["time step [s]", "of the limit"] +
-      [f"{method}: error; core-seconds" for method in (*METHODS, "LAMMPS")],
-      ([number(rows[0]["time_step_s"], 3), f"{float(rows[0]['time_step_over_stability_limit']):.2f}"] +
-       [f"{number(row['relative_error'])}; {number(row['core_seconds_per_cycle'])}" for row in rows]
-       for rows in zip(*(curve("collision", method)[::2] for method in (*METHODS, "LAMMPS")))))
-
-energy = read("accuracy/accuracy-energy.csv")
-by_step = zip(*([row for row in energy if row["method"] == method] for method in METHODS))
-table("energy", ["time step [s]", "of the limit"] + [f"{method}: energy (local order)" for method in METHODS],
-      ([number(rows[0]["time_step_s"], 3), f"{float(rows[0]['time_step_over_stability_limit']):.2f}"] +
-       [f"{float(row['mean_energy_change']):+.1e} ({float(row['local_order']):.1f})" for row in rows]
-       for rows in by_step))
-
-table("divergence", ["time step [s]", "of the limit", "Lyapunov time [ms]"],
-      ([number(row["time_step_s"], 3), f"{float(row['time_step_over_stability_limit']):.2f}",
-        f"{1e3 * float(row['lyapunov_time_s']):.2f} +- {1e3 * float(row['standard_error_s']):.2f}"]
-       for row in read("accuracy/accuracy-divergence.csv")))
-
-claims = []
-for folder in ("paper", "decide"):
-    verdict = json.loads((results / folder / "timestep/S3.verdict.json").read_text())
-    claims += [(folder, claim) for claim in verdict["claims"]
-               if "is the same" in claim["claim"] and " s" in claim["claim"] and "4.4e-5" in claim["claim"]]
-decided = {claim["claim"] for folder, claim in claims if folder == "decide"}
-rows = []
-for folder, claim in claims:
-    if folder == "paper" and ("percentage" in claim["claim"] or claim["claim"] in decided):
-        continue
-    low, high = claim["interval"]
-    rows.append([claim["claim"].split("steps of ")[1].split(" and")[0], claim["quantity"].replace("difference in ", ""),
-                 f"{claim['estimate']:+.2g} ({low:+.2g} to {high:+.2g})", str(claim["margin"]), str(claim["runs"]),
-                 claim["verdict"]])
-table("pairs", ["time step [s]", "difference from 4.4e-5 s", "estimate (90 %)", "margin", "pairs", "verdict"],
-      sorted(rows, key=lambda row: (float(row[0]), row[1])))
-
-stiffness = read("decide/spring_constant/S1.csv")
-hardest = stiffness[-1]
-table("stiffness", ["k", "cost", "mean overlap [d]", "bias of phi_u", "bias of phi, Eq. (S4)"],
-      ([f"{factor:.3g} k_0", f"{factor ** 0.5:.2g}", number(row["overlap_mean_d"], 3),
-        f"{float(row['phi_u_mean']) - float(hardest['phi_mean']):+.4f}",
-        f"{float(row['phi_mean']) - float(hardest['phi_mean']):+.4f}"]
-       for row in stiffness for factor in [10 ** float(row["log10_k_over_k0"])] if float(row["log10_k_over_k0"]) in (0, 0.5, 1)))
+print("<!-- errors -->\n| motion: error (order) | " + " | ".join(METHODS) + " |\n" + "|---" * (1 + len(METHODS)) + "|")
+for motion, title in MOTIONS.items():
+    print(f"| {title} | " + " | ".join(error_and_order(motion, method) for method in METHODS) + " |")
+print("<!-- end -->")

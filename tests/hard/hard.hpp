@@ -2,7 +2,7 @@
 // Hard cases: at and beyond the limits of the engine. Each has a right answer that is known without
 // the engine, or must be stopped or refused with the numbers that say why. ctest runs each case in
 // a process of its own with a time limit, so a crash or a hang is an outcome as well.
-// table.sh makes the table of core/STABILITY.md from what the cases print.
+// table.sh makes the tables of core/STABILITY.md and outcomes.csv from what the cases print.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Runs every hard case with all of its steps and writes the table of outcomes into core/STABILITY.md:
+# Runs every hard case with all of its steps and writes the outcomes into outcomes.csv and core/STABILITY.md:
 #   sh tests/hard/table.sh                  # configures and builds the preset release first
-#   sh tests/hard/table.sh check BUILD      # changes nothing; fails if the table is another
+#   sh tests/hard/table.sh check BUILD      # changes nothing; fails if the outcomes are others
 set -eu
 cd "$(dirname "$0")/../.."
 build=${2:-build/release}
@@ -14,5 +14,5 @@ trap 'rm -f "$results"' EXIT
 code=0
 SHEARCELL_HARD=full ctest --test-dir "$build" -L '^hard$' -j "$(nproc)" --test-output-size-passed 65536 \
   --output-junit "$results" >&2 || code=$?
-python3 -B tests/hard/table.py "$results" | python3 -B tests/docs/insert_tables.py core/STABILITY.md ${1:+"$1"}
+python3 -B tests/hard/table.py "$results" tests/hard/outcomes.csv ${1:+"$1"} | python3 -B tests/docs/insert_tables.py core/STABILITY.md ${1:+"$1"}
 exit "$code"

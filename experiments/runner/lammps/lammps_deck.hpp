@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A state and what acts on it as LAMMPS reads them: a data file and an input deck, and the frames
-// that come back. README.md lists how each part of the scene is written, and why every mass is
+// Writes a state and what acts on it as a data file and an input deck for LAMMPS, and reads the
+// frames of LAMMPS. README.md lists how each part of the scene is written, and why every mass is
 // raised by b dt/2.
 #pragma once
 
@@ -24,8 +24,8 @@ struct LammpsTask {
   std::uint64_t end = 0;            ///< step at which it ends
   std::uint64_t stride = 1;         ///< a frame at every multiple of it, and at the end
   std::uint64_t check_every = 100;  ///< steps between two checks for a file `stop`, which ends it
-  bool added_mass = true;           ///< false: the drag as LAMMPS users take it, wrong by order dt
-  Units units = {1, 1};             ///< of lengths and masses in the deck; those of the data file
+  bool added_mass = true;           ///< false: LAMMPS's explicit drag, wrong by order dt
+  Units units = {1, 1};             ///< of lengths and masses in deck and data file
 };
 
 /// A data file (atom_style sphere): ids from 1, grains first; type 1 is a grain, 2 to 5 are the
@@ -43,7 +43,7 @@ std::string lammps_deck(const LammpsTask& task);
 /// and NAME_end.dump. The task's `end`, `stride` and `check_every` have no effect.
 std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
 
-/// Limit for files that LAMMPS writes [bytes]; none comes near it.
+/// Limit for files that LAMMPS writes [bytes], far above their sizes.
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
 /// Reads a frame, whose ids are those of the data file; an id above those of the grains is the

@@ -31,27 +31,27 @@ LammpsProgram find_lammps(std::size_t ranks = 1);
 /// about half a second of work.
 std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks);
 
-/// Starts it in `folder`, with `ranks` processes under mpirun when that is more than one. Throws
+/// Starts LAMMPS in `folder`, with more than one of `ranks` processes under mpirun. Throws
 /// ProgramError.
 std::unique_ptr<ChildProcess> start_lammps(const LammpsProgram& program, const LammpsTask& task,
                                            const std::filesystem::path& folder, std::size_t ranks);
 
 class LammpsRun {
  public:
-  /// Starts it as start_lammps() does.
+  /// Starts LAMMPS as start_lammps() does.
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
   /// The next frame; waits for it at most for `patience`. Throws ProgramError with LAMMPS's message
   /// if it ended without one.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
-  /// Asks it to write one more frame and end.
+  /// Asks LAMMPS to write one more frame and end.
   void ask_to_stop();
 
-  /// The newest step in its log.
+  /// The newest step in LAMMPS's log.
   std::uint64_t step();
 
-  /// Its processor time; nothing under mpirun, whose processes are not ours.
+  /// Processor time of LAMMPS; nothing under mpirun, whose processes are not ours.
   std::optional<double> core_seconds() const {
     return ranks_ > 1 ? std::nullopt : std::optional(process_->core_seconds());
   }
