@@ -6,16 +6,16 @@
 
 prints the sweep of that scale: at each amplitude at most 8 states for each bin of sizes, and 8 controls. The rule, fixed
 before any clone was computed: a state of a run belongs to the bin of its largest crystallite (0 to 2 grains: a control).
-A run gives to each bin the first such state from cycle FIRST on, before it has a crystallite of 60 grains. Bin k takes
-the runs in the order of their seeds, from the one at place 5 k on, in turn.
+A run gives to each bin the first such state from cycle FIRST on, and a control from twice that cycle on, before the run
+has a crystallite of 60 grains. Bin k takes the runs in the order of their seeds, from the one at place 5 k on, in turn.
 """
 import collections
 import csv
 import sys
 
 BINS = [(0, 2), (3, 4), (5, 7), (8, 12), (13, 20)]  # followed_bins of analysis/committor.hpp, after the controls
-# Half of the median of the onset; and the cycles of a clone, in which K = 3 cycles without a descendant fit several
-# times, since growth takes about half of the cycles to the onset.
+# About half of the median of the onset at N = 7900. Of the cycles of a clone: crystallites of 3 to 20 grains take about
+# half of these cycles to grow, and K = 3 cycles without a descendant fit twice.
 FIRST = {"0.05": 28, "0.0667": 14, "0.0833": 7, "0.1": 5}
 CLONE = {"0.05": 25, "0.0667": 14, "0.0833": 9, "0.1": 7}
 
@@ -34,7 +34,7 @@ def starts(rows, states, controls):
                 for cycle, largest in sorted(runs[amplitude, seed]):
                     if largest >= 60:
                         break
-                    if cycle >= FIRST.get(amplitude, 0) and low <= largest <= high:
+                    if cycle >= FIRST.get(amplitude, 0) * (1 if k else 2) and low <= largest <= high:
                         found.append((amplitude, seed, cycle))
                         break
             yield from found[: states if k else controls]
