@@ -73,10 +73,11 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     }
     experiments.insert(experiment);
   }
-  EXPECT_EQ(experiments, (std::set<std::string>{
-                             "accuracy", "choices", "committor_parents", "critical_size", "drag",
-                             "gravity", "moving_wall", "nucleation_sites", "onset_amplitude",
-                             "relaxation", "spring_constant", "system_size", "timestep", "walls"}));
+  EXPECT_EQ(experiments,
+            (std::set<std::string>{"accuracy", "choices", "committor", "committor_parents",
+                                   "critical_size", "drag", "gravity", "moving_wall",
+                                   "nucleation_sites", "onset_amplitude", "relaxation",
+                                   "spring_constant", "system_size", "timestep", "walls"}));
 }
 
 TEST(Manifests, StateTheFiguresThatAreNotComputed) {
