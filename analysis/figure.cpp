@@ -151,6 +151,8 @@ std::span<const Figure> computed_figures() {
           {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"}),
       one("C", "Growth of crystallites by size", figure_c, groups, {"amplitude_rad"},
           {"crystallites"}),
+      one("committor", "The probability that a crystallite grows", figure_committor, groups,
+          {"amplitude_rad", "start_seed", "start_cycle"}, {"crystallites"}),
       one("nucleation", "Runs without an onset, and the rate of nucleation", figure_nucleation,
           groups, {"amplitude_rad", "grains"}),
       one("nucleation_core", "The rate of nucleation at least 4 d from the walls",

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/growth.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,125 +10,98 @@
 namespace shearcell {
 namespace {
 
-/// Counts of each size from 1 on, in one column per run.
-struct Cases {
-  Eigen::ArrayXd log_size;
-  Eigen::ArrayXXd grew;    ///< sizes x runs
-  Eigen::ArrayXXd shrank;  ///< likewise
-};
-
-Cases cases_of(std::span<const GrowthBySize> runs, Vanished vanished) {
-  Cases cases;
-  std::int32_t largest = 1;
-  for (const GrowthBySize& run : runs) {
-    if (!run.empty())
-      largest = std::max(largest, std::min(largest_size_fitted, run.rbegin()->first));
-  }
-  cases.log_size = Eigen::ArrayXd::LinSpaced(largest, 1, largest).log();
-  cases.grew.setZero(largest, static_cast<Eigen::Index>(runs.size()));
-  cases.shrank = cases.grew;
-  Eigen::Index column = 0;
-  for (const GrowthBySize& run : runs) {
-    for (const auto& [size, count] : run) {
-      if (size > largest_size_fitted) break;
-      const std::size_t out = vanished == Vanished::left_out ? count.vanished : 0;
-      cases.grew(size - 1, column) = static_cast<double>(count.grew);
-      cases.shrank(size - 1, column) = static_cast<double>(count.shrank - out);
-    }
-    ++column;
-  }
-  return cases;
-}
-
-/// Newton's method on the log-likelihood, which is concave; a step that would lower it is halved.
-std::optional<GrowthFit> fit(const Eigen::ArrayXd& log_size, const Eigen::ArrayXd& grew,
-                             const Eigen::ArrayXd& shrank) {
-  const Eigen::ArrayXd all = grew + shrank;
-  if (grew.sum() <= 0 || shrank.sum() <= 0) return std::nullopt;
-  const double mean = (all * log_size).sum() / all.sum();
-  const Eigen::ArrayXd x = log_size - mean;
-  if ((all * x.square()).sum() <= 1e-12 * all.sum()) return std::nullopt;
-  const auto log_likelihood = [&](const Eigen::Vector2d& theta) {
-    const Eigen::ArrayXd odds = theta[0] + theta[1] * x;
-    return (grew * odds - all * (odds.max(0) + (-odds.abs()).exp().log1p())).sum();
-  };
-  Eigen::Vector2d theta(std::log(grew.sum() / shrank.sum()), 0);
-  for (int step = 0; step < 50; ++step) {
-    const Eigen::ArrayXd p = 1 / (1 + (-(theta[0] + theta[1] * x)).exp());
-    const Eigen::ArrayXd residual = grew - all * p;
-    const Eigen::ArrayXd weight = all * p * (1 - p);
-    const Eigen::Vector2d gradient(residual.sum(), (residual * x).sum());
-    Eigen::Matrix2d curvature;
-    curvature << weight.sum(), (weight * x).sum(), (weight * x).sum(), (weight * x.square()).sum();
-    Eigen::Vector2d move = curvature.ldlt().solve(gradient);
-    if (!move.allFinite()) break;  // sizes that grew and sizes that shrank do not mix
-    if (move.norm() > 2) move *= 2 / move.norm();
-    const double before = log_likelihood(theta), rounding = 1e-9 * std::abs(before);
-    while (move.norm() > 1e-10 && log_likelihood(theta + move) < before - rounding) move /= 2;
-    theta += move;
-    if (move.norm() < 1e-10) break;
-  }
-  return GrowthFit{theta[0] - theta[1] * mean, theta[1]};
-}
-
 using Selection = std::span<const std::size_t>;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
+using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
-/// Sums of the counts, which are `cases.grew` or `cases.shrank`, over the selected runs.
-Eigen::ArrayXd sum_over(const Eigen::ArrayXXd& counts, Selection selection) {
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(counts.rows());
-  for (const std::size_t run : selection) sum += counts.col(static_cast<Eigen::Index>(run));
-  return sum;
+/// Rows of the sums of GrowthCurve: moments 0 to 2 of the crystallites, moments 0 and 1 of the
+/// excess of those that grew, and that excess from the size on.
+enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
+
+double log_size(Eigen::Index k) {
+  return std::log(static_cast<double>(k + 1));
 }
 
-/// The fits to selections of the runs, each made once.
-class Fits {
- public:
-  explicit Fits(Cases cases) : cases_(std::move(cases)) {}
-
-  /// Bootstrap of `value`, a function of the fit.
-  template <class Value>
-  std::optional<Estimate> estimate(const Value& value) {
-    const auto statistic = [&](Selection selection) -> std::optional<double> {
-      const auto [known, first] = fits_.try_emplace({selection.begin(), selection.end()});
-      if (first) {
-        known->second = fit(cases_.log_size, sum_over(cases_.grew, selection),
-                            sum_over(cases_.shrank, selection));
+/// The weight of the crystallites of each size (columns) in the moment of each (rows).
+const FromSize& moment(int power) {
+  static const std::array<FromSize, 3> all = [] {
+    std::array<FromSize, 3> made;
+    for (Eigen::Index k = 0; k < GrowthCurve::largest; ++k) {
+      for (Eigen::Index j = 0; j < GrowthCurve::largest; ++j) {
+        const double x = log_size(j) - log_size(k), z = x / GrowthCurve::bandwidth;
+        made[0](k, j) = std::exp(-z * z / 2);
+        made[1](k, j) = x * made[0](k, j);
+        made[2](k, j) = x * made[1](k, j);
       }
-      return known->second ? value(*known->second) : std::nullopt;
-    };
-    return bootstrapped(static_cast<std::size_t>(cases_.grew.cols()), statistic);
-  }
-
- private:
-  Cases cases_;
-  std::map<std::vector<std::size_t>, std::optional<GrowthFit>> fits_;
-};
-
-/// Pools neighbouring sizes until the share that grew rises from pool to pool. Returns the smallest
-/// size of the first pool of which more than half grew; infinite if there is no such pool.
-double first_that_grows(const Eigen::ArrayXd& grew, const Eigen::ArrayXd& shrank) {
-  struct Pool {
-    double size, grew, all;
-  };
-  std::vector<Pool> pools;
-  for (Eigen::Index k = 0; k < grew.size(); ++k) {
-    if (!(grew[k] + shrank[k] > 0)) continue;
-    pools.push_back({static_cast<double>(k + 1), grew[k], grew[k] + shrank[k]});
-    while (pools.size() > 1) {
-      const Pool last = pools.back();
-      Pool& before = pools[pools.size() - 2];
-      if (last.grew * before.all > before.grew * last.all) break;
-      before.grew += last.grew;
-      before.all += last.all;
-      pools.pop_back();
     }
+    return made;
+  }();
+  return all[static_cast<std::size_t>(power)];
+}
+
+/// Of each row of the sums. The line has no slope where all crystallites are of one size.
+template <class Sums>
+auto smooth(const Sums& sums) {
+  const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
+  const auto y = sums.col(excess_0), xy = sums.col(excess_1);
+  const auto scatter = n * xx - x * x;
+  return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
+}
+
+/// The size at which delta_rho rises through zero; infinite if it does nowhere, and negative if
+/// crystallites of all sizes grow.
+template <class Sums>
+double rise(const Sums& sums) {
+  const auto delta = smooth(sums);
+  double found = infinite, greatest = 0;
+  if (delta[0] > 0 && sums(0, tail) > 0) {
+    found = -infinite;
+    greatest = sums(0, tail);
   }
-  const auto found =
-      std::ranges::find_if(pools, [](const Pool& pool) { return 2 * pool.grew > pool.all; });
-  return found == pools.end() ? std::numeric_limits<double>::infinity() : found->size;
+  for (Eigen::Index k = 1; k < delta.size(); ++k) {
+    if (!(delta[k - 1] <= 0 && delta[k] > 0 && sums(k, tail) > greatest)) continue;
+    greatest = sums(k, tail);
+    const double part = delta[k - 1] / (delta[k - 1] - delta[k]);
+    found = std::exp(log_size(k - 1) + part * (log_size(k) - log_size(k - 1)));
+  }
+  return found;
+}
+
+/// The largest size from which on the excess is the greatest; negative if that is all sizes.
+template <class Sums>
+double best_division(const Sums& sums) {
+  const auto excess = sums.col(tail);
+  const double greatest = excess.maxCoeff();
+  if (!(greatest > 0)) return infinite;
+  Eigen::Index k = GrowthCurve::largest - 1;
+  while (excess[k] < greatest) --k;
+  return excess[0] < greatest ? static_cast<double>(k + 1) : -infinite;
+}
+
+/// Of independent crystallites; not zero if all grew.
+double standard_error(const GrowthCount& count) {
+  const auto larger = static_cast<double>(count.larger()) + 1;
+  const auto smaller = static_cast<double>(count.smaller()) + 1;
+  const double n = larger + smaller;
+  return 2 * std::sqrt(larger * smaller / (n + 1)) / n;
+}
+
+double delta_rho_of(const GrowthCount& count) {
+  const auto larger = static_cast<double>(count.larger());
+  const auto smaller = static_cast<double>(count.smaller());
+  return (larger - smaller) / (larger + smaller);
 }
 
 }  // namespace
+
+GrowthCount& GrowthCount::operator+=(const GrowthCount& other) {
+  grew += other.grew;
+  absorbed += other.absorbed;
+  shrank += other.shrank;
+  vanished += other.vanished;
+  return *this;
+}
 
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts) {
   struct Fate {
@@ -169,12 +141,10 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     const std::int32_t smaller_or_none = size - fates[c].larger - fates[c].same;
     GrowthCount& count = counts[size];
     if (2 * fates[c].larger > size) {
-      ++count.grew;
       const std::int32_t from = origin[static_cast<std::size_t>(end[c].of)].of;
-      if (now.size[static_cast<std::size_t>(from)] > size) ++count.absorbed;
+      ++(now.size[static_cast<std::size_t>(from)] > size ? count.absorbed : count.grew);
     } else if (2 * smaller_or_none > size) {
-      ++count.shrank;
-      if (2 * fates[c].smaller <= size) ++count.vanished;
+      ++(2 * fates[c].smaller > size ? count.shrank : count.vanished);
     }
   }
 }
@@ -198,83 +168,91 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
                                      std::size_t least_counted) {
   GrowthBySize all;
   for (const GrowthBySize& run : runs) {
-    for (const auto& [size, count] : run) {
-      all[size].grew += count.grew;
-      all[size].shrank += count.shrank;
-    }
+    for (const auto& [size, count] : run) all[size] += count;
   }
   std::vector<GrowthRate> rates;
-  GrowthCount bin;
+  GrowthRate bin;
   double log_sizes = 0;
+  std::vector<GrowthCount> of_run(runs.size());  // the counts of the bin
   for (const auto& [size, count] : all) {
-    log_sizes += static_cast<double>(count.grew + count.shrank) * std::log(size);
-    bin.grew += count.grew;
-    bin.shrank += count.shrank;
-    GrowthRate rate;
-    rate.counted = bin.grew + bin.shrank;
-    if (rate.counted < least_counted) continue;
-    const auto n = static_cast<double>(rate.counted);
-    rate.size = std::exp(log_sizes / n);
-    rate.grow = static_cast<double>(bin.grew) / n;
-    rate.shrink = static_cast<double>(bin.shrank) / n;
-    const double grew = static_cast<double>(bin.grew) + 1;
-    const double shrank = static_cast<double>(bin.shrank) + 1;
-    rate.grow_error = std::sqrt(grew * shrank / (n + 3)) / (n + 2);
-    rate.delta = rate.grow - rate.shrink;
-    rate.delta_error = 2 * rate.grow_error;
-    rates.push_back(rate);
-    bin = {};
+    const auto counted = static_cast<double>(count.larger() + count.smaller());
+    bin.count += count;
+    log_sizes += counted * std::log(size);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const auto found = runs[k].find(size);
+      if (found != runs[k].end()) of_run[k] += found->second;
+    }
+    const std::size_t n = bin.count.larger() + bin.count.smaller();
+    if (n < least_counted) continue;
+    const auto error = bootstrap_error(runs.size(), [&](std::span<const std::size_t> selection) {
+      GrowthCount sum;
+      for (const std::size_t k : selection) sum += of_run[k];
+      return std::optional<double>(delta_rho_of(sum));
+    });
+    bin.size = std::exp(log_sizes / static_cast<double>(n));
+    bin.delta = delta_rho_of(bin.count);
+    bin.delta_error = std::max(standard_error(bin.count), error.value_or(0));
+    rates.push_back(std::exchange(bin, {}));
     log_sizes = 0;
+    of_run.assign(runs.size(), {});
   }
   return rates;
 }
 
-double GrowthFit::delta_rho(double size) const {
-  return std::tanh((intercept + slope * std::log(size)) / 2);
-}
-
-std::optional<double> GrowthFit::critical_size() const {
-  if (!(slope > 0)) return std::nullopt;
-  return std::exp(-intercept / slope);
-}
-
-std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs) {
-  const Cases cases = cases_of(runs, Vanished::shrank);
-  return fit(cases.log_size, cases.grew.rowwise().sum(), cases.shrank.rowwise().sum());
-}
-
-std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs, Vanished vanished) {
-  const Cases cases = cases_of(runs, vanished);
-  const auto found = Fits(cases).estimate([](const GrowthFit& fit) { return fit.critical_size(); });
-  const auto largest = static_cast<double>(cases.log_size.size());
-  if (!found || found->value < 1 || found->value > largest) return std::nullopt;
-  return found;
-}
-
-std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs) {
-  const Cases cases = cases_of(runs, Vanished::shrank);
-  const auto found = bootstrapped(runs.size(), [&](Selection selection) {
-    return std::optional<double>(
-        first_that_grows(sum_over(cases.grew, selection), sum_over(cases.shrank, selection)));
-  });
-  if (!found) return std::nullopt;
-  const Eigen::ArrayXd all = (cases.grew + cases.shrank).rowwise().sum();
-  const bool some_do_not = (all.head(static_cast<Eigen::Index>(found->value) - 1) > 0).any();
-  return some_do_not ? found : std::nullopt;
-}
-
-std::vector<std::optional<Estimate>> fitted_delta_rho(std::span<const GrowthBySize> runs,
-                                                      std::span<const double> sizes) {
-  Fits fits(cases_of(runs, Vanished::shrank));
-  std::vector<std::optional<Estimate>> all;
-  for (const double size : sizes) {
-    auto& found = all.emplace_back(fits.estimate(
-        [size](const GrowthFit& fit) { return std::optional<double>(fit.delta_rho(size)); }));
-    if (!found) continue;
-    found->interval.low = std::max(-1.0, found->interval.low);
-    found->interval.high = std::min(1.0, found->interval.high);
+GrowthCurve::GrowthCurve(std::span<const GrowthBySize> runs, double background) {
+  for (const GrowthBySize& run : runs) {
+    BySize all = BySize::Zero(), excess = BySize::Zero();
+    for (const auto& [size, count] : run) {
+      if (size > largest) break;
+      const auto larger = static_cast<double>(count.larger());
+      const auto smaller = static_cast<double>(count.smaller());
+      all[size - 1] = larger + smaller;
+      excess[size - 1] = larger - smaller - background * (larger + smaller);
+    }
+    Sums& sums = runs_.emplace_back();
+    for (const int power : {0, 1, 2}) sums.col(all_0 + power) = moment(power) * all.matrix();
+    for (const int power : {0, 1}) sums.col(excess_0 + power) = moment(power) * excess.matrix();
+    double above = 0;
+    for (Eigen::Index k = largest; k-- > 0;) sums(k, tail) = above += excess[k];
   }
-  return all;
+}
+
+GrowthCurve::Sums GrowthCurve::over(Selection selection) const {
+  Sums sums = Sums::Zero();
+  for (const std::size_t run : selection) sums += runs_[run];
+  return sums;
+}
+
+double GrowthCurve::delta_rho(std::int32_t size) const {
+  Sums sums = Sums::Zero();
+  for (const Sums& run : runs_) sums += run;
+  return smooth(sums)[size - 1];
+}
+
+std::optional<double> GrowthCurve::delta_rho_error(std::int32_t size) const {
+  return bootstrap_error(runs_.size(), [&](Selection selection) {
+    Eigen::Array<double, 1, 6> sums = Eigen::Array<double, 1, 6>::Zero();
+    for (const std::size_t run : selection) sums += runs_[run].row(size - 1);
+    return std::optional<double>(smooth(sums)[0]);
+  });
+}
+
+std::optional<Estimate> GrowthCurve::critical_size() const {
+  return bootstrapped(runs_.size(), [&](Selection selection) {
+    return std::optional<double>(rise(over(selection)));
+  });
+}
+
+std::optional<Estimate> GrowthCurve::monotone_critical_size() const {
+  return bootstrapped(runs_.size(), [&](Selection selection) {
+    return std::optional<double>(best_division(over(selection)));
+  });
+}
+
+Interval GrowthCurve::repeated_critical_size(std::size_t runs) const {
+  return repetitions(runs_.size(), runs, [&](Selection selection) {
+    return std::optional<double>(rise(over(selection)));
+  });
 }
 
 }  // namespace shearcell

@@ -2,6 +2,7 @@
 // Do crystallites of a size grow or shrink, and from which size on do they grow? Supplement C.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -14,15 +15,18 @@
 
 namespace shearcell {
 
-/// How many crystallites of one size grew and shrank.
+/// What became of the crystallites of one size. Each is counted once at most: those of which as
+/// many grains are in larger crystallites as elsewhere are left out.
 struct GrowthCount {
-  std::size_t grew = 0;      ///< more than half of the grains are in larger crystallites
-  std::size_t shrank = 0;    ///< more than half are in smaller ones, or in none
-  std::size_t vanished = 0;  ///< of those that shrank: no more than half are in smaller ones
-  /// Of those that grew: of the crystallite that has most of their grains, more grains were in
-  /// another crystallite before, which was larger.
-  std::size_t absorbed = 0;
+  std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
+  std::size_t absorbed =
+      0;  ///< likewise, but the one with most of them is mostly an older, larger one
+  std::size_t shrank = 0;    ///< more than half are in smaller ones
+  std::size_t vanished = 0;  ///< more than half are in smaller ones or in none
 
+  std::size_t larger() const { return grew + absorbed; }  ///< that grew, in the supplement's sense
+  std::size_t smaller() const { return shrank + vanished; }  ///< that shrank
+  GrowthCount& operator+=(const GrowthCount& other);
   bool operator==(const GrowthCount&) const = default;
 };
 
@@ -32,63 +36,63 @@ using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 /// Follows every crystallite of `now` to `later` and counts it.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
-/// All pairs of checkpoints of a run that are `cycles` apart, from every cycle on.
+/// Of all pairs of checkpoints of a run that are `cycles` apart, from every cycle on. One
+/// crystallite is counted at many cycles, so counts of one run are not independent.
 GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles);
 
+/// delta_rho = rho_g - rho_s in a bin of sizes, with rho_g = larger / (larger + smaller).
 struct GrowthRate {
-  double size = 0;          ///< geometric mean over crystallites; of one size, that up to rounding
-  std::size_t counted = 0;  ///< grew + shrank; the others do not enter the probabilities
-  double grow = 0;          ///< rho_g = grew / counted
-  double shrink = 0;        ///< rho_s = shrank / counted
-  /// Binomial, that of rho_s too: sqrt((grew + 1) (shrank + 1) / ((counted + 2)^2 (counted + 3))),
-  /// the standard deviation of rho_g given the counts, which is sqrt(rho_g rho_s / counted) for
-  /// many and not zero when all grew.
-  double grow_error = 0;
-  double delta = 0;        ///< delta_rho = rho_g - rho_s
-  double delta_error = 0;  ///< twice grow_error, since rho_g + rho_s = 1
+  double size = 0;  ///< geometric mean over crystallites; of one size, that up to rounding
+  GrowthCount count;
+  double delta = 0;
+  /// Standard error of the bootstrap over runs, or that of independent crystallites if that is
+  /// greater: 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2), n = larger + smaller.
+  double delta_error = 0;
 };
 
-/// Over all runs, in bins of sizes: each bin takes sizes, from the smallest on, until it has at
-/// least `least_counted` crystallites. By default a bin is one size. The last bin is left out if it
-/// has fewer.
+/// Of all runs, in bins of sizes: each bin takes sizes, from the smallest on, until it has at least
+/// `least_counted` crystallites. By default a bin is one size. The last bin is left out if it has
+/// fewer.
 std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
                                      std::size_t least_counted = 1);
 
-/// Larger crystallites are left out of the fit: their growth ends when the cell is one crystal.
-/// [choice]
-inline constexpr std::int32_t largest_size_fitted = 100;
+/// delta_rho as a smooth function of ln(size), by local linear regression: a line through delta_rho
+/// of each size, weighted by its crystallites and a Gaussian of ln(size) around the size asked for
+/// (J. Fan, J. Am. Stat. Assoc. 87, 998 (1992)). It assumes no shape of the curve. Runs are the
+/// unit of every error.
+class GrowthCurve {
+ public:
+  /// Standard deviation of that Gaussian [choice]: sizes of up to a fifth more or less count.
+  static constexpr double bandwidth = 0.2;
+  /// Larger crystallites are left out: their growth ends when the cell is one crystal. [choice]
+  static constexpr std::int32_t largest = 100;
 
-/// Whether crystallites that vanished (GrowthCount) count as shrinking. The supplement speaks only
-/// of crystallites that become smaller. [choice]: they do.
-enum class Vanished { shrank, left_out };
+  /// delta_rho is counted from `background`, above which crystallites are said to grow.
+  explicit GrowthCurve(std::span<const GrowthBySize> runs, double background = 0);
 
-/// Logistic regression, P(grow) = 1 / (1 + exp(-slope (ln size - ln size_0))), by maximum
-/// likelihood (D. R. Cox, J. R. Stat. Soc. B 20, 215 (1958)).
-struct GrowthFit {
-  double intercept = 0;
-  double slope = 0;
+  /// Of 1 to `largest` grains. Not a number if no crystallite was counted.
+  double delta_rho(std::int32_t size) const;
+  std::optional<double> delta_rho_error(std::int32_t size) const;  ///< of the bootstrap over runs
 
-  double delta_rho(double size) const;          ///< 2 P(grow) - 1
-  std::optional<double> critical_size() const;  ///< exp(-intercept / slope); none for slope <= 0
+  /// The size at which delta_rho rises through zero. If there are several, that which best tells
+  /// those that grew from those that shrank: with the greatest excess of the former among larger
+  /// ones. None for fewer than least_bootstrap_runs, or if there is no such size. The interval is
+  /// the bootstrap's; an end is infinite if all sizes grow, or none does, in too many selections of
+  /// runs.
+  std::optional<Estimate> critical_size() const;
+  /// That excess alone decides: the same if delta_rho is not smoothed, but may only rise with size
+  /// (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). Tests critical_size(), with a larger error.
+  std::optional<Estimate> monotone_critical_size() const;
+  /// Where the critical size of 90 % of repetitions with so many runs would lie.
+  Interval repeated_critical_size(std::size_t runs) const;
+
+ private:
+  /// Of each size, what is linear in the counts, so that it may be added over runs: moments of the
+  /// crystallites near it, and the excess of those that grew from this size on.
+  using Sums = Eigen::Array<double, largest, 6>;
+  std::vector<Sums> runs_;
+
+  Sums over(std::span<const std::size_t> selection) const;
 };
-
-/// None if all grew or all shrank, or if there is one size only.
-std::optional<GrowthFit> fit_growth(std::span<const GrowthBySize> runs);
-
-/// Over runs; the interval is the bootstrap's with runs as its unit, since one crystallite is
-/// followed over many cycles. None for fewer than least_bootstrap_runs, if the fit has no critical
-/// size, or if that is less than a grain or more than the largest size that was fitted.
-std::optional<Estimate> critical_size(std::span<const GrowthBySize> runs,
-                                      Vanished vanished = Vanished::shrank);
-
-/// The same without an assumed curve: the smallest size from which on delta_rho > 0, if delta_rho
-/// may only rise with size (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). Interval and sizes as
-/// of critical_size(); none if all sizes grow, or none does.
-std::optional<Estimate> monotone_critical_size(std::span<const GrowthBySize> runs);
-
-/// The fitted delta_rho at each size and its interval, which ends at -1 and 1 where many selections
-/// of runs have no fit.
-std::vector<std::optional<Estimate>> fitted_delta_rho(std::span<const GrowthBySize> runs,
-                                                      std::span<const double> sizes);
 
 }  // namespace shearcell

@@ -24,12 +24,13 @@ Interval around(double value, double error, double freedom) {
   return {value - half, value + half};
 }
 
-/// The statistic of each selection that has one.
-std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& statistic) {
-  std::vector<std::size_t> selection(runs);
+/// The statistic of each selection of `chosen` of the runs that has one.
+std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
+                                     const RunStatistic& statistic) {
+  std::vector<std::size_t> selection(chosen);
   std::vector<double> values;
   for (std::uint32_t s = 0; s < bootstrap_selections; ++s) {
-    for (std::size_t k = 0; k < runs; ++k) {
+    for (std::size_t k = 0; k < chosen; ++k) {
       const double u = uniform_pair({s, static_cast<std::uint32_t>(k), 0, 0}, 0)[0];
       selection[k] = static_cast<std::size_t>(u * static_cast<double>(runs));
     }
@@ -37,6 +38,18 @@ std::vector<double> bootstrap_values(std::size_t runs, const RunStatistic& stati
     if (value && !std::isnan(*value)) values.push_back(*value);
   }
   return values;
+}
+
+/// Without a share `tail` of the selections at each end. Selections without a value widen the
+/// interval at both ends.
+Interval percentiles(std::vector<double> values, double tail) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const std::size_t missing = bootstrap_selections - values.size();
+  values.insert(values.end(), missing, infinite);
+  std::sort(values.begin(), values.end());
+  const auto out = static_cast<std::size_t>(tail * static_cast<double>(bootstrap_selections));
+  return {out < missing ? -infinite : values[out - missing],
+          values[bootstrap_selections - 1 - out]};
 }
 
 /// Runs that still wait just before `cycle`, and events at `cycle`.
@@ -108,7 +121,7 @@ RunStatistics rms_over_runs(std::span<const double> values) {
 
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
   if (runs < 2) return std::nullopt;
-  const RunStatistics found = over_runs(bootstrap_values(runs, statistic));
+  const RunStatistics found = over_runs(bootstrap_values(runs, runs, statistic));
   if (found.runs < bootstrap_selections / 2) return std::nullopt;
   const auto n = static_cast<double>(runs);
   return found.standard_error.value() * std::sqrt(static_cast<double>(found.runs) * n / (n - 1));
@@ -163,19 +176,32 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
   std::iota(every.begin(), every.end(), std::size_t{0});
   const std::optional<double> value = statistic(every);
   if (!value || !std::isfinite(*value)) return std::nullopt;
-  std::vector<double> values = bootstrap_values(runs, statistic);
-  const std::size_t missing = bootstrap_selections - values.size();
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  values.insert(values.end(), missing, infinite);
-  std::sort(values.begin(), values.end());
-
   const auto n = static_cast<double>(runs);
   const double t = student_quantile(upper, n - 1);
   const double tail = boost::math::cdf(boost::math::normal(), -t * std::sqrt(n / (n - 1)));
-  const auto out = static_cast<std::size_t>(tail * static_cast<double>(bootstrap_selections));
-  const double low = out < missing ? -infinite : values[out - missing];
-  const double high = values[bootstrap_selections - 1 - out];
-  return estimate_with(*value, {low, high}, t, runs);
+  return estimate_with(*value, percentiles(bootstrap_values(runs, runs, statistic), tail), t, runs);
+}
+
+Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (runs < least_bootstrap_runs) return {-infinite, infinite};
+  return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper);
+}
+
+Estimate ratio(const Estimate& a, const Estimate& b) {
+  const auto log_factor = [](double high, double low) {  // an end below zero is unbounded
+    return std::log(std::max(high, 0.0) / std::max(low, 0.0));
+  };
+  const double value = a.value / b.value;
+  const double down =
+      std::hypot(log_factor(a.value, a.interval.low), log_factor(b.interval.high, b.value));
+  const double up =
+      std::hypot(log_factor(a.interval.high, a.value), log_factor(b.value, b.interval.low));
+  return {.value = value,
+          .interval = {value * std::exp(-down), value * std::exp(up)},
+          .runs = std::min(a.runs, b.runs),
+          .groups = 2,
+          .spread = value * std::hypot(a.spread / a.value, b.spread / b.value)};
 }
 
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,

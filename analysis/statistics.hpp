@@ -78,6 +78,15 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 /// least_bootstrap_runs, or if all runs together have no finite statistic.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
 
+/// Where 90 % of repetitions with `chosen` runs lie: 5 and 95 % quantiles of the statistic of so
+/// many of the `runs`, drawn with replacement. Unbounded for fewer than least_bootstrap_runs.
+Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
+
+/// a / b of two independent estimates of positive quantities. The errors of the logarithms are
+/// added in squares, on each side those that move the ratio there: G. Y. Zou and A. Donner, Stat.
+/// Med. 27, 1693 (2008).
+Estimate ratio(const Estimate& a, const Estimate& b);
+
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the
 /// truth with 90 % probability; on both sides of the truth if `both_sides`. Normal theory, with
 /// Student's t for both errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research

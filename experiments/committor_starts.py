@@ -2,56 +2,65 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Chooses the states in which the clones of committor.yaml begin, from the runs of committor_parents.yaml:
 
-    shearcell table --experiment committor_parents --scale paper | python3 experiments/committor_starts.py 8 8 paper
+    shearcell table --experiment committor_parents --scale paper | python3 experiments/committor_starts.py
 
-prints the sweep of that scale: at each amplitude at most 8 states for each bin of sizes, and 8 controls. The rule, fixed
-before any clone was computed: a state of a run belongs to the bin of its largest crystallite (0 to 2 grains: a control).
-A run gives to each bin the first such state from cycle FIRST on, before it has a crystallite of 60 grains. Bin k takes
-the runs in the order of their seeds, from the one at place 5 k on, in turn.
+prints the sweep of that scale. The rule, fixed before any clone was computed: a state of a run belongs to the bin of its
+largest crystallite (0 to 2 grains: a control). A run gives to each bin the first such state from cycle `first` on, and a
+control from twice that cycle on, before the run has a crystallite of 60 grains. Bin k takes the runs in the order of
+their seeds, from the one at place 5 k on, in turn, until it has as many states as stated here.
 """
 import collections
 import csv
 import sys
 
-BINS = [(0, 2), (3, 4), (5, 7), (8, 12), (13, 20)]  # followed_bins of analysis/committor.hpp, after the controls
-# Half of the median of the onset; and the cycles of a clone, in which K = 3 cycles without a descendant fit several
-# times, since growth takes about half of the cycles to the onset.
-FIRST = {"0.05": 28, "0.0667": 14, "0.0833": 7, "0.1": 5}
-CLONE = {"0.05": 25, "0.0667": 14, "0.0833": 9, "0.1": 7}
+BINS = [(0, 2), (3, 4), (5, 7), (8, 12), (13, 20)]  # controls, then followed_bins of analysis/committor.hpp
+# first: about half of the median of the onset at N = 7900. cycles of a clone: crystallites of 3 to 20 grains take about
+# half of them to grow, and K = 3 cycles without a descendant fit twice. states of a bin, and controls: four clones of
+# all states of an amplitude take 1.6e11 particle-steps; at A = 0.05, a pilot, 1.0e11.
+Design = collections.namedtuple("Design", "first cycles states controls")
+PAPER = {"0.05": Design(28, 25, 2, 2), "0.0667": Design(14, 14, 6, 5), "0.0833": Design(7, 9, 9, 6),
+         "0.1": Design(5, 7, 12, 8)}
+DESK = {"0.1": Design(5, 7, 4, 4)}
 
 
-def starts(rows, states, controls):
-    """Yields (amplitude, seed, cycle), by amplitude, bin and seed."""
-    runs = collections.defaultdict(list)
-    for row in rows:
-        runs[row["amplitude_rad"], int(row["seed"])].append((int(row["cycle"]), int(row["largest_crystallite"] or 0)))
-    for amplitude in sorted({a for a, _ in runs}, key=float):
-        seeds = sorted(seed for a, seed in runs if a == amplitude)
-        for k, (low, high) in enumerate(BINS):
-            place = 5 * k % len(seeds)
-            found = []
-            for seed in seeds[place:] + seeds[:place]:
-                for cycle, largest in sorted(runs[amplitude, seed]):
-                    if largest >= 60:
-                        break
-                    if cycle >= FIRST.get(amplitude, 0) and low <= largest <= high:
-                        found.append((amplitude, seed, cycle))
-                        break
-            yield from found[: states if k else controls]
+def chosen(runs, design):
+    """(seed, cycle) of each state, by bin; `runs`: the largest crystallite by cycle, by seed."""
+    for k, (low, high) in enumerate(BINS):
+        seeds = sorted(runs)
+        place = 5 * k % len(seeds)
+        found = []
+        for seed in seeds[place:] + seeds[:place]:
+            for cycle, largest in sorted(runs[seed].items()):
+                if largest >= 60:
+                    break
+                if cycle >= design.first * (1 if k else 2) and low <= largest <= high:
+                    found.append((seed, cycle))
+                    break
+        yield from found[: design.states if k else design.controls]
 
 
 def main():
-    states, controls, scale = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
-    chosen = list(starts(csv.DictReader(sys.stdin), states, controls))
-    columns = {
-        "amplitude_rad": [a for a, _, _ in chosen],
-        "cycles": [CLONE.get(a, 8) for a, _, _ in chosen],
-        "start_seed": [s for _, s, _ in chosen],
-        "start_cycle": [c for _, _, c in chosen],
-    }
+    runs = collections.defaultdict(lambda: collections.defaultdict(dict))
+    scales = set()
+    for row in csv.DictReader(sys.stdin):
+        runs[row["amplitude_rad"]][int(row["seed"])][int(row["cycle"])] = int(row["largest_crystallite"] or 0)
+        scales.add(row["scale"])
+    (scale,) = scales
+    columns = {"amplitude_rad": [], "cycles": [], "start_seed": [], "start_cycle": []}
+    for amplitude in sorted(runs, key=float):
+        design = (DESK if scale == "desk" else PAPER)[amplitude]
+        for seed, cycle in chosen(runs[amplitude], design):
+            for column, value in zip(columns.values(), (amplitude, design.cycles, seed, cycle)):
+                column.append(str(value))
     print(f"  {scale}:\n    sweep:\n      zip:")
     for name, values in columns.items():
-        print(f"        {name}: [{', '.join(map(str, values))}]")
+        line = f"        {name}: ["
+        for value in values:
+            if len(line) + len(value) > 116:
+                print(line.rstrip())
+                line = " " * 12
+            line += value + ", "
+        print(line[:-2] + "]")
 
 
 main()

@@ -19,18 +19,40 @@
 namespace shearcell {
 namespace {
 
-/// Crystallites are followed over n_bin cycles, and over these to show how the result depends on
-/// it.
-constexpr std::array<std::int64_t, 5> cycles_to_follow = {1, 2, 5, 10, 20};
+/// Crystallites of every amplitude are followed over these cycles and every amplitude's n_bin,
+/// since the critical size depends on them.
+std::set<std::int64_t> cycles_to_follow() {
+  std::set<std::int64_t> cycles = {1, 2, 5, 10, 20};
+  for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
+  return cycles;
+}
+/// At which critical sizes of different amplitudes are compared. [choice]: sizes are known best
+/// there, since crystallites hardly change in one cycle and most of them have grown after ten.
+constexpr std::int64_t cycles_compared = 5;
 
-/// The counts of those runs in which some crystallite could be followed over so many cycles.
+/// "Usually 6 to 10" simulations gave each of the supplement's critical sizes.
+constexpr std::size_t published_runs = 8;
+
+/// The counts of each packing in which some crystallite could be followed over so many cycles.
 std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   std::vector<GrowthBySize> all;
-  for (const FigureRun* run : runs) {
-    GrowthBySize counts = growth_of(*run, cycles);
+  for (const auto& [packing, members] : by_packing(runs)) {
+    GrowthBySize counts;
+    for (const FigureRun* run : members) {
+      for (const auto& [size, count] : growth_of(*run, cycles)) counts[size] += count;
+    }
     if (!counts.empty()) all.push_back(std::move(counts));
   }
   return all;
+}
+
+/// The critical size if crystallites of one fate are left out.
+std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
+                                              std::vector<GrowthBySize> runs) {
+  for (GrowthBySize& run : runs) {
+    for (auto& [size, count] : run) count.*fate = 0;
+  }
+  return GrowthCurve(runs).critical_size();
 }
 
 struct AmplitudeGrowth {
@@ -40,10 +62,11 @@ struct AmplitudeGrowth {
   std::vector<const FigureRun*> all_runs;
   std::vector<GrowthBySize> runs;     ///< followed over n_bin cycles
   std::optional<double> onset_cycle;  ///< median over runs
-  std::optional<GrowthFit> fit;
-  std::optional<Estimate> critical;          ///< interval of the fit's critical size
-  std::optional<Estimate> without_vanished;  ///< the same if those that vanished are left out
-  std::optional<Estimate> monotone;          ///< without an assumed curve
+  GrowthCurve curve;
+  std::optional<Estimate> critical;
+  std::optional<Estimate> without_absorbed;
+  std::optional<Estimate> without_vanished;
+  Interval repeated;  ///< of 90 % of critical sizes from published_runs
 };
 
 constexpr std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73",
@@ -54,6 +77,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const PublishedAmplitude& published = published_nearest(amplitude);
     const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
+    const GrowthCurve curve(counts);
     const std::size_t k = all.size();
     all.push_back({.style = {{{"amplitude_rad", amplitude}},
                              italic("A") + fmt::format(" = {}", amplitude),
@@ -64,10 +88,11 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
                    .all_runs = members,
                    .runs = counts,
                    .onset_cycle = median_wait(waits_for_onset(members)),
-                   .fit = fit_growth(counts),
-                   .critical = critical_size(counts),
-                   .without_vanished = critical_size(counts, Vanished::left_out),
-                   .monotone = monotone_critical_size(counts)});
+                   .curve = curve,
+                   .critical = curve.critical_size(),
+                   .without_absorbed = critical_size_without(&GrowthCount::absorbed, counts),
+                   .without_vanished = critical_size_without(&GrowthCount::vanished, counts),
+                   .repeated = curve.repeated_critical_size(published_runs)});
   }
   return all;
 }
@@ -81,22 +106,17 @@ ReferenceLine critical_line(const AmplitudeGrowth& one) {
 /// Points of fewer crystallites are not drawn. [choice]
 constexpr std::size_t least_counted = 20;
 
-/// The fitted curve. Its error is half the length of the interval.
-std::vector<ChartPoint> fitted_points(const AmplitudeGrowth& one) {
-  std::vector<double> sizes;
-  for (double size = 1; one.fit && size <= 60; size += size < 10 ? 1 : 5) sizes.push_back(size);
-  const auto estimates = fitted_delta_rho(one.runs, sizes);
+std::vector<ChartPoint> smooth_points(const AmplitudeGrowth& one) {
   std::vector<ChartPoint> points;
-  for (std::size_t k = 0; k < sizes.size(); ++k) {
-    ChartPoint& at = points.emplace_back(ChartPoint{sizes[k], one.fit->delta_rho(sizes[k])});
-    if (estimates[k]) {
-      at.y_error = (estimates[k]->interval.high - estimates[k]->interval.low) / 2;
-    }
+  for (std::int32_t size = 1; size <= 60; size += size < 10 ? 1 : 5) {
+    points.push_back({.x = static_cast<double>(size),
+                      .y = one.curve.delta_rho(size),
+                      .y_error = one.curve.delta_rho_error(size)});
   }
   return points;
 }
 
-/// Binned data, and the fitted curve with its band.
+/// Binned data, and the smooth curve with its band.
 Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
@@ -106,13 +126,13 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
             .high = 1.05,
             .clip = true},
       .lines = {{.at = 0, .title = "growth as probable as shrinking"}},
-      .errors = "bars are binomial errors, bands half the length of the 90 % interval of the fit"};
+      .note = fmt::format("curves are smoothed over {} in ln(size)", GrowthCurve::bandwidth)};
   for (const AmplitudeGrowth& one : all) {
     chart.series.push_back({.colour = one.style.colour,
                             .point = 0,
                             .join = Join::line,
                             .band = true,
-                            .points = fitted_points(one)});
+                            .points = smooth_points(one)});
     Series& data = chart.series.emplace_back(
         Series{.title = one.style.title, .colour = one.style.colour, .point = one.style.point});
     for (const GrowthRate& bin : growth_rates(one.runs, least_counted)) {
@@ -124,15 +144,24 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
   return chart;
 }
 
+constexpr std::array<const char*, 4> fate_columns = {"grew", "absorbed", "shrank", "vanished"};
+
+TableRow fates(const GrowthCount& count) {
+  return {count.grew, count.absorbed, count.shrank, count.vanished};
+}
+
 FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table{
-      .name = "C",
-      .columns = {"amplitude_rad", "size_grains", "grow_probability", "shrink_probability",
-                  "binomial_error", "delta_rho", "delta_rho_error", "crystallites", "runs"}};
+  FigureTable table{.name = "C", .columns = {"amplitude_rad", "size_grains"}};
+  table.columns.insert(table.columns.end(), fate_columns.begin(), fate_columns.end());
+  for (const char* name : {"delta_rho", "delta_rho_standard_error", "runs"}) {
+    table.columns.emplace_back(name);
+  }
   for (const AmplitudeGrowth& one : all) {
     for (const GrowthRate& rate : growth_rates(one.runs)) {
-      table.rows.push_back({one.amplitude, rate.size, rate.grow, rate.shrink, rate.grow_error,
-                            rate.delta, rate.delta_error, rate.counted, one.runs.size()});
+      TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, rate.size});
+      const TableRow counts = fates(rate.count);
+      row.insert(row.end(), counts.begin(), counts.end());
+      row.insert(row.end(), {rate.delta, rate.delta_error, one.runs.size()});
     }
   }
   table.chart = chart_of(all);
@@ -159,16 +188,20 @@ void add_size(const std::optional<Estimate>& size, TableRow& row) {
 FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   FigureTable table{.name = "C_critical_size",
                     .columns = {"amplitude_rad", "cycles_followed", "onset_median_cycle"}};
-  for (const char* name : {"critical_size", "without_vanished", "monotone"}) {
+  for (const char* name : {"critical_size", "monotone", "without_absorbed", "without_vanished"}) {
     add_size_columns(name, table.columns);
   }
-  table.columns.insert(table.columns.end(), {"logistic_slope", "supplement_grains", "runs"});
+  table.columns.insert(table.columns.end(), {"repeated_low_grains", "repeated_high_grains",
+                                             "supplement_grains", "runs"});
   for (const AmplitudeGrowth& one : all) {
     TableRow& row =
         table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
-    for (const auto& size : {one.critical, one.without_vanished, one.monotone}) add_size(size, row);
-    row.insert(row.end(), {one.fit ? TableValue(one.fit->slope) : TableValue(),
-                           one.published->critical_size, one.runs.size()});
+    for (const auto& size : {one.critical, one.curve.monotone_critical_size(), one.without_absorbed,
+                             one.without_vanished}) {
+      add_size(size, row);
+    }
+    row.insert(row.end(), {one.repeated.low, one.repeated.high, one.published->critical_size,
+                           one.runs.size()});
   }
   table.chart = {.x = amplitude_axis(),
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
@@ -187,24 +220,26 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// The critical size against the number of cycles over which crystallites are followed.
+/// The critical size against the number of cycles over which crystallites are followed, with the
+/// supplement's for its own number of cycles.
 FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
   FigureTable table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
-  table.columns.emplace_back("runs");
+  table.columns.insert(table.columns.end(), {"supplement_grains", "runs"});
   table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
-                 .y = {.name = "critical size", .unit = "grains", .log = true}};
+                 .y = {.name = "critical size", .unit = "grains", .log = true},
+                 .note = "large open symbols are the supplement's"};
   for (const AmplitudeGrowth& one : all) {
-    std::set<std::int64_t> choices(cycles_to_follow.begin(), cycles_to_follow.end());
-    choices.insert(one.published->n_bin);
-    for (const std::int64_t cycles : choices) {
+    for (const std::int64_t cycles : cycles_to_follow()) {
       const std::vector<GrowthBySize> runs = followed(one.all_runs, cycles);
+      const bool is_published = cycles == one.published->n_bin;
+      if (runs.empty() && !is_published) continue;
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles});
-      std::optional<Estimate> size = critical_size(runs);
-      if (size && !std::isfinite(size->interval.high - size->interval.low)) size.reset();
-      add_size(size, row);
+      add_size(GrowthCurve(runs).critical_size(), row);
+      row.emplace_back(is_published ? TableValue(one.published->critical_size) : TableValue());
       row.emplace_back(runs.size());
     }
+    const RowFilter rows = {"amplitude_rad", one.amplitude};
     table.chart.series.push_back({.title = one.style.title,
                                   .colour = one.style.colour,
                                   .point = one.style.point,
@@ -213,8 +248,11 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
                                               .y = "critical_size_grains",
                                               .y_error = "critical_size_standard_error_grains",
                                               .runs = "runs"},
-                                  .filter = {"amplitude_rad", one.amplitude}});
-    table.chart.lines.push_back(critical_line(one));
+                                  .filter = rows});
+    table.chart.series.push_back({.colour = one.style.colour,
+                                  .point = one.style.point - 1,
+                                  .columns = {.x = "cycles_followed", .y = "supplement_grains"},
+                                  .filter = rows});
   }
   return table;
 }
@@ -231,17 +269,51 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
   return table;
 }
 
+/// The counts that give a critical size, of each run.
+void enter_growth(RunGroup runs, std::int64_t cycles, Entered& entered) {
+  for (const FigureRun* run : runs) {
+    for (const auto& [size, count] : growth_of(*run, cycles)) {
+      if (size > GrowthCurve::largest) break;
+      TableRow row = {cycles, std::int64_t{size}};
+      const TableRow counts = fates(count);
+      row.insert(row.end(), counts.begin(), counts.end());
+      enter(*run, row, entered);
+    }
+  }
+}
+
+Entered growth_entered() {
+  std::vector<std::string> columns = {"cycles_followed", "size"};
+  columns.insert(columns.end(), fate_columns.begin(), fate_columns.end());
+  return entered_with(columns);
+}
+
+std::string in_grains(double size) {
+  return std::isfinite(size) ? fmt::format("{:.3g}", size) : size > 0 ? "unbounded" : "less than 1";
+}
+
+std::string in_grains(const std::optional<Estimate>& size) {
+  return size ? in_grains(size->value) : "none";
+}
+
+/// The supplement's number is from few runs and scatters as ours from so many would.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const double published = one.published->critical_size;
-  std::optional<Estimate> relative = one.critical;
+  const auto [low, high] = one.repeated;
   std::string note = fmt::format("crystallites followed over {} cycles in {} of {} runs",
                                  one.published->n_bin, one.runs.size(), one.all_runs.size());
   if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
-  if (relative) {
-    note += fmt::format("; {:.3g} grains", one.critical->value);
-    if (one.monotone) note += fmt::format(", {} without an assumed curve", one.monotone->value);
-    relative = mapped(*one.critical, [&](double size) { return size / published - 1; });
-    relative->spread /= published;
+  std::optional<Estimate> relative;
+  if (one.critical) {
+    const double size = one.critical->value;
+    note += fmt::format("; {:.3g} grains, {} if delta_rho may only rise with size", size,
+                        in_grains(one.curve.monotone_critical_size()));
+    note += fmt::format("; with {} runs 90 % of repetitions would give {} to {}", published_runs,
+                        in_grains(low), in_grains(high));
+    relative = ratio(*one.critical, {.value = published,
+                                     .interval = {published * size / high, published * size / low},
+                                     .runs = one.critical->runs});
+    relative = mapped(*relative, [](double ratio) { return ratio - 1; });
   } else {
     note += one.runs.size() < least_bootstrap_runs ? "; too few runs"
                                                    : "; no size at which growth begins";
@@ -249,28 +321,57 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   GrowthCount all;
   for (const GrowthBySize& run : one.runs) {
     for (const auto& [size, count] : run) {
-      if (size > largest_size_fitted) break;
-      all.shrank += count.shrank;
-      all.vanished += count.vanished;
+      if (size <= GrowthCurve::largest) all += count;
     }
   }
   note += fmt::format(
-      "; {} if the {} of {} that shrink by vanishing are left out",
-      one.without_vanished ? fmt::format("{:.3g}", one.without_vanished->value) : "none",
-      all.vanished, all.shrank);
+      "; {} without the {} of {} that grow by being absorbed, {} without the {} of {} "
+      "that shrink by vanishing",
+      in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
+      all.vanished, all.smaller());
   Verdict verdict =
       decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
                           published),
               margin_critical_size},
              fmt::format("critical size, relative difference from {} grains", published), relative,
              one.runs.size(), note);
-  verdict.entered = entered_with({"size", "grew", "absorbed", "shrank", "vanished"});
-  for (const FigureRun* run : one.all_runs) {
-    for (const auto& [size, count] : growth_of(*run, one.published->n_bin)) {
-      enter(*run,
-            {std::int64_t{size}, count.grew - count.absorbed, count.absorbed,
-             count.shrank - count.vanished, count.vanished},
-            verdict.entered);
+  if (one.critical && high / low > 1 + 2 * margin_critical_size) {
+    verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
+  }
+  verdict.entered = growth_entered();
+  enter_growth(one.all_runs, one.published->n_bin, verdict.entered);
+  return verdict;
+}
+
+/// That of the largest amplitude over that of the smallest, among those with a critical size for
+/// the same number of cycles. Runs of both amplitudes are taken as independent.
+Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
+  struct Sized {
+    const AmplitudeGrowth* growth;
+    Estimate size;
+  };
+  std::vector<Sized> sized;
+  std::string note = fmt::format("crystallites followed over {} cycles", cycles_compared);
+  for (const AmplitudeGrowth& one : all) {
+    const auto runs = followed(one.all_runs, cycles_compared);
+    const std::optional<Estimate> size = GrowthCurve(runs).critical_size();
+    note += fmt::format("; A = {} rad: {} grains", one.amplitude, in_grains(size));
+    if (size) sized.push_back({&one, *size});
+  }
+  std::optional<Estimate> growth;
+  if (sized.size() > 1) {
+    growth = mapped(ratio(sized.back().size, sized.front().size), [](double r) { return r - 1; });
+  }
+  Verdict verdict =
+      decide({.text = "C: the critical size grows with A", .claimed = Claimed::above},
+             "critical size at the largest amplitude relative to that at the smallest, "
+             "less 1",
+             growth, growth ? growth->runs : 0, note);
+  verdict.counted = Counted::runs_per_variant;
+  verdict.entered = growth_entered();
+  if (growth) {
+    for (const Sized* one : {&sized.front(), &sized.back()}) {
+      enter_growth(one->growth->all_runs, cycles_compared, verdict.entered);
     }
   }
   return verdict;
@@ -285,6 +386,7 @@ FigureResult figure_c(std::span<const FigureRun> runs) {
   for (const AmplitudeGrowth& one : all) {
     result.verdicts.push_back(critical_size_is_published(one));
   }
+  if (all.size() > 1) result.verdicts.push_back(critical_size_grows(all));
   return result;
 }
 

@@ -23,4 +23,7 @@ MakeFigure figure_c, figure_s5a, figure_s5b, figure_s6, figure_s7;
 // for the grains at least 4 d from the walls.
 MakeFigure figure_nucleation, figure_nucleation_core;
 
+// The probability that a crystallite grows, from clones of its state.
+MakeFigure figure_committor;
+
 }  // namespace shearcell

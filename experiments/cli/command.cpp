@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -189,6 +190,13 @@ std::vector<Stage> known_runs(const Context& context) {
   return {};
 }
 
+// Whether runs of the manifest begin with the states of others.
+bool starts_from_a_run(const Manifest& manifest) {
+  return manifest.base.start.is_recorded() ||
+         std::ranges::any_of(manifest.scales,
+                             [](const Scale& scale) { return scale.start.is_recorded(); });
+}
+
 // Figures show the newest version of those that have runs at the scale.
 void warn_of_other_version(const Manifest& manifest, const Plan& plan,
                            const std::vector<Stage>& known, Context& context) {
@@ -221,13 +229,16 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
     if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
   }
   warn_of_equal_names(loaded.manifests, context);
-  const std::vector<Stage> known = known_runs(context);
+  std::ranges::stable_partition(loaded.manifests, std::not_fn(starts_from_a_run));
+  const std::vector<Stage> stored = known_runs(context);
+  std::vector<Stage> known = stored;
   ExpandOptions with_known = options;
-  with_known.known = known;
   for (const Manifest& manifest : loaded.manifests) {
+    with_known.known = known;
     const Plan& plan = loaded.plans.emplace_back(expand(manifest, with_known));
     for (const std::string& warning : plan.warnings) warn(context, warning);
-    warn_of_other_version(manifest, plan, known, context);
+    warn_of_other_version(manifest, plan, stored, context);
+    add_as_computed(plan, known);
   }
   return loaded;
 }

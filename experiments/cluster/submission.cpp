@@ -120,11 +120,13 @@ void apply(std::vector<Submission>& known, const Event& event) {
   }
 }
 
-/// The runs, and the packings that they start from.
+/// The runs, and the stages that they start from, down to their packings.
 std::set<std::string> with_packings(const Store& store, const std::vector<std::string>& runs) {
-  std::set<std::string> stages(runs.begin(), runs.end());
-  for (const std::string& run : runs) stages.insert(store.stage(run).parent);
-  stages.erase("");  // of a packing
+  std::set<std::string> stages;
+  for (const std::string& run : runs) {
+    for (std::string id = run; !id.empty() && stages.insert(id).second;)
+      id = store.stage(id).parent;
+  }
   return stages;
 }
 
@@ -159,15 +161,22 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
     return Share{{}, {}, steps, steps / rates.of(one.stage).particle_steps_per_second};
   };
   std::map<std::string, const PlannedStage*> packings;
+  std::map<std::string, std::string> first;  // that each stage of the plans descends from
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // of each packing in shares
   for (const PlannedStage& one : stages) {
-    if (one.stage.parent.empty()) packings[one.stage.id] = &one;
-    if (one.stage.parent.empty() || one.look.done) continue;
-    const auto [place, fresh] = places.try_emplace(one.stage.parent, shares.size());
+    const std::string& parent = one.stage.parent;
+    const auto before = first.find(parent);
+    const std::string& packing = first[one.stage.id] = parent.empty()          ? one.stage.id
+                                                       : before == first.end() ? parent
+                                                                               : before->second;
+    if (parent.empty()) packings[packing] = &one;
+    if (parent.empty() || one.look.done) continue;
+    const auto [place, fresh] = places.try_emplace(packing, shares.size());
     if (fresh) {
-      shares.push_back(share(*packings.at(one.stage.parent)));
-      shares.back().packings = {one.stage.parent};
+      // A recorded state of a run that is not planned is there.
+      shares.push_back(packings.contains(packing) ? share(*packings.at(packing)) : Share{});
+      shares.back().packings = {packing};
     }
     Share left = share(one);
     left.runs = {one.stage.id};

@@ -211,6 +211,23 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   return plan;
 }
 
+void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
+  std::map<std::string, std::size_t> places;  // in `known`, by id
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    places.emplace(known[k].id, k);
+    for (Ask& ask : known[k].asks) {
+      if (ask.experiment == plan.experiment && ask.scale == plan.scale) ask.newest = false;
+    }
+  }
+  for (const PlannedRun& run : plan.runs) {
+    const auto [place, fresh] = places.try_emplace(run.stage.id, known.size());
+    if (fresh) known.push_back(run.stage);
+    Stage& stage = known[place->second];
+    if (!fresh) stage.asks.push_back(run.ask);
+    stage.cycle = std::max(stage.cycle, static_cast<double>(run.ask.target_cycles));
+  }
+}
+
 Plan joined(std::span<const Plan> plans) {
   std::vector<std::string> experiments, scales;
   Plan all;

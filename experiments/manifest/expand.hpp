@@ -23,8 +23,8 @@ struct ExpandOptions {
   std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these; empty for all
   std::optional<std::string> engine = {};      ///< instead of the manifest's; part of the variant
-  /// Stages of the store. If this manifest asked them for more cycles before, warnings assume that
-  /// larger number.
+  /// Stages of the store, and those that are computed before. If this manifest asked them for more
+  /// cycles before, warnings assume that larger number.
   std::span<const Stage> known = {};
 };
 
@@ -46,6 +46,10 @@ struct Plan {
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
+
+/// Adds the runs of the plan to `known`, or extends them there, as they are once they have the
+/// cycles that the plan asks for: the start of another manifest may name them.
+void add_as_computed(const Plan& plan, std::vector<Stage>& known);
 
 /// The runs of one or more plans. A stage of several plans occurs once, with the asks of all.
 Plan joined(std::span<const Plan> plans);

@@ -77,10 +77,12 @@ void fields(Sweep& sweep, const auto& visit) {
 void fields(Start& start, const auto& visit) {
   visit(start.experiment, {.name = "experiment", .doc = "whose recorded run it is"});
   visit(start.scale, {.name = "scale", .doc = "of that experiment; default: that of the shear"});
-  visit(start.variant, {.name = "variant",
-                        .doc = "swept values that single out a variant of that experiment",
-                        .example = "\"fluid=still\"",
-                        .longest = kLongestLabel});
+  visit(start.variant,
+        {.name = "variant",
+         .doc = "swept values that single out a variant of that experiment; default: "
+                "those of the keys that both sweep",
+         .example = "\"fluid=still\"",
+         .longest = kLongestLabel});
   visit(start.checkpoint, {.name = "checkpoint",
                            .doc = "instead of experiment, seed and cycle: the beginning of the "
                                   "run's id and a whole cycle",

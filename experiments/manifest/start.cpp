@@ -24,6 +24,14 @@ bool has_swept_values(const std::string& variant, const std::string& wanted) {
   return wanted.empty() || Filter(std::vector{wanted}).passes(variant);
 }
 
+/// Whether the keys that both sweep have equal values.
+bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
+  return std::ranges::all_of(swept.items(), [&](const auto& entry) {
+    const auto other = others.find(entry.key());
+    return other == others.end() || *other == entry.value();
+  });
+}
+
 /// The parameters of the packing that the cell, its grains and their units depend on are those of
 /// the recorded run.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
@@ -112,18 +120,24 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                           std::span<const Stage> known) {
   const Start& start = scale.start;
   const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
+  const auto is_it = [&](const Ask& ask) {
+    return ask.newest && ask.experiment == start.experiment &&
+           scale_name(ask.scale) == scale_name(at_scale) &&
+           ask.seed == variant.parameters.start_seed &&
+           has_swept_values(ask.variant, start.variant);
+  };
   std::vector<const Stage*> found;
   for (const Stage& stage : known) {
     if (stage.kind != name_of(StageKind::shear)) continue;
-    const auto is_it = [&](const Ask& ask) {
-      return ask.newest && ask.experiment == start.experiment &&
-             scale_name(ask.scale) == scale_name(at_scale) &&
-             ask.seed == variant.parameters.start_seed &&
-             has_swept_values(ask.variant, start.variant);
-    };
     const bool fits = start.run.empty() ? std::ranges::any_of(stage.asks, is_it)
                                         : stage.id.starts_with(start.run);
     if (fits) found.push_back(&stage);
+  }
+  if (found.size() > 1 && start.run.empty() && start.variant.empty()) {
+    std::erase_if(found, [&, swept = variant.swept_values()](const Stage* stage) {
+      return std::ranges::none_of(
+          stage->asks, [&](const Ask& ask) { return is_it(ask) && agree(swept, ask.swept); });
+    });
   }
   const std::string what =
       start.run.empty()

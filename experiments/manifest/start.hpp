@@ -19,8 +19,10 @@
 
 namespace shearcell {
 
-/// The recorded run of `known` whose state the variant begins with. Throws ManifestError if there
-/// is not exactly one, if it has not reached the cycle, or if its cell or grains are others.
+/// The recorded run of `known` whose state the variant begins with: of several variants the one
+/// that has the values of this variant for all keys that both sweep, unless `start` names one.
+/// Throws ManifestError if there is not exactly one, if it has not reached the cycle, or if its
+/// cell or grains are others.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 

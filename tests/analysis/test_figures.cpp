@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <regex>
 #include <string>
@@ -18,6 +20,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
+#include "analysis/growth.hpp"
 #include "analysis/plot.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/analysis/made_up_runs.hpp"
@@ -113,10 +116,10 @@ TEST(FigureC, DrawsTheLargestCrystalliteAgainstPhi) {
   EXPECT_EQ(table.chart.lines.at(0).at, 20) << "the critical size of the supplement";
 }
 
-// Crystallites of s grains gain one with probability s / (s + 6), and else lose one. One that has
-// vanished begins again with other grains.
-FigureRun biased_walks(std::uint32_t seed) {
-  FigureRun run = made_up_run("amplitude_rad", 0.0833, seed, 40, [](int, Measures&) {});
+// Crystallites of s grains gain one with probability s / (s + critical), and else lose one. One
+// that has vanished begins again with other grains.
+FigureRun biased_walks(std::uint32_t seed, double amplitude = 0.0833, int critical = 6) {
+  FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 40, [](int, Measures&) {});
   struct Walk {
     std::int32_t start, first_grain, size;
   };
@@ -127,7 +130,7 @@ FigureRun biased_walks(std::uint32_t seed) {
     for (std::uint32_t k = 0; k < walks.size(); ++k) {
       Walk& walk = walks[k];
       crystallites.push_back(grain_ids(walk.first_grain, walk.size));
-      const double grows = walk.size / (walk.size + 6.0);
+      const double grows = walk.size / (walk.size + static_cast<double>(critical));
       walk.size += uniform_pair({seed, n, k, 2}, 7)[0] < grows ? 1 : -1;
       if (walk.size == 0) walk = {walk.start, walk.first_grain + 10'000, walk.start};
     }
@@ -145,12 +148,86 @@ TEST(FigureC, FollowsCrystallitesOverSeveralNumbersOfCycles) {
   std::vector<TableValue> cycles;
   for (const TableRow& row : followed.rows) {
     cycles.push_back(row.at(1));
+    if (cycles.back() == TableValue(std::int64_t{40})) continue;  // one pair of checkpoints a run
     EXPECT_NEAR(std::get<double>(row.at(2)), 6, 1.5) << std::get<std::int64_t>(row.at(1));
   }
-  EXPECT_EQ(cycles,
-            (std::vector<TableValue>{std::int64_t{1}, std::int64_t{2}, std::int64_t{5},
-                                     std::int64_t{10}, std::int64_t{15}, std::int64_t{20}}));
+  EXPECT_EQ(cycles, (std::vector<TableValue>{std::int64_t{1}, std::int64_t{2}, std::int64_t{5},
+                                             std::int64_t{10}, std::int64_t{15}, std::int64_t{20},
+                                             std::int64_t{40}}));
   EXPECT_EQ(followed.rows.at(4).at(2), critical.rows.at(0).at(3)) << "15 cycles are n_bin";
+  const std::vector<ChartPoint> supplement = points_of(followed, followed.chart.series.at(1));
+  ASSERT_EQ(supplement.size(), 1U);
+  EXPECT_EQ(supplement.front().x, 15);
+  EXPECT_EQ(supplement.front().y, 16);
+}
+
+TEST(FigureC, TwoRunsOfOnePackingAreOne) {
+  std::vector<FigureRun> runs;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    runs.push_back(biased_walks(seed));
+    runs.back().packing = "of seed " + std::to_string((seed + 1) / 2);
+  }
+  const FigureResult made = find_figure("C")->make(runs);
+  EXPECT_EQ(panel(made, "C_critical_size").rows.at(0).back(), TableValue(std::size_t{5}));
+}
+
+Verdict verdict_of(const FigureResult& made, const std::string& claim) {
+  return *std::ranges::find(made.verdicts, claim, &Verdict::claim);
+}
+
+// Anyone can compute the size again from what entered the verdict.
+TEST(FigureC, ComparesAmplitudesAtEqualNumbersOfCycles) {
+  for (const bool grows : {true, false}) {
+    std::vector<FigureRun> runs;
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      runs.push_back(biased_walks(seed, 0.05, grows ? 4 : 9));
+      runs.push_back(biased_walks(seed + 10, 0.1, grows ? 9 : 4));
+    }
+    const Verdict found =
+        verdict_of(find_figure("C")->make(runs), "C: the critical size grows with A");
+    EXPECT_EQ(found.ruling, grows ? Ruling::supported : Ruling::refuted) << numbers_of(found);
+    EXPECT_NEAR(found.estimate.value(), grows ? 9.0 / 4 - 1 : 4.0 / 9 - 1, grows ? 0.7 : 0.15);
+    std::map<std::string, GrowthBySize> entered;
+    for (const TableRow& row : found.entered.rows) {
+      EXPECT_EQ(row.at(3), TableValue(std::int64_t{5}));
+      const auto count = [&](std::size_t k) {
+        return static_cast<std::size_t>(std::get<std::int64_t>(row.at(k)));
+      };
+      if (std::get<std::string>(row.at(0)) == "amplitude_rad=0.1") {
+        entered[std::get<std::string>(row.at(2))][static_cast<std::int32_t>(count(4))] = {
+            count(5), count(6), count(7), count(8)};
+      }
+    }
+    std::vector<GrowthBySize> counts;
+    for (const auto& [packing, of_run] : entered) counts.push_back(of_run);
+    EXPECT_NE(found.note.find(fmt::format("A = 0.1 rad: {:.3g} grains",
+                                          GrowthCurve(counts).critical_size()->value)),
+              std::string::npos)
+        << found.note;
+  }
+}
+
+// The supplement's number is from few runs, too.
+TEST(FigureC, APublishedSizeThatFewRunsMayGiveIsNotContradicted) {
+  for (const int critical : {4, 12, 14}) {
+    std::vector<FigureRun> runs;
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      runs.push_back(biased_walks(seed, 0.0833, critical));
+    }
+    const FigureResult made = find_figure("C")->make(runs);
+    const FigureTable& sizes = panel(made, "C_critical_size");
+    const auto number = [&](const std::string& column) {
+      const auto place = std::ranges::find(sizes.columns, column) - sizes.columns.begin();
+      return std::get<double>(sizes.rows.at(0).at(static_cast<std::size_t>(place)));
+    };
+    const Verdict found =
+        verdict_of(made, "C: the critical size at A = 0.0833 rad is about 16 grains");
+    const bool may_be = number("repeated_low_grains") <= 16 && 16 <= number("repeated_high_grains");
+    std::printf("critical size %d: %s; %s\n", critical, numbers_of(found).c_str(),
+                found.note.c_str());
+    EXPECT_EQ(found.ruling == Ruling::differs, critical == 4);
+    EXPECT_FALSE(may_be && found.ruling == Ruling::differs);
+  }
 }
 
 // As the supplement does: one experiment, with the standard deviation of runs at A = 0.05.

@@ -79,7 +79,7 @@ Simulated critical_sizes(double published, double spread) {
       }
       all.push_back(counts);
     }
-    std::optional<Estimate> found = critical_size(all);
+    std::optional<Estimate> found = GrowthCurve(all).critical_size();
     if (found) {
       found->value -= published;
       found->interval.low -= published;

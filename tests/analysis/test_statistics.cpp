@@ -151,6 +151,30 @@ TEST(Bootstrapped, SelectionsWithoutAValueWidenIt) {
   EXPECT_FALSE(bootstrapped(6, [](auto) { return std::optional<double>(); }).has_value());
 }
 
+TEST(Repetitions, OfAMeanScatterAsItsError) {
+  const std::vector<double> values = normal_numbers(3, 400);
+  const auto [low, high] = repetitions(values.size(), 16, mean_over(values));
+  const RunStatistics all = over_runs(values);
+  const double error = *all.standard_error * std::sqrt(400.0 / 16);
+  EXPECT_NEAR(low, *all.mean - 1.645 * error, 0.1 * error);
+  EXPECT_NEAR(high, *all.mean + 1.645 * error, 0.1 * error);
+  EXPECT_TRUE(std::isinf(repetitions(4, 16, mean_over(values)).low)) << "too few runs";
+}
+
+TEST(Ratio, AddsTheErrorsThatMoveItThere) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const Estimate a = {.value = 20, .interval = {20 * std::exp(-0.3), 40}, .runs = 7, .spread = 3};
+  const Estimate b = {.value = 10, .interval = {5, 10 * std::exp(0.4)}, .runs = 9};
+  const Estimate found = ratio(a, b);
+  EXPECT_DOUBLE_EQ(found.value, 2);
+  EXPECT_NEAR(found.interval.low, 2 * std::exp(-0.5), 1e-12);
+  EXPECT_NEAR(found.interval.high, 2 * std::exp2(std::sqrt(2.0)), 1e-12);
+  EXPECT_EQ(found.runs, 7U);
+  EXPECT_NEAR(found.spread, 0.3, 1e-12);
+  EXPECT_EQ(ratio({.value = 20, .interval = {-infinite, 40}}, b).interval.low, 0);
+  EXPECT_EQ(ratio(a, {.value = 10, .interval = {-infinite, 11}}).interval.high, infinite);
+}
+
 double coverage_of_bootstrap(std::size_t runs) {
   constexpr std::uint32_t samples = 400;
   std::uint32_t covered = 0;

@@ -99,6 +99,32 @@ TEST_F(Submitted, HaveWorkLeftWhileACompletedRunLacksCheckpoints) {
   EXPECT_EQ(store_.checkpoints(sheared(store_).id).size(), 5U);
 }
 
+TEST_F(Submitted, ClonesAreTasksOfThePackingOfTheirState) {
+  const Manifest tiny = parse_manifest(tiny_manifest(), "tiny.yaml");
+  const Manifest clones = parse_manifest(
+      renamed(tiny_manifest("", "start: {experiment: tiny, seed: 1, cycle: 1}\n"), "clones"),
+      "clones.yaml");
+  const Plan first = expand(tiny);
+  std::vector<Stage> known;
+  add_as_computed(first, known);
+  const Plan second = expand(clones, {.known = known});
+  const std::string packing = first.runs[0].prepare->id;
+  const std::vector<Share> both = shares_of({first, second}, &store_);
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_EQ(both[0].packings, std::vector{packing});
+  EXPECT_EQ(both[0].runs, (std::vector{first.runs[0].stage.id, second.runs[0].stage.id}));
+  compute(store_, tiny.text);
+  declare(store_, clones, second);
+  const std::vector<Share> rest = shares_of({second}, &store_);
+  ASSERT_EQ(rest.size(), 1U);
+  EXPECT_EQ(rest[0].runs, std::vector{second.runs[0].stage.id});
+  const Submission made = submit(rest);
+  Store own = store_of(made, 1);
+  EXPECT_EQ(resume(own).completed, 1U);
+  merge_tasks(store_, made);
+  EXPECT_EQ(store_.stage(second.runs[0].stage.id).state, StageState::completed);
+}
+
 TEST_F(Submitted, TasksEndRunsByUntil) {
   const std::string text = tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");

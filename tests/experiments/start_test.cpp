@@ -187,6 +187,36 @@ TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
   }
 }
 
+TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
+  const std::string amplitudes = "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n";
+  const Plan first = expand(parse_manifest(tiny_manifest("", amplitudes), "tiny.yaml"));
+  std::vector<Stage> known;
+  add_as_computed(first, known);
+  const auto second = [&](const std::string& keys, const std::string& sweep) {
+    return expand(parse_manifest(clones(keys, "", sweep), "tiny.yaml"), {.known = known}).runs;
+  };
+  const auto runs = second("", amplitudes);
+  ASSERT_EQ(runs.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(runs[k].stage.parent, first.runs[k].stage.id) << "of the same amplitude";
+  }
+  EXPECT_EQ(second(", variant: \"amplitude_rad=0.05\"", amplitudes)[1].stage.parent,
+            first.runs[0].stage.id);
+  const auto refused = [&](const std::string& sweep) {
+    return message_of<ManifestError>([&] { second("", sweep); });
+  };
+  EXPECT_NE(refused("").find("more than one run of tiny"), std::string::npos);
+  EXPECT_NE(refused("sweep: {grid: {amplitude_rad: [0.07]}}\n").find("has no run of tiny"),
+            std::string::npos);
+  EXPECT_NE(refused("sweep: {zip: {amplitude_rad: [0.1], start_cycle: [3]}}\n")
+                .find("has no cycle 3 yet (got cycle 2)"),
+            std::string::npos);
+  const Plan newer =
+      expand(parse_manifest(tiny_manifest("  drag_kg_per_s: 2.0e-3\n", amplitudes), "tiny.yaml"));
+  add_as_computed(newer, known);
+  EXPECT_EQ(second("", amplitudes)[0].stage.parent, newer.runs[0].stage.id);
+}
+
 TEST_F(Started, AnIdNamesTheRecordedRunAsWell) {
   compute_here(tiny_manifest());
   const Stage run = runs_of("tiny").at(0);

@@ -180,7 +180,7 @@ void take_measures(Input input) {
       checkpoint.measures.crystallite_map = read_crystallite_map(result);
       GrowthBySize counts;
       follow(*checkpoint.measures.crystallite_map, *checkpoint.measures.crystallite_map, counts);
-      fit_growth({&counts, 1});
+      GrowthCurve({&counts, 1}).delta_rho(10);
       const std::vector<double> places = nucleus_places(run, CellAxis::y);
       density({&places, 1}, 10);
     });

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figure committor: the probability that a crystallite of n grains grows, from clones of states. A
+// run is a clone: its cycle 0 is a recorded state with noise of its own. The clones of one state
+// have the same variant. Not in the supplement.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "analysis/committor.hpp"
+#include "analysis/figures/curves.hpp"
+#include "analysis/figures/figures.hpp"
+#include "analysis/figures/groups.hpp"
+#include "analysis/growth.hpp"
+#include "analysis/published.hpp"
+#include "analysis/statistics.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+/// Cycles without a descendant after which a crystallite is gone. The others show how the result
+/// depends on this number. [choice]
+constexpr std::array<std::size_t, 3> cycles_without = {1, 2, 3};
+constexpr std::size_t chosen_rule = 1;  ///< its place in cycles_without
+/// Controls that grow more often than this, and as often as the smallest crystallites, leave no
+/// critical size. [choice]
+constexpr double rare = 0.1;
+
+/// What became of crystallites in the clones of their states.
+struct Fates {
+  std::array<std::size_t, 4> clones = {};  ///< by Fate
+  std::size_t revived = 0;                 ///< of those that were gone
+
+  std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
+  void add(const Ending& end) {
+    ++clones[static_cast<std::size_t>(end.fate)];
+    revived += end.revived ? 1 : 0;
+  }
+  Fates& operator+=(const Fates& other) {
+    for (std::size_t k = 0; k < clones.size(); ++k) clones[k] += other.clones[k];
+    revived += other.revived;
+    return *this;
+  }
+};
+
+/// For each of cycles_without.
+using FatesByRule = std::array<Fates, cycles_without.size()>;
+
+/// A crystallite of a state, or, with size 0, a state without crystallites, whose clones are grown
+/// or gone.
+struct Subject {
+  const FigureRun* run;  ///< the first clone
+  std::int32_t size;
+  FatesByRule fates = {};
+};
+
+struct Amplitude {
+  double amplitude = 0;
+  CurveStyle style;
+  double published = 0;  ///< the supplement's critical size
+  std::vector<Subject> crystallites = {}, controls = {};
+  std::size_t states = 0;
+  std::size_t left_out = 0;  ///< states that have a crystallite of `grown_size` grains
+};
+
+/// The maps of whole cycles from 0 on, up to the first that is missing.
+std::vector<const CrystalliteMap*> maps_of(const FigureRun& run) {
+  std::vector<const CrystalliteMap*> maps;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    if (checkpoint.cycle != static_cast<double>(maps.size())) continue;
+    if (!checkpoint.measures.crystallite_map) break;
+    maps.push_back(&*checkpoint.measures.crystallite_map);
+  }
+  return maps;
+}
+
+std::int32_t largest_in(const CrystalliteMap& map) {
+  return map.size.empty() ? 0 : std::ranges::max(map.size);
+}
+
+/// Adds the clones of one state.
+void add_state(RunGroup clones, Amplitude& to) {
+  std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
+  for (const FigureRun* clone : clones) maps.push_back(maps_of(*clone));
+  std::erase_if(maps, [](const auto& of_clone) { return of_clone.empty(); });
+  if (maps.empty()) return;
+  const CrystalliteMap& start = *maps.front().front();
+  if (largest_in(start) >= grown_size) {
+    ++to.left_out;
+    return;
+  }
+  ++to.states;
+  if (largest_in(start) < least_descendant) {
+    Subject& control = to.controls.emplace_back(Subject{clones.front(), 0});
+    for (const auto& of_clone : maps) {
+      const bool grew = std::ranges::any_of(
+          of_clone, [](const auto* map) { return largest_in(*map) >= grown_size; });
+      for (Fates& fates : control.fates) fates.add({grew ? Fate::grown : Fate::gone});
+    }
+  }
+  for (const std::int32_t label : followed_in(start)) {
+    Subject& one = to.crystallites.emplace_back(
+        Subject{clones.front(), start.size[static_cast<std::size_t>(label)]});
+    for (const auto& of_clone : maps) {
+      const Followed found = followed(of_clone, label);
+      for (std::size_t k = 0; k < cycles_without.size(); ++k) {
+        one.fates[k].add(ending(found, cycles_without[k]));
+      }
+    }
+  }
+}
+
+std::vector<Amplitude> amplitudes_of(std::span<const FigureRun> runs) {
+  std::vector<Amplitude> all;
+  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
+    const std::size_t k = all.size();
+    Amplitude& one =
+        all.emplace_back(Amplitude{.amplitude = amplitude,
+                                   .style = {.where = {},
+                                             .title = italic("A") + fmt::format(" = {}", amplitude),
+                                             .colour = safe_colours[k % safe_colours.size()],
+                                             .point = curve_symbol(k)},
+                                   .published = published_nearest(amplitude).critical_size});
+    std::map<std::string, std::vector<const FigureRun*>> states;
+    for (const FigureRun* run : members) states[run->variant].push_back(run);
+    for (const auto& [variant, clones] : states) add_state(clones, one);
+  }
+  return all;
+}
+
+/// Of the subjects of low to high - 1 grains.
+Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t low = 0,
+             std::int32_t high = grown_size) {
+  Fates sum;
+  for (const Subject& one : subjects) {
+    if (one.size >= low && one.size < high) sum += one.fates[rule];
+  }
+  return sum;
+}
+
+/// Share that grew of those that are grown or gone; none without any.
+std::optional<double> grown_share(const Fates& fates) {
+  const std::size_t decided = fates.of(Fate::grown) + fates.of(Fate::gone);
+  if (decided == 0) return std::nullopt;
+  return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
+}
+
+/// Share of the controls that grow.
+std::optional<double> background(const Amplitude& one) {
+  return grown_share(sum_of(one.controls, chosen_rule));
+}
+
+/// How a clone counts that ends before the fate is decided.
+enum class Undecided { left_out, grown, gone };
+
+/// The crystallites that grew and that were gone in clones, of each packing. Merged ones are left
+/// out.
+std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
+                                              Undecided undecided = Undecided::left_out) {
+  std::map<std::string_view, GrowthBySize> packings;
+  for (const Subject& subject : one.crystallites) {
+    const Fates& fates = subject.fates[rule];
+    GrowthCount& count = packings[packing_of(*subject.run)][subject.size];
+    count.grew += fates.of(Fate::grown);
+    count.vanished += fates.of(Fate::gone);
+    if (undecided == Undecided::grown) count.grew += fates.of(Fate::undecided);
+    if (undecided == Undecided::gone) count.vanished += fates.of(Fate::undecided);
+  }
+  std::vector<GrowthBySize> all;
+  for (auto& [id, growth] : packings) all.push_back(std::move(growth));
+  return all;
+}
+
+/// The size at which (p - q) / (1 - q) = 1/2: p = (1 + q) / 2, so delta_rho = 2 p - 1 = q.
+std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
+  const std::optional<double> q = background(one);
+  if (!q) return std::nullopt;
+  return GrowthCurve(by_packing_and_size(one, rule), *q).critical_size();
+}
+
+/// Why no critical size is defined; "" if one is.
+std::string why_undefined(const Amplitude& one) {
+  const std::optional<double> q = background(one);
+  if (!q) return "the background is not known: no state is without crystallites";
+  const auto smallest =
+      grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
+  if (*q <= rare || !smallest || *smallest > *q) return "";
+  return fmt::format(
+      "no critical size is defined: {:.2g} of the clones of states without crystallites have one "
+      "of {} grains in time, and no more, {:.2g}, of the crystallites of {} and {} grains grow",
+      *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
+}
+
+/// Clones of at least so many crystallites make a point of the drawing. [choice]
+constexpr std::size_t least_drawn = 12;
+
+FigureTable probability_table(std::span<const Amplitude> all) {
+  FigureTable table{.name = "committor",
+                    .columns = {"amplitude_rad", "size_grains", "crystallites", "grown", "gone",
+                                "merged", "undecided", "revived", "grown_share"}};
+  table.chart = {
+      .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 21},
+      .y = {.name = "share that grows", .low = 0, .high = 1, .clip = true},
+      .lines = {{.at = 0.5, .title = "growth as probable as vanishing"}},
+      .note = fmt::format("curves are smoothed over {} in ln(size)", GrowthCurve::bandwidth),
+      .errors = "bars and bands are standard errors over packings"};
+  for (const Amplitude& one : all) {
+    std::map<std::int32_t, std::pair<std::size_t, Fates>> sizes;
+    for (const Subject& subject : one.crystallites) {
+      auto& [count, fates] = sizes[subject.size];
+      ++count;
+      fates += subject.fates[chosen_rule];
+    }
+    const std::vector<GrowthBySize> growth = by_packing_and_size(one, chosen_rule);
+    const GrowthCurve curve(growth);
+    Series smooth{.colour = one.style.colour, .point = 0, .join = Join::line, .band = true};
+    for (const auto& [size, entry] : sizes) {
+      const auto& [count, fates] = entry;
+      table.rows.push_back({one.amplitude, std::int64_t{size}, count, fates.of(Fate::grown),
+                            fates.of(Fate::gone), fates.of(Fate::merged), fates.of(Fate::undecided),
+                            fates.revived, grown_share(fates)});
+      ChartPoint& at = smooth.points.emplace_back(
+          ChartPoint{static_cast<double>(size), (1 + curve.delta_rho(size)) / 2});
+      if (const auto error = curve.delta_rho_error(size)) at.y_error = *error / 2;
+    }
+    Series data{.title = one.style.title, .colour = one.style.colour, .point = one.style.point};
+    for (const GrowthRate& bin : growth_rates(growth, least_drawn)) {
+      data.points.push_back({bin.size, (1 + bin.delta) / 2, std::nullopt, bin.delta_error / 2});
+    }
+    table.chart.series.insert(table.chart.series.end(), {std::move(smooth), std::move(data)});
+    if (const auto q = background(one)) {
+      table.chart.lines.push_back(
+          {.at = *q, .colour = one.style.colour, .title = "states without crystallites"});
+    }
+  }
+  return table;
+}
+
+FigureTable sizes_table(std::span<const Amplitude> all) {
+  FigureTable table{.name = "committor_sizes",
+                    .columns = {"amplitude_rad",
+                                "cycles_without",
+                                "half_size_grains",
+                                "half_size_low_grains",
+                                "half_size_high_grains",
+                                "half_size_standard_error_grains",
+                                "not_corrected_grains",
+                                "undecided_as_grown_grains",
+                                "undecided_as_gone_grains",
+                                "states",
+                                "states_left_out",
+                                "packings",
+                                "crystallites",
+                                "grown",
+                                "gone",
+                                "merged",
+                                "undecided",
+                                "revived",
+                                "control_states",
+                                "control_share",
+                                "supplement_grains"}};
+  table.chart = {
+      .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
+      .y = {.name = "size that grows as often as not", .unit = "grains", .low = 0}};
+  for (const Amplitude& one : all) {
+    for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
+      TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});
+      if (const auto size = half_size(one, rule)) {
+        row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
+                               size->spread / std::sqrt(static_cast<double>(size->runs))});
+      } else {
+        row.resize(row.size() + 4);
+      }
+      for (const Undecided undecided : {Undecided::left_out, Undecided::grown, Undecided::gone}) {
+        const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
+        row.push_back(size ? TableValue(size->value) : TableValue());
+      }
+      const Fates sum = sum_of(one.crystallites, rule);
+      row.insert(row.end(), {one.states, one.left_out, by_packing_and_size(one, rule).size(),
+                             one.crystallites.size(), sum.of(Fate::grown), sum.of(Fate::gone),
+                             sum.of(Fate::merged), sum.of(Fate::undecided), sum.revived,
+                             one.controls.size(), background(one), one.published});
+    }
+    table.chart.series.push_back({.title = one.style.title,
+                                  .colour = one.style.colour,
+                                  .point = one.style.point,
+                                  .join = Join::line,
+                                  .columns = {.x = "cycles_without",
+                                              .y = "half_size_grains",
+                                              .y_error = "half_size_standard_error_grains"},
+                                  .filter = {"amplitude_rad", one.amplitude},
+                                  .shift = 0.04 * static_cast<double>(table.chart.series.size())});
+    table.chart.lines.push_back({.at = one.published,
+                                 .colour = one.style.colour,
+                                 .title = "the supplement's critical sizes"});
+  }
+  return table;
+}
+
+/// What enters a verdict: a row for each crystallite, one of size 0 for each control.
+Entered fates_of(std::initializer_list<const Amplitude*> amplitudes) {
+  Entered entered =
+      entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
+  for (const Amplitude* one : amplitudes) {
+    for (const auto* subjects : {&one->crystallites, &one->controls}) {
+      for (const Subject& subject : *subjects) {
+        for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
+          const Fates& fates = subject.fates[rule];
+          enter(*subject.run,
+                {std::int64_t{subject.size}, cycles_without[rule], fates.of(Fate::grown),
+                 fates.of(Fate::gone), fates.of(Fate::merged), fates.of(Fate::undecided),
+                 fates.revived},
+                entered);
+        }
+      }
+    }
+  }
+  return entered;
+}
+
+Verdict size_is_published(const Amplitude& one) {
+  const std::string why = why_undefined(one);
+  std::optional<Estimate> size;
+  if (why.empty()) size = half_size(one, chosen_rule);
+  const std::size_t packings = by_packing_and_size(one, chosen_rule).size();
+  std::string note = fmt::format(
+      "{} and {} in {}; {} left out, which begin with {} grains",
+      counted(one.crystallites.size(), "crystallite"), counted(one.controls.size(), "control"),
+      counted(packings, "packing"), counted(one.left_out, "state"), grown_size);
+  note += size           ? fmt::format("; {:.3g} grains", size->value)
+          : !why.empty() ? "; " + why
+                         : "; too few packings, or no size grows as often as not";
+  if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
+  if (size) size->spread /= one.published;
+  Verdict verdict =
+      decide({fmt::format("C: at A = {} rad a crystallite of {} grains grows as often as not",
+                          one.amplitude, one.published),
+              margin_critical_size},
+             fmt::format("size that grows as often as not, relative difference from {} grains",
+                         one.published),
+             size, packings, note);
+  verdict.entered = fates_of({&one});
+  return verdict;
+}
+
+/// The supplement's size grows from the one amplitude to the other. Their clones are taken as
+/// independent, since states of one packing at two amplitudes have nothing else in common.
+Verdict size_grows(const Amplitude& low, const Amplitude& high) {
+  std::optional<Estimate> growth;
+  std::string note;
+  for (const Amplitude* one : {&low, &high}) {
+    if (note.empty()) note = why_undefined(*one);
+  }
+  if (note.empty()) {
+    const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
+    if (before && after) {
+      growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
+    } else {
+      note = "no size grows as often as not";
+    }
+  }
+  Verdict verdict =
+      decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
+                                  high.amplitude, low.amplitude),
+              .claimed = Claimed::above},
+             "ratio of the sizes that grow as often as not, less 1", growth,
+             growth ? growth->runs : 0, note);
+  verdict.counted = Counted::runs_per_variant;
+  verdict.entered = fates_of({&low, &high});
+  return verdict;
+}
+
+}  // namespace
+
+FigureResult figure_committor(std::span<const FigureRun> runs) {
+  const std::vector<Amplitude> all = amplitudes_of(runs);
+  FigureResult result{{probability_table(all), sizes_table(all)}, {}};
+  for (const Amplitude& one : all) result.verdicts.push_back(size_is_published(one));
+  if (all.size() > 1) result.verdicts.push_back(size_grows(all[all.size() - 2], all.back()));
+  return result;
+}
+
+}  // namespace shearcell
