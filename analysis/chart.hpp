@@ -169,8 +169,8 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 
 /// Adds the number of runs behind the points to the title of each series, as "(3 to 5 runs)", if
-/// this number differs between points or is less than Series::runs: a curve may rise or fall only
-/// because other runs enter the mean. If all series have the same numbers, the caption states them
+/// this number differs between points or is less than Series::runs. A mean may change along a curve
+/// only because other runs enter it. If all series have the same numbers, the caption states them
 /// once.
 void name_run_counts(FigureTable& table);
 

@@ -58,7 +58,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
 /// For each run the first cycle at which the measure is at least `level`; without one, the run's
 /// last cycle, as censored.
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& measure, double level);
-/// The same for the onset of crystallization by method 1.
+/// For each run the cycle of the onset by method 1, or its last cycle, as censored.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
 /// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test

@@ -70,8 +70,8 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< of a curve
   GrainScale scale = {};                 ///< of a measure of each grain
   RunValue (*of_run)(const FigureRun& run) = nullptr;
-  /// Its name in sentences; "" for `name`. Numbers of a whole run and measures of each grain have
-  /// one.
+  /// The name in sentences; "": `name`. Numbers of a whole run and measures of each grain have such
+  /// a name.
   std::string_view words = {};
   std::string_view reach = {};  ///< what a run must reach to have it
   bool waits = false;           ///< the cycle of an event, before which a run may end
@@ -142,7 +142,7 @@ struct Provider {
   void read(const nlohmann::json& result, Measures& measures) const;
 };
 
-/// In the order of the columns of tables.
+/// All providers, in the order of the columns of tables.
 std::span<const Provider> all_providers();
 /// The provider of that name, which must exist.
 const Provider& provider(std::string_view name);

@@ -12,10 +12,10 @@
 namespace shearcell {
 
 /// Units are the spring constant k and the grain's mass m and diameter d; MechanicalUnits has their
-/// SI values. Stress is positive in compression and is that of the interior grains over their
-/// Voronoi cells, sigma = 1/V sum_i sum_j f_ij (x) l_ij, with l_ij from the contact to the grain's
-/// centre (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing shear
-/// strain du_x/dy is resisted by a negative sigma_xy. Means over no grain are not a number.
+/// SI values. The stress of the interior grains is positive in compression: sigma = 1/V sum_i sum_j
+/// f_ij (x) l_ij, with V the volume of their Voronoi cells and l_ij from the contact to the centre
+/// of the grain (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing
+/// shear strain du_x/dy is resisted by a negative sigma_xy. Means over no grain are not a number.
 struct Mechanics {
   double stress_xx = 0, stress_yy = 0, stress_zz = 0;  ///< of contacts [k/d]
   double stress_xy = 0, stress_xz = 0, stress_yz = 0;  ///< [k/d]
@@ -40,8 +40,8 @@ struct Mechanics {
 
 struct PackingMechanics {
   Mechanics packing;
-  /// Of each grain [k/d]: trace / 3 of the same sum over its own contacts, those with walls
-  /// included, over its own cell.
+  /// Pressure of each grain [k/d]: trace / 3 of the sum over the contacts of the grain, also with
+  /// walls, over the volume of its cell.
   std::vector<double> grain_pressure;
 };
 

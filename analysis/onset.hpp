@@ -31,8 +31,8 @@ struct RunOnset {
 double critical_size_for(const FigureRun& run);
 
 /// Method 1: the first time that the largest crystallite has the critical size. phi and cycle are
-/// interpolated linearly in the size between that checkpoint and the one before, which bound them.
-/// A run that begins with such a crystallite is censored at its start.
+/// interpolated linearly in the size between this checkpoint and the checkpoint before. A run that
+/// begins with a critical crystallite is censored at its start.
 RunOnset onset_by_size(const FigureRun& run);
 
 /// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the

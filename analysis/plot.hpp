@@ -34,9 +34,10 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 /// deleted.
 std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
 
-/// The same drawing as PDF beside the SVG, without a date: equal bytes from an equal SVG with the
-/// same librsvg. (gnuplot's own PDF contains the time.) Returns nothing if rsvg-convert (Debian
-/// package librsvg2-bin) is not installed. Throws AnalysisError if it fails or writes a part.
+/// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes
+/// with the same librsvg (gnuplot's own PDF contains the time). Returns nothing if rsvg-convert
+/// (Debian package librsvg2-bin) is not installed. Throws AnalysisError if rsvg-convert fails or
+/// writes a part.
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg);
 
 }  // namespace shearcell

@@ -9,9 +9,9 @@
 
 namespace shearcell {
 
-/// One entry per layer of one diameter, from the plane of the bottom wall up to that of the top
-/// wall. A layer has the grains whose centres are in it, at least 1.5 d from the surfaces of the
-/// side walls; without any, its values are not numbers.
+/// One entry per layer of one diameter, from the plane of the bottom wall to the plane of the top
+/// wall. Grains count in the layer of their centre if they are at least 1.5 d from the surfaces of
+/// the side walls. Values of a layer without grains are not numbers.
 struct Profiles {
   std::vector<double> height;               ///< of the layer's middle [d]
   std::vector<double> phi;                  ///< Eq. S4

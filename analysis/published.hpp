@@ -20,7 +20,7 @@ inline constexpr double published_period_s = 2;
 inline constexpr double published_steps_per_cycle = 45600;
 inline constexpr double published_gravity_m_per_s2 = 9.81;
 
-/// Section C. n_bin of A = 0.04 is not stated: that of 0.05 is taken. [choice]
+/// Section C. n_bin of A = 0.04 is not stated; the value is n_bin of A = 0.05. [choice]
 struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;  ///< grains

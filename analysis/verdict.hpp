@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Of a claim of equality: agrees or differs. Of a claim of a direction: supported or refuted.
+/// A claim of equality agrees or differs. A claim of a direction is supported or refuted.
 enum class Ruling { agrees, supported, differs, refuted, undecided };
 template <>
 inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "supported", "differs",

@@ -24,8 +24,8 @@ struct MinimizeSettings {
 /// reached or a watchdog check fails.
 void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
-/// What force_tolerance limits, of a state between upright walls, with forces summed contact by
-/// contact.
+/// The quantity that force_tolerance limits, for a state between upright walls, with forces summed
+/// contact by contact.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 
 }  // namespace shearcell

@@ -36,10 +36,10 @@ struct ListSettings {
 
 /// Positions when a list was built, in the frame that moves with the affine shear.
 ///
-/// A pair that is not in a list was at least 1 + m_i + m_j apart, with margins m. It cannot touch
-/// until a grain has moved farther in that frame than its margin, less the part that the shear of
-/// the frame has used up since. So each grain checks its own margin, and fast grains can have wide
-/// ones without longer lists for the others.
+/// A pair that is not in a list was at least 1 + m_i + m_j apart, with margins m. The pair cannot
+/// touch until a grain has moved farther in this frame than its margin, reduced by the part that
+/// the shear of the frame has used up. So each grain checks its own margin, and fast grains can
+/// have wide margins without longer lists for the others.
 class Reference {
  public:
   /// Positions of the grains and the pose of the walls now. `widest` is the largest margin [d].
@@ -95,7 +95,7 @@ class NeighbourLists {
   /// rebuilt first.
   bool prune(const Snapshot& now);
 
-  /// Of the newest outer list [d].
+  /// The widest margin in the newest outer list [d].
   double widest_margin() const { return widest_margin_; }
   NeighbourRows rows() const;
   /// Length of each grain's inner list when it was last pruned; empty before that.

@@ -27,10 +27,10 @@ constexpr double fluid_share(Fluid fluid) {
   return 0;
 }
 
-/// Where the pressure P holds. `moving_wall`: the load on the moving wall is P A_w, so a moving
-/// bottom wall, which also carries the grains, leaves less than P for the top. `top`: a moving
-/// bottom wall is loaded with P A_w and the grains' weight, so that the top feels P, less what
-/// rough side walls bear, whichever wall moves.
+/// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w. A
+/// moving bottom wall also carries the grains, so the top wall bears less than P. `top`: a moving
+/// bottom wall is loaded with P A_w and the grains' weight. The top wall then bears P whichever
+/// wall moves, less what rough side walls bear.
 enum class PressureAt : std::uint8_t { moving_wall, top };
 template <>
 inline constexpr auto kNames<PressureAt> = names_in_order<PressureAt>("moving_wall", "top");

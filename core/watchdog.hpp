@@ -50,14 +50,15 @@ struct WatchTask {
   double wall_velocity;  ///< [d/s]
 };
 
-/// Checks that all numbers are finite, all grains are inside the walls, no overlap is over its
-/// limit, no grain is faster than the energy of twelve contacts at that limit allows, and the time
-/// step is below 2/omega for every frequency omega of the contact network. omega is bounded grain
-/// by grain: since (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, omega^2 is at most k/m times the
-/// largest eigenvalue of any grain's sum of w n n^T over its contacts, with w = 2 for a grain, 1
-/// for a fixed wall and 5/4 for the moving wall, and of 5 (sum of n_y^2) / M for that wall itself.
-/// The bound is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). Costs about four time
-/// steps. Throws NumericalFailure for the first failing grain in memory.
+/// Checks that all numbers are finite, all grains are inside the walls, and no overlap is over its
+/// limit. No grain may be faster than the energy of twelve contacts at this limit allows. The time
+/// step must be below 2/omega for every frequency omega of the contact network. omega is bounded
+/// grain by grain, because (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2: omega^2 is at most k/m times
+/// the largest eigenvalue of any grain's sum of w n n^T over its contacts, with w = 2 for a grain,
+/// 1 for a fixed wall and 5/4 for the moving wall. For the moving wall the bound is k/m times 5
+/// (sum of n_y^2) / M. The bound is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). The
+/// checks cost about four time steps. Throws NumericalFailure for the first failing grain in
+/// memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

@@ -9,7 +9,7 @@
 
 namespace shearcell {
 
-/// Of all grains and the moving wall, over some steps [m d^2/s^2].
+/// Energies of all grains and the moving wall over some steps [m d^2/s^2].
 struct Ledger {
   double work_of_walls = 0;  ///< of the drive, which tilts the walls; not of the load
   /// Energy that the grains lose to the fluid, sum of b v.(v - u); negative if the fluid drives the

@@ -31,9 +31,10 @@ double pressing_time(const Scene& scene, double height, double per_area);
 /// Grains that fall first form a heap, and a heap nearly as heavy as P A_w (0.95 of it at N =
 /// 18200) jams between rough side walls before it reaches the top.
 ///
-/// The packing has settled when, at a check every 0.1 s under gravity, the force balance of the
-/// moving wall, its speed and the kinetic energy per grain are below their tolerances. The speed
-/// enters as the drag force B_w y' over P A_w, so that a creeping wall does not count as balanced.
+/// The packing has settled when three numbers are below their tolerances, at a check every 0.1 s
+/// under gravity: the force imbalance of the moving wall, its drag force B_w y' (both over P A_w),
+/// and the kinetic energy per grain. The drag force is checked so that a creeping wall does not
+/// count as balanced.
 ///
 /// While the wall presses, overlaps up to half a diameter are accepted: the wall may catch a grain
 /// between its own wall grains and those of a side wall, and push the grain out with the whole

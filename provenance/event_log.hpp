@@ -45,7 +45,7 @@ struct Event {
 
 std::string run_stream(std::string_view run);         ///< "run/<id>"
 std::string packing_stream(std::string_view sha256);  ///< "packing/<sha256>"
-/// The id of the event's run; nothing if its stream is not that of a run.
+/// The id of the event's run; nothing if the stream does not belong to a run.
 std::optional<std::string> run_of(const Event& event);
 
 /// A time [ms since 1970] as ISO 8601 with milliseconds, UTC: "2026-11-22T09:55:45.123Z".

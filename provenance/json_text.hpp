@@ -18,7 +18,7 @@ struct Event;
 
 /// A discarded value when the text is not JSON or is nested deeper than StoreLimits::json_depth.
 nlohmann::json parse_json(std::string_view text);
-/// The same for CBOR.
+/// parse_json() for CBOR.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);
 
 /// The error of an event whose payload lacks a required value.
@@ -38,7 +38,7 @@ std::string short_text(const nlohmann::json& value);
 
 /// Null when `object` has no such member or is not an object.
 nlohmann::json member_of(const nlohmann::json& object, const char* key);
-/// Its short_text(); "unknown" for null.
+/// short_text() of the member `key`; "unknown" for null.
 std::string text_at(const nlohmann::json& object, const char* key);
 
 }  // namespace shearcell

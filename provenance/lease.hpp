@@ -38,9 +38,9 @@ Holder this_process();
 /// The longest lease. A later end comes from a wrong clock or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
-/// Whether any program may take the lease: it expired or is older than kLongestLeaseMs, its holder
-/// is dead (checked only for processes of the same boot and namespace), or it was renewed in the
-/// future because the clock was set back.
+/// Whether any program may take the lease. The lease lapses when it has expired, when it is older
+/// than kLongestLeaseMs, when its holder is dead (checked only for processes of the same boot and
+/// namespace), or when its time of renewal is in the future because the clock was set back.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".
@@ -48,9 +48,9 @@ std::string describe(const Holder& holder);
 
 /// Creates the table. Stores of schema 1 have no table and no leases.
 void create_leases(sqlite::Database& database);
-/// Of one run, or of all (""), lapsed ones too.
+/// The leases of one run, or of all (""), also lapsed ones.
 std::vector<Lease> query_leases(const sqlite::Database& database, std::string_view run = "");
-/// Writes the lease, replacing that of any other holder.
+/// Writes the lease in place of the lease of any other holder.
 void put_lease(sqlite::Database& database, const Lease& lease);
 /// Deletes the lease if it still has this token.
 void drop_lease(sqlite::Database& database, std::string_view run, std::string_view token);

@@ -7,7 +7,7 @@
 
 namespace shearcell {
 
-/// Of a store, its checkpoints, and the files made from them.
+/// Limits of a store, its checkpoints, and the files made from them.
 struct StoreLimits {
   static constexpr std::uint64_t grains = 100'000'000;  ///< of a checkpoint, and of its walls
   static constexpr std::size_t observables = 1'000;     ///< of a checkpoint

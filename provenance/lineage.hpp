@@ -55,7 +55,7 @@ struct CheckpointHistory {
   std::string recorded_at;  ///< UTC
   /// Index in RunLineage::attempts of the last attempt that recorded it.
   std::optional<std::size_t> attempt;
-  /// Its file should exist and be valid.
+  /// Whether the file should exist and be valid.
   bool kept() const { return record.state == CheckpointState::recorded; }
   const std::string& sha256() const { return record.sha256; }
 };

@@ -51,7 +51,7 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// In the order of their declaration.
+/// All stages in the order of their declaration.
 std::vector<Stage> query_stages(const sqlite::Database& database);
 std::optional<Stage> query_stage(const sqlite::Database& database, std::string_view id);
 bool has_stage(const sqlite::Database& database, std::string_view id);

@@ -21,8 +21,8 @@ class Sha256 {
   Sha256();
   Sha256& add(std::span<const std::byte> data);
   Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
-  /// As netstrings, "<length in bytes>:<text>,", so that fields cannot run into each other; numbers
-  /// in decimal.
+  /// Adds fields as netstrings, "<length in bytes>:<text>,", so that neighbouring fields stay
+  /// apart; numbers in decimal.
   template <class... Fields>
   Sha256& add_fields(const Fields&... fields) {
     (add_field(fields), ...);
@@ -44,7 +44,7 @@ class Sha256 {
 std::string sha256_hex(std::span<const std::byte> data);
 std::string sha256_hex(std::string_view text);
 
-/// Of a whole file, read in parts. Throws std::runtime_error when it cannot be read.
+/// The hash of a whole file. Throws std::runtime_error when the file cannot be read.
 std::string sha256_hex_of_file(const std::filesystem::path& file);
 
 /// Whether the text is 64 lower-case hex digits.

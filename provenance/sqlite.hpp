@@ -35,10 +35,10 @@ namespace shearcell::sqlite {
 /// SQLite's own limit.
 std::string full_name(const std::filesystem::path& file);
 
-/// One connection, for one thread at a time. All functions throw StoreDamaged when the file is not
-/// a valid database, MachineError when another process kept it locked or when the file was moved,
-/// replaced or deleted, and std::runtime_error when the machine fails (disk full, no permission).
-/// Messages name the file.
+/// One connection, for one thread at a time. Messages of exceptions name the file. All functions
+/// throw StoreDamaged when the file is not a valid database; MachineError when another process kept
+/// the file locked, or when the file was moved, replaced or deleted; and std::runtime_error when
+/// the machine fails (disk full, no permission).
 ///
 /// The file and SQLite's own files beside it must be regular files without hard links: SQLite finds
 /// its journal by the name of the file, so a second name of the file would make it play back a

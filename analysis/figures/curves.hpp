@@ -18,17 +18,15 @@
 namespace shearcell {
 
 /// How a manifest or a figure wants the curve of the runs with these parameters drawn. A style that
-/// fits several curves is ignored. A curve without a style, or whose style leaves something out,
-/// gets a title from its variant, a colour from its value of the first parameter that varies, and a
-/// symbol from its values of the other parameters.
+/// fits several curves is ignored. What no style states follows from the variant: the title from
+/// its name, the colour from the first parameter that varies, the symbol from the other parameters.
 struct CurveStyle {
   nlohmann::json where;     ///< parameters and their values
   Text title = {};          ///< empty: not stated
   std::string colour = {};  ///< "#rrggbb"; empty: not stated
   int point = -1;           ///< as in Series; -1: not stated
-  /// A manifest states the style. A style that a manifest does not state is used only if the runs
-  /// differ in no other parameters than those of the styles. Its title then gives way to a label of
-  /// the manifest.
+  /// A manifest states the style. Any other style is used only if the runs differ in the parameters
+  /// of styles alone, and its title only if no label of the manifest names the variant.
   bool of_manifest = false;
 };
 

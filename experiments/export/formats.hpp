@@ -35,8 +35,8 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
 /// A folder with frame_CYCLE.data for each frame (lammps_data, SI; the title has the planes of the
-/// cell, and the format has no place for measures) and, unless the run is a stiffening,
-/// in.frame_CYCLE, the script with which LAMMPS continues it (lammps_script).
+/// cell; no measures). Unless the run is a stiffening, also in.frame_CYCLE, the script with which
+/// LAMMPS continues the frame (lammps_script).
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, a row for each contact. The particles are

@@ -11,8 +11,8 @@ namespace shearcell {
 
 /// Computes and caches the measures for which tables and figures may need the files of these
 /// checkpoints. These are all derived measures of all checkpoints of the runs, for each cadence
-/// that an experiment asks for, since a later checkpoint may need an earlier one; and the simulated
-/// measures that a figure of a registered manifest needs. Removes from `records` each checkpoint
+/// that an experiment asks for: a later checkpoint may need an earlier one. Simulated measures are
+/// computed if a figure of a registered manifest needs them. Removes from `records` each checkpoint
 /// with a measure that could not be computed, unless the measure needs a file that was pruned
 /// before; the outcome says why. Removes all if measures cannot be cached. The cache is on disk
 /// when the function returns.

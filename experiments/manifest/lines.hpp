@@ -17,9 +17,9 @@ struct ManifestLine {
   std::string text;  ///< the line, without surrounding blanks, fit for a message
 };
 
-/// Where a manifest states its experiment, the scale, the value of each key in `swept`, the
-/// cycles, the seeds, `checkpoints`, `until`, the label of the variant, and the plot or claim of
-/// the name `figure`. Empty if this program cannot read the manifest.
+/// The lines of a run and its figure: experiment, scale, the value of each key in `swept`, cycles,
+/// seeds, `checkpoints`, `until`, the label of the variant, and the plots and claims of `figure`.
+/// Empty if this program cannot read the manifest.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 

@@ -43,8 +43,8 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
 /// Reads a text in the format that its content shows; `file` is the name for messages. Positions
 /// are not moved, except that z is wrapped into the box. Throws ManifestError, with line, value and
-/// remedy, unless the text is a packing of equal grains within its box that overlap by at most
-/// facts.largest_overlap, across the periodic boundary in z too if there is a box.
+/// remedy, unless the text is a packing of equal grains within its box. Grains may overlap by at
+/// most facts.largest_overlap, with a box also across the periodic boundary in z.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 }  // namespace shearcell

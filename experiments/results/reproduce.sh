@@ -1,17 +1,17 @@
 #!/bin/sh
 # Computes the figures of a published folder from scratch and compares their numbers with the published ones, byte for
 # byte:
-#   sh experiments/results/reproduce.sh [FOLDER]
-# published.txt lists the folders. Without FOLDER desk/spring_constant, half a minute once the program is built; for the
-# time of others see `shearcell plan`. SHEARCELL names a program that is built already. Code 1: a number differs.
+#   sh experiments/results/reproduce.sh FOLDER
+# published.txt lists the folders; for the time that one takes see `shearcell plan`. SHEARCELL names a program that is
+# built already. Code 1: a number differs.
+#   sh experiments/results/reproduce.sh --rows [FOLDER]
+# draws the folder, or all, from the published rows (rows.sh) instead: seconds, and the same comparison.
 #   sh experiments/results/reproduce.sh --write FOLDER
-# writes figures and the table of runs into FOLDER instead, and keeps the runs in the store of $SHEARCELL_STORE.
+# writes figures and the table of runs into FOLDER, from the store of $SHEARCELL_STORE, which keeps the runs.
 set -eu
-write=""
-[ "${1:-}" != --write ] || { write=yes && shift; }
+mode=""
+case "${1:-}" in --*) mode=$1 && shift ;; esac
 here=$(cd "$(dirname "$0")" && pwd)
-folder=${1:-desk/spring_constant}
-line=$(grep "^$folder |" "$here/published.txt") || { echo "published.txt has no folder $folder" >&2; exit 2; }
 column() { echo "$line" | cut -d '|' -f "$1" | xargs; }
 
 cd "$here/../.."
@@ -21,27 +21,34 @@ if [ -z "${SHEARCELL:-}" ]; then
   cmake --build --preset release --target shearcell
   SHEARCELL=build/release/shearcell
 fi
+export SHEARCELL
 new=$(mktemp -d)
 trap 'rm -rf "$new"' EXIT
-[ -n "$write" ] || export SHEARCELL_STORE="$new/store"
-name=$(basename "$folder")
-# shellcheck disable=SC2046  # one word an option
-{
-  "$SHEARCELL" run experiments/$(column 2) $(column 3) $(column 4)
-  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$new/figures"
-}
-made=$(echo "$new/figures/$name"/*)  # of one scale
-if [ -n "$write" ]; then
-  rm -f "$made"/*.pdf
-  mkdir -p "$here/$folder"
-  find "$here/$folder" -maxdepth 1 -type f -delete  # also what a figure has no more
-  cp "$made"/* "$here/$folder"
+[ "$mode" = --write ] || export SHEARCELL_STORE="$new/store"
+[ "$mode" != --rows ] || sh "$here/rows.sh" unpack "$new/store"
+
+# Of `cost`, whose runs are partly LAMMPS's, no rows are published.
+for folder in ${1:-$(sed -n '/^#/d; /^cost/d; s/ |.*//p' "$here/published.txt")}; do
+  line=$(grep "^$folder |" "$here/published.txt") || { echo "published.txt has no folder $folder" >&2; exit 2; }
+  name=$(sed -n 's/^experiment: //p' "experiments/$(column 2)")
+  # shellcheck disable=SC2046  # one word an option
+  [ "$mode" = --rows ] || "$SHEARCELL" run experiments/$(column 2) $(column 3) $(column 4)
   # shellcheck disable=SC2046
-  "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
-  exit
-fi
-for file in "$here/$folder"/*.csv; do
-  [ "${file##*/}" != runs.csv ] || continue
-  cmp "$file" "$made/${file##*/}"
-  echo "$folder/${file##*/}: the published bytes"
+  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$new/figures"
+  made=$(echo "$new/figures/$name"/*)  # of one scale
+  if [ "$mode" = --write ]; then
+    rm -f "$made"/*.pdf
+    mkdir -p "$here/$folder"
+    find "$here/$folder" -maxdepth 1 -type f -delete  # also what a figure has no more
+    cp "$made"/* "$here/$folder"
+    # shellcheck disable=SC2046
+    "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
+    continue
+  fi
+  for file in "$here/$folder"/*.csv; do
+    [ "${file##*/}" != runs.csv ] || continue
+    cmp "$file" "$made/${file##*/}"
+    echo "$folder/${file##*/}: the published bytes"
+  done
+  rm -rf "$new/figures"
 done

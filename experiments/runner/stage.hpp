@@ -85,8 +85,8 @@ struct Replay {
 /// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
 std::optional<std::string> why_not_again(const Stage& run);
 
-/// Computes from the nearest earlier checkpoint that is kept, or the beginning of the stage, up to
-/// the record's step, compares the state and all that is recorded with it (cycle, time, tilt,
+/// Computes from the nearest earlier checkpoint that is kept, or from the beginning of the stage,
+/// up to the record's step. Compares the state and all that is recorded with it (cycle, time, tilt,
 /// observables), and records ReplayVerified or ReplayDiverged.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 

@@ -47,8 +47,8 @@ enum class Durability {
 };
 
 /// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0644
-/// less umask), then gives it the last part of `path` as its name, in place of a file or link of
-/// that name. On any error the temporary file is deleted and fail_on's exception thrown.
+/// less umask). Then renames the file to the last part of `path`, in place of a file or link of
+/// that name. On any error deletes the temporary file and throws as fail_on does.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability);

@@ -391,9 +391,9 @@ std::vector<FigureRun> nucleating_runs(double with, double without) {
 }
 
 TEST(FigureS6, GravityDoesNotMatter) {
-  EXPECT_EQ(rulings("S6", nucleating_runs(0.647, 0.647)), (Rulings{agrees, agrees, agrees}));
-  EXPECT_EQ(rulings("S6", nucleating_runs(0.647, 0.655)), (Rulings{differs, differs, agrees}));
-  std::vector<FigureRun> late = nucleating_runs(0.647, 0.647);
+  EXPECT_EQ(rulings("S6", nucleating_runs(0.6475, 0.6475)), (Rulings{agrees, agrees, agrees}));
+  EXPECT_EQ(rulings("S6", nucleating_runs(0.6475, 0.655)), (Rulings{differs, differs, agrees}));
+  std::vector<FigureRun> late = nucleating_runs(0.6475, 0.6475);
   for (std::size_t k : {1U, 3U}) late[k].checkpoints.resize(20);
   EXPECT_EQ(rulings("S6", late), Rulings(3, undecided)) << "too short, too few";
 }
@@ -402,9 +402,36 @@ TEST(FigureS5, OnsetAndInteriorGrainsAreThoseOfTheSupplement) {
   // The last one is N_inves of N = 5200, which these runs do not have.
   EXPECT_EQ(rulings("S5b", nucleating_runs(0.6475, 0.6475)), (Rulings{agrees, agrees, undecided}));
   EXPECT_EQ(rulings("S5b", nucleating_runs(0.656, 0.656)), (Rulings{agrees, differs, undecided}));
-  EXPECT_EQ(rulings("S5a", nucleating_runs(0.656, 0.656)), (Rulings{differs, agrees}))
+  EXPECT_EQ(rulings("S5a", nucleating_runs(0.656, 0.656)), (Rulings{differs, differs}))
       << "the steepest growth is 0.0018 later";
   EXPECT_EQ(rulings("S5a", nucleating_runs(0.6475, 0.6475)).at(0), agrees);
+}
+
+TEST(FigureS5, TheSlopeOfTheOnsetIsTakenAgainstLnOfTheInteriorGrains) {
+  const auto verdict = [](double slope) {
+    std::vector<FigureRun> runs;
+    for (const double grains : {5200, 7900, 18200}) {
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const double interior = 0.7 * grains;
+        FigureRun run = nucleating(0.05, 9.81, seed + static_cast<std::uint64_t>(grains),
+                                   0.6475 + slope * std::log(interior / 5000));
+        for (CheckpointMeasures& one : run.checkpoints) {
+          one.measures.numbers["interior_grains"] = interior;
+        }
+        run.parameters["grains"] = grains;
+        run.variant = "grains=" + std::to_string(grains);
+        runs.push_back(run);
+      }
+    }
+    return find_figure("S5b")->make(runs).verdicts.back();
+  };
+  Verdict found = verdict(-0.0017);
+  EXPECT_EQ(found.claim, "C: phi at the onset does not depend on the size of the cell");
+  EXPECT_NEAR(found.estimate.value(), -0.0017, 0.0003);
+  EXPECT_EQ(found.ruling, differs);
+  EXPECT_EQ(found.runs, 15U);
+  EXPECT_EQ(found.entered.rows.size(), 15U);
+  EXPECT_EQ(verdict(0).ruling, agrees);
 }
 
 }  // namespace

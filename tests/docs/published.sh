@@ -1,5 +1,6 @@
 #!/bin/sh
-# Every line of published.txt must name a manifest, a scale and variants that exist:
+# Every line of published.txt must name a manifest, a scale and variants that exist, and the campaign must cost at most a
+# night on two cores, 1.5e13 particle-steps:
 #   sh published.sh PROGRAM RESULTS_FOLDER
 set -eu
 grep -v '^#' "$2/published.txt" | while IFS='|' read -r folder manifest options of_run _; do
@@ -9,3 +10,9 @@ grep -v '^#' "$2/published.txt" | while IFS='|' read -r folder manifest options 
     exit 1
   }
 done
+manifests=$(ls "$2"/../*.yaml | grep -v -e accuracy.yaml -e committor.yaml)
+# shellcheck disable=SC2086
+"$1" plan $manifests --scale paper --store /nonexistent --json 2> /dev/null | python3 -c '
+import json, sys
+steps = json.load(sys.stdin)["particle_steps_left"]
+sys.exit(f"the campaign takes {steps:.3g} particle-steps" if not 1e12 < steps < 1.5e13 else 0)'

@@ -33,8 +33,8 @@ HEADLINES = [
     ("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves", "1 (homogeneous)"),
     ("S7", "E: crystallites are more probable near the top", "share of nuclei in the upper third minus that in the lower third", "more near the top"),
 ]
-# Folders of results; a claim is shown as the first of them measured it.
-SOURCES = ("decide", "larger_step", "volume", "paper", "desk")
+# Folders of earlier results; a claim is shown as the campaign measured it, or else the first of these.
+SOURCES = ("earlier/decide", "earlier/larger_step", "earlier/volume", "earlier/paper", "desk")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices", "accuracy")
 
@@ -113,10 +113,13 @@ def verdicts(results):
 
 
 def best_of(found):
-    """Of (place, drawing, claim): the first of SOURCES where the claim was measured, and there the one with the most runs."""
+    """Of (place, drawing, claim): as the campaign measured the claim, whose folders have the names of figures, or else
+    the first of SOURCES, and there the one with the most runs."""
     def rank(one):
         place, _, claim = one
-        return claim["estimate"] is None, position(SOURCES, place.split("/")[0]), -claim["runs"]
+        of_campaign = place.split("/")[0] not in ("earlier", "desk")
+        source = -1 if of_campaign else position(SOURCES, "/".join(place.split("/")[:2 if place.startswith("earlier") else 1]))
+        return claim["estimate"] is None, source, -claim["runs"]
     return min(found, key=rank)
 
 
@@ -128,7 +131,7 @@ def headlines(page, results):
         if not found:
             continue
         place, drawing, claim = best_of(found)
-        name += ", time step 1.0e-4 s" if place.startswith("larger_step") else ""
+        name += ", time step 1.0e-4 s" if place.startswith("earlier/larger_step") else ""
         text += row([name, supplement, measured(claim), margin(claim), runs(claim), link(claim["verdict"], drawing, page)])
     return text
 
@@ -169,7 +172,7 @@ def unlisted(results):
     lines = [line for line in (results / "published.txt").read_text().splitlines() if not line.startswith("#")]
     listed = {line.split("|")[0].strip() for line in lines}
     drawn = {path.parent.relative_to(results).as_posix() for path in results.glob("**/*.lineage.json")}
-    return sorted(listed ^ drawn)
+    return sorted(place for place in listed ^ drawn if not place.startswith("earlier/"))
 
 
 def main():

@@ -273,5 +273,46 @@ TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {
   expect(0, {"regenerate", "--all"}, {"every file is intact"});
 }
 
+// What is published of a campaign: events and measures.
+TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
+  start_again();
+  fs::copy(path("whole"), path("twin"), fs::copy_options::recursive);
+  const nlohmann::json done = json({"prune", "--last-too", "--yes", "--json"});
+  EXPECT_EQ(done.at("kept_unmeasured"), 0);
+  EXPECT_EQ(objects(), 0U);
+  fs::remove_all(path("shearcell-store/objects"));  // as where only the databases are copied
+  EXPECT_EQ(shown("shearcell-store"), shown_);
+  expect(0, {"verify"}, {"0 checkpoints"});
+  for (const auto& run : json({"status", "--json"}).at("runs")) {
+    EXPECT_EQ(run.at("state"), "completed");
+  }
+  expect(0, {"merge", "shearcell-store", "--store", "united"});
+  EXPECT_EQ(shown("united"), shown_);
+  EXPECT_TRUE(has(expect(0, {"resume"}).out, "0 stages computed")) << "nothing is left to do";
+  // More cycles need the states: the message says how to restore them.
+  const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
+  write("m.yaml", manifest);
+  EXPECT_TRUE(has(run({"run", "m.yaml", "--cycles", "6"}).err, "shearcell regenerate"));
+  expect(0, {"regenerate", "--all"}, {"the same bytes"});
+  for (const char* store : {"shearcell-store", "twin"}) {
+    expect(0, {"run", "m.yaml", "--cycles", "6", "--store", store});
+  }
+  EXPECT_EQ(shown("shearcell-store"), shown("twin"));
+}
+
+TEST_F(Prune, RunKeepsEveryKthFile) {
+  const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
+  write("m.yaml", manifest);
+  expect(0, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "--store", "thin"});
+  EXPECT_EQ(shown("thin"), shown_);
+  const Store store(path("thin"), Access::read);
+  for (const Stage& stage : store.stages()) {
+    if (stage.kind != "shear") continue;
+    std::vector<double> kept;
+    for (const CheckpointRecord& one : store.checkpoints(stage.id)) kept.push_back(one.cycle);
+    EXPECT_EQ(kept, (std::vector<double>{0, 2, 4, 5})) << "the last one too";
+  }
+}
+
 }  // namespace
 }  // namespace shearcell::test

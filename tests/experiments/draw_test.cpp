@@ -150,6 +150,20 @@ TEST_F(DrawFigure, PlotsAndClaimsOfAManifestAreFiguresOfItsExperiment) {
   EXPECT_THROW(wanted_figures(store_, {"overlaps"}), NotFound);
 }
 
+TEST_F(DrawFigure, APrimaryClaimIsMarkedAtItsScale) {
+  const std::string claim =
+      "claims: [{name: same, compare: phi, at_cycle: 1, margin: 1, statement: \"phi is equal\", "
+      "between: [{fluid: still}, {fluid: cell}]}]\n";
+  for (const bool primary : {false, true}) {
+    compute(store_,
+            tiny_manifest("", kBothFluids + claim + (primary ? "primary: [phi is equal]\n" : "")),
+            {.cycles = 1});
+    draw("own", "same");
+    const auto found = nlohmann::json::parse(contents("own").at("same.verdict.json")).at("claims");
+    EXPECT_EQ(found.at(0).value("primary", false), primary);
+  }
+}
+
 // Records leave these keys out at the values of older runs.
 TEST_F(DrawFigure, AClaimMayNameAValueThatTheRecordLeavesOut) {
   compute(store_,

@@ -143,6 +143,25 @@ TEST(Expand, AZipHasALengthForEachVariant) {
     EXPECT_EQ(run.ask.target_cycles, 7U);
 }
 
+// Runs that take longer may be fewer, in the same figure.
+TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
+  const std::string text =
+      "experiment: a\nseeds: [7, 8, 9]\n"
+      "sweep: {zip: {amplitude_rad: [0.05, 0.1], seeds: [1, 3]}}\n";
+  const Manifest manifest = parse(text);
+  const Plan plan = expand(manifest);
+  std::vector<std::uint64_t> seeds;
+  for (const PlannedRun& run : plan.runs) seeds.push_back(run.ask.seed);
+  EXPECT_EQ(seeds, (std::vector<std::uint64_t>{7, 7, 8, 9}));
+  EXPECT_EQ(plan.runs[0].ask.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
+  EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
+  EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
+  EXPECT_EQ(
+      message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
+      "test.yaml:3:47: scales.desk.sweep.zip.seeds: is more seeds than the scale has (got 3). "
+      "State `seeds: 3`, or list as many.");
+}
+
 TEST(Expand, TakesOnlyTheRequestedVariants) {
   const Manifest manifest =
       parse("experiment: a\nsweep: {grid: {amplitude_rad: [0.05, 0.1], fluid: [still, cell]}}\n");

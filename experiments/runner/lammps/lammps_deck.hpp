@@ -38,9 +38,10 @@ std::string lammps_data(const Particles& particles, std::string_view title);
 /// one more frame and ends.
 std::string lammps_deck(const LammpsTask& task);
 
-/// An input script for users, with comments: it continues from the file `data`, whose units are the
-/// task's and SI, by a cycle or as many steps as its variable `steps`, and writes NAME.lammpstrj
-/// and NAME_end.dump. The task's `end`, `stride` and `check_every` have no effect.
+/// An input script for users, with comments. The script continues from the file `data`, in the
+/// task's units, which must be SI. It runs a cycle, or as many steps as its variable `steps` says,
+/// and writes NAME.lammpstrj and NAME_end.dump. The task's `end`, `stride` and `check_every` have
+/// no effect.
 std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
 
 /// Limit for files that LAMMPS writes [bytes], far above their sizes.

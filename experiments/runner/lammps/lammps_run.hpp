@@ -22,9 +22,10 @@ struct LammpsProgram {
 /// Name of the program: $SHEARCELL_LAMMPS, or "lmp".
 std::string lammps_name();
 
-/// The program of that name, on PATH if it has no slash. Throws ProgramError when
-/// there is none, it lacks the package GRANULAR or does not answer, or when there is no mpirun for
-/// several ranks, and Interrupted when it does not answer and a stop is requested.
+/// The program lammps_name(), on PATH if the name has no slash. Throws ProgramError when there is
+/// no such program, when the program lacks the package GRANULAR or does not answer, or when there
+/// is no mpirun for several ranks. Throws Interrupted when the program does not answer and a stop
+/// is requested.
 LammpsProgram find_lammps(std::size_t ranks = 1);
 
 /// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:

@@ -1,0 +1,37 @@
+#!/bin/sh
+# The numbers behind the published figures, as stores without checkpoint files: rows/NAME.tar.xz. Stores of several
+# parts of a campaign, from several machines, are merged where figures are drawn.
+#   sh experiments/results/rows.sh pack NAME     # the store of $SHEARCELL_STORE, without its files, as rows/NAME.tar.xz
+#   sh experiments/results/rows.sh unpack STORE  # all rows, merged into the new store STORE
+# SHEARCELL names the program; default: build/release/shearcell. `pack` works on a copy of the store.
+set -eu
+rows=$(cd "$(dirname "$0")" && pwd)/rows
+program=${SHEARCELL:-$rows/../../../build/release/shearcell}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+case "${1:-} ${2:-}" in
+  "pack "?*)
+    "$program" merge "${SHEARCELL_STORE:-shearcell-store}" --store "$work/store"
+    "$program" prune --last-too --yes --store "$work/store"
+    # Without what the published figures do not draw: curves, stresses, motion.
+    python3 - "$work/store/derived.sqlite" << 'END'
+import sqlite3
+import sys
+kept = sqlite3.connect(sys.argv[1], isolation_level=None)
+for name in ("lattices", "mechanics", "motion", "pair_correlation", "profiles", "sensitivity", "structure_factor",
+             "wall_distance"):
+    kept.execute("DELETE FROM derived WHERE measure LIKE ? || ' %'", (name,))
+kept.execute("VACUUM")
+END
+    mkdir -p "$rows"
+    tar -C "$work/store" --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -c store.sqlite derived.sqlite |
+      xz -9e > "$rows/$2.tar.xz"
+    ls -l "$rows/$2.tar.xz" ;;
+  "unpack "?*)
+    for part in "$rows"/*.tar.xz; do
+      mkdir "$work/$(basename "$part" .tar.xz)"
+      tar -C "$work/$(basename "$part" .tar.xz)" -xJf "$part"
+    done
+    "$program" merge "$work"/* --store "$2" ;;
+  *) sed -n '2,7s/^# //p' "$0" >&2; exit 2 ;;
+esac
