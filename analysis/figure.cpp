@@ -140,6 +140,7 @@ std::span<const Figure> computed_figures() {
     return Figure{name, title, make, form, std::move(keys), std::move(needs)};
   };
   static const std::vector<Figure> all = {
+      {"summary", "Onset, critical size and crystalline grains in all experiments", nullptr, table},
       one("table1", "Table I beside the parameters of every experiment", figure_table1, table),
       one("S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}),
       one("S5a", "Onset of crystallization against amplitude", figure_s5a, groups,
