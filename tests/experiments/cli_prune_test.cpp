@@ -54,8 +54,14 @@ class Prune : public ProgramTest {
     std::string all = expect(0, {"table", "--store", store}).out +
                       expect(0, {"table", "--per", "run", "--store", store}).out +
                       expect(0, {"table", "--curve", "structure_factor", "--store", store}).out;
+    return all + drawn(store);
+  }
+
+  /// The numbers of the figures alone, which do not depend on computing times.
+  std::string drawn(const std::string& store) {
     fs::remove_all(path("drawn"));
     expect(0, {"figures", "--store", store, "--out", "drawn"});
+    std::string all;
     for (const std::string& file : listing()) {
       if (file.starts_with("drawn/") && file.ends_with(".csv")) all += read_bytes(path(file));
     }
@@ -297,14 +303,15 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   for (const char* store : {"shearcell-store", "twin"}) {
     expect(0, {"run", "m.yaml", "--cycles", "6", "--store", store});
   }
-  EXPECT_EQ(shown("shearcell-store"), shown("twin"));
+  EXPECT_EQ(hashes("shearcell-store"), hashes("twin"));
+  EXPECT_EQ(drawn("shearcell-store"), drawn("twin"));
 }
 
 TEST_F(Prune, RunKeepsEveryKthFile) {
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
   expect(0, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "--store", "thin"});
-  EXPECT_EQ(shown("thin"), shown_);
+  EXPECT_EQ(drawn("thin"), drawn("whole"));
   const Store store(path("thin"), Access::read);
   for (const Stage& stage : store.stages()) {
     if (stage.kind != "shear") continue;

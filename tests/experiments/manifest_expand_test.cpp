@@ -158,7 +158,7 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
   EXPECT_EQ(
       message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-      "test.yaml:3:47: scales.desk.sweep.zip.seeds: is more seeds than the scale has (got 3). "
+      "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more seeds than the scale has (got 3). "
       "State `seeds: 3`, or list as many.");
 }
 
