@@ -140,7 +140,6 @@ std::span<const Figure> computed_figures() {
     return Figure{name, title, make, form, std::move(keys), std::move(needs)};
   };
   static const std::vector<Figure> all = {
-      {"summary", "Onset, critical size and crystalline grains in all experiments", nullptr, table},
       one("table1", "Table I beside the parameters of every experiment", figure_table1, table),
       one("S1", "Volume fraction in the limit of hard grains", figure_s1, groups, {"pressure_at"}),
       one("S5a", "Onset of crystallization against amplitude", figure_s5a, groups,
@@ -155,7 +154,9 @@ std::span<const Figure> computed_figures() {
       one("nucleation", "Runs without an onset, and the rate of nucleation", figure_nucleation,
           groups, {"amplitude_rad", "grains"}),
       one("nucleation_core", "The rate of nucleation at least 4 d from the walls",
-          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"})};
+          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"}),
+      {"summary", "Onset, critical size and crystalline grains in all experiments", nullptr,
+       table}};
   return all;
 }
 
