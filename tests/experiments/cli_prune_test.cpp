@@ -294,7 +294,7 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   }
   expect(0, {"merge", "shearcell-store", "--store", "united"});
   EXPECT_EQ(shown("united"), shown_);
-  EXPECT_TRUE(has(expect(0, {"resume"}).out, "0 stages computed")) << "nothing is left to do";
+  expect(0, {"resume"}, {"nothing is left to compute"});
   // More cycles need the states: the message says how to restore them.
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
