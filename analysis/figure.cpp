@@ -156,7 +156,9 @@ std::span<const Figure> computed_figures() {
       one("nucleation", "Runs without an onset, and the rate of nucleation", figure_nucleation,
           groups, {"amplitude_rad", "grains"}),
       one("nucleation_core", "The rate of nucleation at least 4 d from the walls",
-          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"})};
+          figure_nucleation_core, groups, {"amplitude_rad", "grains"}, {"core"}),
+      {"summary", "Onset, critical size and crystalline grains in all experiments", nullptr,
+       table}};
   return all;
 }
 

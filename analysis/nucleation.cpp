@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/nucleation.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
@@ -44,34 +46,6 @@ std::optional<double> pooled(std::span<const std::vector<double>> histograms,
   return inside / all * static_cast<double>(histograms.front().size());
 }
 
-/// The time of one run in one bin of phi before its onset.
-struct Stay {
-  double cycles = 0;
-  double grain_cycles = 0;
-  std::size_t events = 0;  ///< 0 or 1
-};
-using Stays = std::map<std::int64_t, Stay>;  ///< by the bin's number
-
-Stays stays_of(const FigureRun& run, Region region) {
-  const RunOnset onset = onset_by_size(run);
-  Stays stays;
-  if (onset.observed == Observed::before_start) return stays;
-  for (std::size_t k = 1; k < run.checkpoints.size(); ++k) {
-    const CheckpointMeasures &from = run.checkpoints[k - 1], &to = run.checkpoints[k];
-    const bool here = onset.observed == Observed::yes && onset.cycle <= to.cycle;
-    const double cycles = (here ? onset.cycle : to.cycle) - from.cycle;
-    if (const double phi = from.measures.number(region == Region::core ? "core_phi" : "phi");
-        std::isfinite(phi)) {
-      Stay& stay = stays[std::llround(std::floor(phi / phi_bin))];
-      stay.cycles += cycles;
-      stay.grain_cycles += cycles * from.measures.number(grains_of(region));
-      stay.events += here ? 1 : 0;
-    }
-    if (here) break;
-  }
-  return stays;
-}
-
 Interval poisson_interval(std::size_t events) {
   const auto quantile = [](double probability, double freedom) {
     return boost::math::quantile(boost::math::chi_squared(freedom), probability) / 2;
@@ -81,16 +55,23 @@ Interval poisson_interval(std::size_t events) {
   return {events == 0 ? 0 : quantile(tail, 2 * n), quantile(1 - tail, 2 * n + 2)};
 }
 
-/// One run's share of the likelihood in one stratum: an amplitude and a bin of phi.
+/// One run in one range of phi.
 struct Share {
   double grains;  ///< N
   const std::string* packing;
-  double cycles;
+  double phi;
+  double log_cycles;
   double log_size;
-  bool event;
+  double events;          ///< 0 or 1
+  Eigen::Vector3d terms;  ///< of ln c: 1, phi and its square, from the onset on, in bins
 };
 
-using Strata = std::map<std::pair<double, std::int64_t>, std::vector<Share>>;
+using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
+
+/// 1 / variance of normal priors of the terms of ln c, of which the last two have 3 and 0.5 as
+/// standard deviations: few events have a likelihood with a maximum then. Runs show 1 and 0.1.
+/// [choice]
+const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
   double logarithm = 0;    ///< up to a constant
@@ -99,44 +80,80 @@ struct Likelihood {
   std::map<std::string, double> score_of;  ///< the part of each packing
 };
 
-/// Likelihood of the exponent, with the most likely c of each stratum. The score is a sum over
-/// events: ln n less its mean over the stratum with the weights cycles n^a.
-Likelihood likelihood(const Strata& strata, double exponent) {
-  Likelihood sum;
-  for (const auto& [stratum, shares] : strata) {
-    const auto weight_of = [&](const Share& share) {
-      return share.cycles * std::exp(exponent * share.log_size);
-    };
-    double weights = 0, weighted = 0, logs = 0, events = 0;
-    for (const Share& share : shares) {
-      weights += weight_of(share);
-      weighted += weight_of(share) * share.log_size;
-      logs += share.event ? share.log_size : 0;
-      events += share.event ? 1 : 0;
-    }
-    if (!(events > 0 && weights > 0)) continue;
-    sum.logarithm += exponent * logs - events * std::log(weights);
-    for (const Share& share : shares) {
-      const double off = share.log_size - weighted / weights;
-      const double expected = events * weight_of(share) / weights;
-      sum.score += share.event ? off : 0;
-      sum.score_of[*share.packing] += ((share.event ? 1 : 0) - expected) * off;
-      sum.information += expected * off * off;
-    }
+/// Adds that of one amplitude with the most likely ln c, which Newton's method finds: the logarithm
+/// is concave. A step that would lower it is halved.
+void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
+  Eigen::Vector3d c = Eigen::Vector3d::Zero();
+  const auto log_rate = [&](const Share& share) {
+    return share.log_cycles + exponent * share.log_size + c.dot(share.terms);
+  };
+  double events = 0, expected_events = 0, most = -std::numeric_limits<double>::infinity();
+  for (const Share& share : shares) most = std::max(most, log_rate(share));
+  for (const Share& share : shares) {
+    events += share.events;
+    expected_events += std::exp(log_rate(share) - most);
   }
+  if (events == 0) return;
+  c[0] = std::log(events / expected_events) - most;
+  const auto logarithm = [&] {
+    double all = -c.cwiseAbs2().dot(prior) / 2;
+    for (const Share& share : shares) {
+      all += share.events * log_rate(share) - std::exp(log_rate(share));
+    }
+    return all;
+  };
+  Eigen::Matrix3d curvature;
+  Eigen::Vector3d slope, with_size;  // with_size: the curvature by c and the exponent
+  double reached = logarithm();
+  double moved = 1;
+  for (int step = 0; step < 100 && moved > 1e-9; ++step) {
+    curvature = prior.asDiagonal();
+    slope = -prior.cwiseProduct(c);
+    with_size.setZero();
+    for (const Share& share : shares) {
+      const double expected = std::exp(log_rate(share));
+      const Eigen::Vector3d x = share.terms;
+      curvature += expected * x * x.transpose();
+      slope += (share.events - expected) * x;
+      with_size += expected * share.log_size * x;
+    }
+    Eigen::Vector3d move = curvature.ldlt().solve(slope);
+    c += move;
+    while (!(logarithm() >= reached) && move.norm() > 1e-9) c -= move /= 2;
+    moved = move.norm();
+    reached = logarithm();
+  }
+  const Eigen::Vector3d explained = curvature.ldlt().solve(with_size);
+  sum.logarithm += reached;
+  for (const Share& share : shares) {
+    const double expected = std::exp(log_rate(share));
+    const double off = share.log_size - explained.dot(share.terms);
+    sum.score += (share.events - expected) * share.log_size;
+    sum.information += expected * off * share.log_size;
+    sum.score_of[*share.packing] += (share.events - expected) * off;
+  }
+}
+
+Likelihood likelihood(const Shares& amplitudes, double exponent) {
+  Likelihood sum;
+  for (const auto& [amplitude, shares] : amplitudes) add_likelihood(shares, exponent, sum);
   return sum;
 }
 
-/// Whether an event could have been in a larger cell of its stratum, and one in a smaller cell:
-/// only then has the likelihood a maximum. Sizes are those of N. Seeds of one N differ a little in
-/// their number of interior grains, which says nothing about the size.
-bool is_bounded(const Strata& strata) {
+/// Whether an event could have been in a larger cell of that amplitude at about its phi, and one in
+/// a smaller cell: only then do the runs say how the rate grows with the size. Sizes are those of
+/// N. Seeds of one N differ a little in their number of interior grains, which says nothing about
+/// the size.
+bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
-  for (const auto& [stratum, shares] : strata) {
-    const auto [least, most] = std::ranges::minmax(shares, {}, &Share::grains);
-    for (const Share& share : shares) {
-      larger = larger || (share.event && share.grains < most.grains);
-      smaller = smaller || (share.event && share.grains > least.grains);
+  for (const auto& [amplitude, shares] : amplitudes) {
+    for (const Share& event : shares) {
+      if (event.events == 0) continue;
+      for (const Share& other : shares) {
+        if (std::abs(other.phi - event.phi) > phi_bin) continue;
+        larger = larger || other.grains > event.grains;
+        smaller = smaller || other.grains < event.grains;
+      }
     }
   }
   return larger && smaller;
@@ -151,7 +168,7 @@ double variance_between_packings(const Likelihood& at) {
 
 /// The point between the ends from which on `holds` is true.
 double bisected(double low, double high, const auto& holds) {
-  for (int halving = 0; halving < 60; ++halving) {
+  for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;
     (holds(middle) ? high : low) = middle;
   }
@@ -206,67 +223,85 @@ std::string grains_of(Region region) {
   return region == Region::core ? "core_grains" : "interior_grains";
 }
 
-std::vector<Exposure> exposures_of(const FigureRun& run, Region region) {
-  std::vector<Exposure> exposures;
-  for (const auto& [bin, stay] : stays_of(run, region)) {
-    exposures.push_back(
-        {static_cast<double>(bin) * phi_bin, stay.cycles, stay.grain_cycles, stay.events});
+std::map<std::int64_t, Exposure> exposures_of(const FigureRun& run, Region region, double width) {
+  const RunOnset onset = onset_by_size(run);
+  std::map<std::int64_t, Exposure> exposures;
+  if (onset.observed == Observed::before_start) return exposures;
+  for (std::size_t k = 1; k < run.checkpoints.size(); ++k) {
+    const CheckpointMeasures &from = run.checkpoints[k - 1], &to = run.checkpoints[k];
+    const bool here = onset.observed == Observed::yes && onset.cycle <= to.cycle;
+    const double cycles = (here ? onset.cycle : to.cycle) - from.cycle;
+    const double phi = from.measures.number(region == Region::core ? "core_phi" : "phi");
+    if (std::isfinite(phi) && cycles > 0) {
+      Exposure& one = exposures[std::llround(std::floor(phi / width))];
+      one.phi += (phi - one.phi) * cycles / (one.cycles + cycles);
+      one.cycles += cycles;
+      one.grain_cycles += cycles * from.measures.number(grains_of(region));
+      one.onsets += here ? 1 : 0;
+    }
+    if (here) break;
   }
   return exposures;
 }
 
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {
-  Stays sums;
+  std::map<std::int64_t, Exposure> sums;
   for (const FigureRun* run : runs) {
-    for (const auto& [bin, stay] : stays_of(*run, region)) {
-      sums[bin].grain_cycles += stay.grain_cycles;
-      sums[bin].events += stay.events;
+    for (const auto& [bin, one] : exposures_of(*run, region, phi_bin)) {
+      sums[bin].grain_cycles += one.grain_cycles;
+      sums[bin].onsets += one.onsets;
     }
   }
   std::vector<NucleationRate> rates;
   for (const auto& [bin, sum] : sums) {
     if (!(sum.grain_cycles > 0)) continue;
-    const Interval events = poisson_interval(sum.events);
+    const Interval events = poisson_interval(sum.onsets);
     const auto number = static_cast<double>(bin);
     rates.push_back({number * phi_bin,
                      (number + 1) * phi_bin,
-                     sum.events,
+                     sum.onsets,
                      sum.grain_cycles,
-                     static_cast<double>(sum.events) / sum.grain_cycles,
+                     static_cast<double>(sum.onsets) / sum.grain_cycles,
                      {events.low / sum.grain_cycles, events.high / sum.grain_cycles}});
   }
   return rates;
 }
 
 std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
-  Strata strata;
-  std::size_t counted = 0;
+  Shares amplitudes;
   std::set<std::string> packings;
+  std::size_t counted = 0;
   for (const FigureRun* run : runs) {
-    const Stays stays = stays_of(*run, region);
-    if (stays.empty()) continue;
+    const auto exposures = exposures_of(*run, region, rate_step);
+    if (exposures.empty()) continue;
     ++counted;
     packings.insert(packing_of(*run));
-    for (const auto& [bin, stay] : stays) {
-      if (!(stay.grain_cycles > 0)) continue;
-      strata[{number_of(*run, "amplitude_rad"), bin}].push_back(
-          {number_of(*run, "grains"), &packing_of(*run), stay.cycles,
-           std::log(stay.grain_cycles / stay.cycles), stay.events > 0});
+    for (const auto& [step, one] : exposures) {
+      if (!(one.grain_cycles > 0)) continue;
+      const double u = (one.phi - published_onset_phi) / phi_bin;
+      amplitudes[number_of(*run, "amplitude_rad")].push_back(
+          {number_of(*run, "grains"),
+           &packing_of(*run),
+           one.phi,
+           std::log(one.cycles),
+           std::log(one.grain_cycles / one.cycles),
+           static_cast<double>(one.onsets),
+           {1, u, u * u}});
     }
   }
   constexpr double widest = 30;  // n^30 is still a number
-  const bool bounded = is_bounded(strata) && likelihood(strata, -widest).score > 1e-9 &&
-                       likelihood(strata, widest).score < -1e-9;
+  const bool bounded = is_bounded(amplitudes) && likelihood(amplitudes, -widest).score > 1e-9 &&
+                       likelihood(amplitudes, widest).score < -1e-9;
   if (packings.size() < least_runs || !bounded) return std::nullopt;
   const double value = bisected(
-      -widest, widest, [&](double exponent) { return likelihood(strata, exponent).score < 0; });
-  const Likelihood best = likelihood(strata, value);
+      -widest, widest, [&](double exponent) { return likelihood(amplitudes, exponent).score < 0; });
+  const Likelihood best = likelihood(amplitudes, value);
   const boost::math::chi_squared one_parameter(1);
   const double shared = packings.size() < counted ? variance_between_packings(best) : 1;
   const double least =
       best.logarithm - shared * boost::math::quantile(one_parameter, confidence_level) / 2;
   const auto unlikely = [&](double exponent) {
-    return likelihood(strata, exponent).logarithm < least;
+    return likelihood(amplitudes, exponent).logarithm < least;
   };
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Interval interval = {

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,24 +63,28 @@ struct NucleationRate {
 /// begin with a critical crystallite do not count.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
-/// The time that one run spends in a bin of phi before its onset.
+/// What one run adds to a rate while phi is in a range, before its onset.
 struct Exposure {
-  double phi_low = 0;
+  double phi = 0;  ///< mean over the cycles
   double cycles = 0;
   double grain_cycles = 0;  ///< grains of the region times cycles
   std::size_t onsets = 0;   ///< 0 or 1
 };
-std::vector<Exposure> exposures_of(const FigureRun& run, Region region);
+/// In ranges from whole multiples of `width` on, by that multiple.
+std::map<std::int64_t, Exposure> exposures_of(const FigureRun& run, Region region, double width);
+
+/// Ranges of phi in which size_exponent() takes the rate as constant.
+inline constexpr double rate_step = 0.0005;
 
 /// The exponent a of rate = c(amplitude, phi) n^a, n the grains of the region, by maximum
-/// likelihood: onsets are a Poisson process with a constant c in each bin of phi at each amplitude.
+/// likelihood: onsets are a Poisson process, and ln c is a parabola in phi for each amplitude.
 /// Interval of the profile likelihood, since a run has one event at most (D. R. Cox and D. Oakes,
-/// Analysis of Survival Data, 1984). If runs share a packing, the drop of the logarithm that it
-/// allows is multiplied by the ratio of the variance of the score between packings to that between
-/// independent runs, where that is larger than 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21,
-/// 129 (2011)). None if no bin with an event has runs of two sizes (numbers of grains N), if all
-/// events are in the largest or the smallest cells that they could be in, or for fewer than
-/// least_runs packings.
+/// Analysis of Survival Data, 1984). If runs share a packing, the drop of the logarithm that the
+/// interval allows is multiplied by the ratio of the variance of the score between packings to that
+/// between independent runs, where that is larger than 1 (L. Pace, A. Salvan, N. Sartori, Stat.
+/// Sinica 21, 129 (2011)). None unless an event could have been in a larger cell (by the number of
+/// grains N) at about that phi, and an event in a smaller one; none for fewer than least_runs
+/// packings.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region);
 
 }  // namespace shearcell

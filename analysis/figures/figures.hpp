@@ -3,6 +3,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "analysis/figure.hpp"
 
@@ -25,5 +27,21 @@ MakeFigure figure_nucleation, figure_nucleation_core;
 
 // The probability that a crystallite grows, from clones of its state.
 MakeFigure figure_committor;
+
+/// One figure of one experiment. `summary`, which has no function Figure::make, is made of such
+/// parts.
+struct FigurePart {
+  std::string experiment;
+  std::string figure;
+  FigureResult result;
+};
+
+/// The figures that `summary` uses, in its order.
+const std::vector<std::string>& summary_parts();
+
+/// Onset against amplitude and size, critical size against n_bin, and percentage crystalline
+/// against phi, each from the tables of all parts that have it, and the largest differences that
+/// their verdicts found. `parts` may be any of summary_parts().
+FigureResult figure_summary(std::span<const FigurePart> parts);
 
 }  // namespace shearcell

@@ -131,17 +131,17 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all, region);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  Verdict verdict = decide(
-      {claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
-      excess ? excess->runs : all.size(),
-      excess ? fmt::format("maximum likelihood in bins of phi; walls would give {:.2f}", walls - 1)
-             : "three runs, and runs of two sizes with onsets at the same phi, are needed");
+  Verdict verdict =
+      decide({claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
+             excess ? excess->runs : all.size(),
+             excess ? fmt::format("maximum likelihood; walls would give {:.2f}", walls - 1)
+                    : "three runs, and runs of two sizes with onsets at the same phi, are needed");
   verdict.entered =
-      entered_with({"amplitude_rad", "grains", "phi_low", "cycles", "grain_cycles", "onsets"});
+      entered_with({"amplitude_rad", "grains", "phi", "cycles", "grain_cycles", "onsets"});
   for (const FigureRun* run : all) {
-    for (const Exposure& one : exposures_of(*run, region)) {
+    for (const auto& [step, one] : exposures_of(*run, region, rate_step)) {
       enter(*run,
-            {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi_low, one.cycles,
+            {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi, one.cycles,
              one.grain_cycles, one.onsets},
             verdict.entered);
     }

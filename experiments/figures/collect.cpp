@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/figures/figures.hpp"
 #include "core/named.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/shipped.hpp"
@@ -301,9 +302,15 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   // Beside figures of the supplement; with experiments of a user's own only by name.
   const bool lists_any = std::ranges::any_of(
       manifests, [](const RegisteredManifest& manifest) { return !manifest.figures.empty(); });
+  // The summary of one experiment would say what its figures say.
+  std::set<std::string> with_parts;
+  for (const WantedFigure& one : wanted.figures) {
+    if (std::ranges::count(summary_parts(), one.figure.name) > 0) with_parts.insert(one.experiment);
+  }
+  const bool has_parts = with_parts.size() > 1;
   for (const Figure& figure : all_figures()) {
     if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
-    if (names.empty() && !lists_any) continue;
+    if (names.empty() && !(figure.make ? lists_any : has_parts)) continue;
     if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
   }
   for (const std::string& name : names) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/error.hpp"
+#include "analysis/figures/figures.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -162,10 +163,11 @@ std::string caption(const FigureSummary& summary, const std::map<std::string, st
   }
   // The title of an own plot says what its axes say.
   const std::string title = find_figure(summary.name) == nullptr ? "" : ". " + summary.title;
-  std::string text =
-      fmt::format("{} Runs: {}. Experiment {}, scale {}.",
-                  caption_of(fmt::format("Figure {}{}", summary.name, title), tables),
-                  fmt::join(counts, "; "), summary.experiment, scale_name(summary.scale));
+  std::string text = fmt::format(
+      "{} Runs: {}. {}cale {}.",
+      caption_of(fmt::format("Figure {}{}", summary.name, title), tables), fmt::join(counts, "; "),
+      summary.experiment.empty() ? "S" : "Experiment " + summary.experiment + ", s",
+      scale_name(summary.scale));
   if (!selected.variants.empty()) {
     text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
   }
@@ -213,11 +215,70 @@ void mark_primary(const Store& store, const FigureSummary& summary,
   }
 }
 
+void add_new(const std::vector<std::string>& from, std::vector<std::string>& to) {
+  for (const std::string& line : from) {
+    if (std::ranges::count(to, line) == 0) to.push_back(line);
+  }
+}
+
+/// The figure that is made of others, which the manifests of the store list: those that have runs
+/// at its scale and can be made.
+ComputedFigure compute_summary(const Store& store, const WantedFigure& wanted,
+                               const FigureOptions& options) {
+  ComputedFigure computed;
+  FigureSummary& summary = computed.summary;
+  CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
+  summary.name = wanted.figure.name;
+  summary.title = wanted.figure.title;
+  summary.scale = collected.scale;
+  summary.notes = std::move(collected.notes);
+  FigureOptions of_part = options;
+  of_part.runs.scales = {scale_name(collected.scale)};
+  const std::vector<std::string>& experiments = options.runs.experiments;
+  std::vector<std::string> names = summary_parts();
+  std::erase_if(names, [](const std::string& name) { return find_figure(name) == nullptr; });
+  std::vector<FigurePart> parts;
+  std::set<nlohmann::json> inputs;
+  std::set<std::pair<std::string, std::string>> runs;  // of each experiment
+  for (const WantedFigure& part : wanted_figures(store, names).figures) {
+    if (!experiments.empty() && std::ranges::count(experiments, part.experiment) == 0) continue;
+    try {
+      ComputedFigure one = compute_figure(store, part, of_part);
+      for (const nlohmann::json& input : one.lineage.at("inputs")) {
+        inputs.insert(input);
+        if (runs.emplace(part.experiment, input.at("run")).second) {
+          ++computed.runs_by_variant[part.experiment];
+        }
+      }
+      summary.checkpoints += one.summary.checkpoints;
+      summary.measured += one.summary.measured;
+      summary.cached += one.summary.cached;
+      add_new(one.summary.damage, summary.damage);
+      add_new(one.summary.pruned, summary.pruned);
+      parts.push_back({part.experiment, part.figure.name, std::move(one.result)});
+    } catch (const NotFound&) {
+      continue;  // no run at this scale
+    } catch (const UsageError& problem) {
+      summary.notes.push_back(fmt::format("left out: {}: {}", part.path(), problem.what()));
+    }
+  }
+  summary.runs = runs.size();
+  computed.result = figure_summary(parts);
+  summary.verdicts = computed.result.verdicts;
+  computed.lineage = {{"figure", summary.name},
+                      {"scale", summary.scale},
+                      {"analysis_version", analysis_version},
+                      {"inputs", inputs},
+                      {"outputs", nlohmann::json::object()}};
+  return computed;
+}
+
 }  // namespace
 
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options) {
   const Figure& figure = wanted.figure;
+  if (!figure.make) return compute_summary(store, wanted, options);
   ComputedFigure computed;
   FigureSummary& summary = computed.summary;
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);

@@ -20,6 +20,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
+#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plot.hpp"
 #include "provenance/io/child_process.hpp"
@@ -227,6 +228,75 @@ TEST(FigureC, APublishedSizeThatFewRunsMayGiveIsNotContradicted) {
                 found.note.c_str());
     EXPECT_EQ(found.ruling == Ruling::differs, critical == 4);
     EXPECT_FALSE(may_be && found.ruling == Ruling::differs);
+  }
+}
+
+TEST(FigureSummary, IsMadeOfTheTablesOfOtherFigures) {
+  std::vector<FigureRun> onsets;
+  for (const double amplitude : {0.05, 0.1}) {
+    onsets.push_back(made_up_run("amplitude_rad", amplitude, 1, 40, [](int n, Measures& m) {
+      m.numbers["phi"] = 0.64 + 0.0005 * n;
+      m.numbers["largest_crystallite"] = n < 10 ? 2 : 30;
+    }));
+  }
+  const std::vector<FigurePart> parts = {{"onset", "S5a", find_figure("S5a")->make(onsets)},
+                                         {"drag", "S2", find_figure("S2")->make(two_variants())},
+                                         {"also", "S2", find_figure("S2")->make(two_variants())}};
+  const FigureResult made = figure_summary(parts);
+  ASSERT_EQ(made.tables.size(), 2U);
+  const FigureTable &by_amplitude = panel(made, "summary_a"), &by_phi = panel(made, "summary_d");
+  EXPECT_EQ(by_amplitude.columns.at(0), "experiment");
+  EXPECT_EQ(by_amplitude.columns.at(3), "amplitude_rad");
+  EXPECT_EQ(points_of(by_amplitude, by_amplitude.chart.series.at(1)).size(), 2U);
+  ASSERT_EQ(by_phi.chart.series.size(), 4U) << "two variants of two experiments";
+  EXPECT_EQ(plain_text(by_phi.chart.series.at(0).title), "drag");
+  EXPECT_TRUE(by_phi.chart.series.at(1).title.empty());
+  EXPECT_EQ(by_phi.chart.series.at(3).colour, by_phi.chart.series.at(0).colour);
+  EXPECT_FALSE(points_of(by_phi, by_phi.chart.series.at(3)).empty());
+  EXPECT_NE(by_phi.chart.note.find("no runs for onset against size (S5b), critical size"),
+            std::string::npos)
+      << by_phi.chart.note;
+  EXPECT_TRUE(figure_summary({}).tables.empty());
+}
+
+/// A verdict on the difference of two groups in the percentage crystalline.
+Verdict difference_in_percentage(const Estimate& estimate) {
+  return decide({"claim", 2},
+                "difference in percentage crystalline, mean over phi from 0.646 to 0.67", estimate,
+                estimate.runs, "");
+}
+
+TEST(FigureSummary, TheLargestDifferenceCountsThatItWasChosen) {
+  const Verdict small = difference_in_percentage({.value = 1, .interval = {0, 2}, .runs = 5}),
+                large = difference_in_percentage({.value = -3, .interval = {-4, -2}, .runs = 5});
+  const std::vector<FigurePart> parts = {{"drag", "S2", {{}, {small}}},
+                                         {"walls", "S6", {{}, {large}}}};
+  const Verdict found = figure_summary(parts).verdicts.at(0);
+  EXPECT_EQ(found.estimate, 3);
+  const double half = student_quantile(0.975, 4) / student_quantile(0.95, 4);
+  EXPECT_NEAR(found.interval.low, 3 - half, 1e-12);
+  EXPECT_NEAR(found.interval.high, 3 + half, 1e-12);
+  EXPECT_EQ(found.ruling, Ruling::undecided);
+  EXPECT_EQ(found.entered.rows.size(), 2U);
+  EXPECT_FALSE(figure_summary(parts).verdicts.at(1).estimate) << "no onsets";
+}
+
+TEST(FigureSummary, TheIntervalOfTheLargestDifferenceCoversIt) {
+  constexpr std::uint32_t samples = 300, comparisons = 8;
+  for (const double truth : {0.0, 1.0}) {
+    std::uint32_t covered = 0;
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      FigurePart part{"drag", "S2", {}};
+      for (std::uint32_t k = 0; k < comparisons; ++k) {
+        std::vector<double> values = normal_numbers(comparisons * s + k, 6);
+        for (double& value : values) value += k == 0 ? truth : 0;
+        part.result.verdicts.push_back(difference_in_percentage(mean_of(values).value()));
+      }
+      const Interval found = figure_summary({&part, 1}).verdicts.at(0).interval;
+      if (found.low <= truth && found.high >= truth) ++covered;
+    }
+    std::printf("largest of 8 differences, true %g: covered %u of %u\n", truth, covered, samples);
+    EXPECT_GE(covered, samples * 0.88);
   }
 }
 

@@ -203,32 +203,57 @@ TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
   EXPECT_GT(found->interval.high, found->value);
 }
 
-// phi rises to 0.648 over 40 cycles and the rate with it; the interval holds the true exponent.
-TEST(SizeExponent, IsRecoveredFromSimulatedRuns) {
-  for (const double exponent : {1.0, 2.0 / 3}) {
-    std::vector<FigureRun> runs;
-    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-      for (const int grains : {500, 1500, 4500}) {
-        const double chance = uniform_pair(
-            {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(grains), 0, 0}, 7)[0];
-        double hazard = 0;
-        int onset = 0;
-        const auto phi = [](int n) { return 0.6401 + 0.0002 * n; };
-        for (int n = 0; n < 60 && onset == 0; ++n) {
-          hazard += 2e-5 * std::exp((phi(n) - 0.644) / 0.002) * std::pow(grains, exponent);
-          if (hazard > -std::log(chance)) onset = n + 1;
-        }
-        runs.push_back(waiting(grains, seed, onset, 60));
-        for (CheckpointMeasures& c : runs.back().checkpoints) {
-          c.measures.numbers["phi"] = phi(static_cast<int>(c.cycle));
-        }
+/// Runs of three sizes in which phi rises by 0.0004 in a cycle and the rate by a factor e in
+/// `rise`, twice as fast below 0.646 as above it: ln c is not a parabola.
+std::vector<FigureRun> nucleating_runs(std::uint32_t sample, double exponent, double rise) {
+  std::vector<FigureRun> runs;
+  for (std::uint32_t seed = 1; seed <= 15; ++seed) {
+    for (const int grains : {500, 1500, 4500}) {
+      const double u = uniform_pair({sample, seed, static_cast<std::uint32_t>(grains), 0}, 7)[0];
+      const double first = 0.638 + 0.0002 * seed;
+      double hazard = 0;
+      int onset = 0;
+      const auto phi = [&](int n) { return first + 0.0004 * n; };
+      for (int n = 0; n < 50 && onset == 0; ++n) {
+        const double over = (phi(n) - 0.646) / rise;
+        hazard += 3e-5 * std::exp(over > 0 ? over / 2 : over) * 4500 *
+                  std::pow(grains / 4500.0, exponent);
+        if (hazard > -std::log(u)) onset = n + 1;
+      }
+      runs.push_back(waiting(grains, seed, onset, 50));
+      for (CheckpointMeasures& c : runs.back().checkpoints) {
+        c.measures.numbers["phi"] = phi(static_cast<int>(c.cycle));
       }
     }
-    const auto found = size_exponent(pointers(runs), Region::interior);
-    ASSERT_TRUE(found);
-    EXPECT_LT(found->interval.low, exponent);
-    EXPECT_GT(found->interval.high, exponent);
-    EXPECT_LT(found->interval.high - found->interval.low, 0.4);
+  }
+  return runs;
+}
+
+TEST(SizeExponent, IsRightWhereTheRateIsSteep) {
+  constexpr std::uint32_t samples = 100;
+  for (const double rise : {0.002, 0.0008}) {
+    for (const double exponent : {1.0, 2.0 / 3}) {
+      if (rise == 0.002 && exponent < 1) continue;
+      std::uint32_t covered = 0;
+      double error = 0, squares = 0;
+      for (std::uint32_t sample = 0; sample < samples; ++sample) {
+        const std::vector<FigureRun> runs = nucleating_runs(sample, exponent, rise);
+        const auto found = size_exponent(pointers(runs), Region::interior);
+        ASSERT_TRUE(found);
+        const double off = found->value - exponent;
+        error += off / samples;
+        squares += off * off / samples;
+        if (found->interval.low <= exponent && found->interval.high >= exponent) ++covered;
+      }
+      const double deviation = std::sqrt(squares - error * error);
+      std::printf(
+          "exponent %.3f, c rises by e in %g: covered %u of %u, mean error %.3f, standard "
+          "deviation %.3f\n",
+          exponent, rise, covered, samples, error, deviation);
+      EXPECT_GE(covered, samples * 0.82);
+      EXPECT_LE(covered, samples * 0.98);
+      EXPECT_LT(std::abs(error), 0.1) << "a constant c in bins of 0.002 gives -0.16";
+    }
   }
 }
 
