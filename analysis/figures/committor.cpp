@@ -196,8 +196,8 @@ std::string why_undefined(const Amplitude& one) {
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
-/// Clones of at least so many crystallites make a point of the drawing. [choice]
-constexpr std::size_t least_drawn = 12;
+/// At least so many clones that are grown or gone make a point of the drawing. [choice]
+constexpr std::size_t least_drawn = 8;
 
 FigureTable probability_table(std::span<const Amplitude> all) {
   FigureTable table{.name = "committor",
@@ -266,7 +266,7 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
                                 "supplement_grains"}};
   table.chart = {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
-      .y = {.name = "size that grows as often as not", .unit = "grains", .low = 0}};
+      .y = {.name = "size of which half grow", .unit = "grains", .low = 0, .high = 25}};
   for (const Amplitude& one : all) {
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});

@@ -10,7 +10,7 @@ grep -v '^#' "$2/published.txt" | while IFS='|' read -r folder manifest options 
     exit 1
   }
 done
-manifests=$(ls "$2"/../*.yaml | grep -v -e accuracy.yaml -e committor.yaml)
+manifests=$(ls "$2"/../*.yaml | grep -v accuracy.yaml)
 # shellcheck disable=SC2086
 "$1" plan $manifests --scale paper --store /nonexistent --json 2> /dev/null | python3 -c '
 import json, sys
