@@ -29,12 +29,12 @@ struct Compared {
   const char* figure;
   const char* what;
 };
-constexpr std::array<Compared, 6> compared = {{{"S2", "drag"},
-                                               {"S3", "time step"},
-                                               {"S4", "moving wall, load"},
-                                               {"B5", "pauses"},
-                                               {"walls", "walls"},
-                                               {"S6", "gravity, amplitude"}}};
+constexpr std::array<Compared, 6> compared_figures = {{{"S2", "drag"},
+                                                       {"S3", "time step"},
+                                                       {"S4", "moving wall, load"},
+                                                       {"B5", "pauses"},
+                                                       {"walls", "walls"},
+                                                       {"S6", "gravity, amplitude"}}};
 
 std::optional<std::size_t> column_of(const FigureTable& table, std::string_view name) {
   const auto found = std::ranges::find(table.columns, name);
@@ -130,21 +130,21 @@ FigureTable size_against_cycles(Parts parts) {
 FigureTable percentage_against_phi(Parts parts) {
   const auto is_compared = [](const FigurePart& part, const FigureTable& table) {
     const bool listed = std::ranges::any_of(
-        compared, [&](const Compared& one) { return part.figure == one.figure; });
+        compared_figures, [&](const Compared& one) { return part.figure == one.figure; });
     return listed && column_of(table, "phi_low") && column_of(table, "crystalline_mean_percent");
   };
   FigureTable table = stacked(parts, "summary_d", is_compared);
   table.chart = {.x = phi_axis(), .y = crystalline_axis()};
   std::set<std::pair<std::string, std::string>> known;  // figure and curve
-  for (std::size_t k = 0; k < compared.size(); ++k) {
+  for (std::size_t k = 0; k < compared_figures.size(); ++k) {
     bool titled = false;
     for (const FigurePart& part : parts) {
-      if (part.figure != compared[k].figure) continue;
+      if (part.figure != compared_figures[k].figure) continue;
       const FigureTable own = stacked(std::span(&part, 1), "", is_compared);
       for (const TableRow& row : own.rows) {
         const auto& curve = std::get<std::string>(row.at(1));
         if (!known.emplace(part.figure, curve).second) continue;
-        table.chart.series.push_back({.title = titled ? Text() : Text(compared[k].what),
+        table.chart.series.push_back({.title = titled ? Text() : Text(compared_figures[k].what),
                                       .colour = safe_colours[k],
                                       .point = 0,
                                       .join = Join::line,
@@ -213,7 +213,7 @@ Verdict largest_difference(Parts parts, const std::string& quantity, const Claim
 const std::vector<std::string>& summary_parts() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = {"S5a", "S5b", "C", "committor"};
-    for (const Compared& one : compared) all.emplace_back(one.figure);
+    for (const Compared& one : compared_figures) all.emplace_back(one.figure);
     return all;
   }();
   return names;
