@@ -266,6 +266,7 @@ ComputedFigure compute_summary(const Store& store, const WantedFigure& wanted,
   }
   summary.runs = runs.size();
   computed.result = figure_summary(parts);
+  mark_primary(store, summary, computed.result.verdicts);
   summary.verdicts = computed.result.verdicts;
   computed.lineage = {{"figure", summary.name},
                       {"scale", summary.scale},
