@@ -200,16 +200,18 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
-/// Sets Verdict::primary as the newest manifest states at the scale.
+/// Sets Verdict::primary as the newest manifest states at the scale, of a figure of all experiments
+/// as any of them does.
 void mark_primary(const Store& store, const FigureSummary& summary,
                   std::vector<Verdict>& verdicts) {
   for (const RegisteredManifest& registered : newest_manifests(store)) {
     const std::optional<Manifest> manifest = parsed(registered);
-    if (registered.experiment != summary.experiment || !manifest) continue;
+    if (!manifest) continue;
+    if (!summary.experiment.empty() && registered.experiment != summary.experiment) continue;
     for (const Scale& scale : scales_of(*manifest)) {
       if (scale.name != summary.scale) continue;
       for (Verdict& verdict : verdicts) {
-        verdict.primary = std::ranges::count(scale.primary, verdict.claim) > 0;
+        if (std::ranges::count(scale.primary, verdict.claim) > 0) verdict.primary = true;
       }
     }
   }
