@@ -16,6 +16,8 @@ namespace shearcell {
 inline constexpr std::int32_t least_descendant = 3;
 /// A crystallite with a descendant of so many grains has grown. [choice]
 inline constexpr std::int32_t grown_size = 60;
+/// Cycles without a descendant after which a crystallite is gone. [choice]
+inline constexpr std::size_t cycles_gone = 2;
 /// Sizes of the crystallites that are followed, in these bins: 3 and 4 grains, 5 to 7, 8 to 12, 13
 /// to 20. Of each state at most one of each bin is followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};

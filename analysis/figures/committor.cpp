@@ -23,10 +23,9 @@
 namespace shearcell {
 namespace {
 
-/// Cycles without a descendant after which a crystallite is gone. The others show how the result
-/// depends on this number. [choice]
-constexpr std::array<std::size_t, 3> cycles_without = {1, 2, 3};
-constexpr std::size_t chosen_rule = 1;  ///< its place in cycles_without
+/// The others show how the result depends on cycles_gone.
+constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
+constexpr std::size_t chosen_rule = 1;  ///< the place of cycles_gone
 /// Controls that grow more often than this, and as often as the smallest crystallites, leave no
 /// critical size. [choice]
 constexpr double rare = 0.1;
@@ -176,13 +175,6 @@ std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t 
   return all;
 }
 
-/// The size at which (p - q) / (1 - q) = 1/2: p = (1 + q) / 2, so delta_rho = 2 p - 1 = q.
-std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
-  const std::optional<double> q = background(one);
-  if (!q) return std::nullopt;
-  return GrowthCurve(by_packing_and_size(one, rule), *q).critical_size();
-}
-
 /// Why no critical size is defined; "" if one is.
 std::string why_undefined(const Amplitude& one) {
   const std::optional<double> q = background(one);
@@ -194,6 +186,13 @@ std::string why_undefined(const Amplitude& one) {
       "no critical size is defined: {:.2g} of the clones of states without crystallites have one "
       "of {} grains in time, and no more, {:.2g}, of the crystallites of {} and {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
+}
+
+/// The size at which (p - q) / (1 - q) = 1/2: p = (1 + q) / 2, so delta_rho = 2 p - 1 = q. None if
+/// no critical size is defined.
+std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
+  if (!why_undefined(one).empty()) return std::nullopt;
+  return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
 /// At least so many clones that are grown or gone make a point of the drawing. [choice]
@@ -323,27 +322,28 @@ Entered fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   return entered;
 }
 
-Verdict size_is_published(const Amplitude& one) {
+std::string note_on(const Amplitude& one, const std::optional<Estimate>& size) {
   const std::string why = why_undefined(one);
-  std::optional<Estimate> size;
-  if (why.empty()) size = half_size(one, chosen_rule);
+  return size           ? fmt::format("{:.3g} grains at A = {} rad", size->value, one.amplitude)
+         : !why.empty() ? why
+                        : "too few packings, or no size of which half grow";
+}
+
+Verdict size_is_published(const Amplitude& one) {
+  std::optional<Estimate> size = half_size(one, chosen_rule);
   const std::size_t packings = by_packing_and_size(one, chosen_rule).size();
-  std::string note = fmt::format(
-      "{} and {} in {}; {} left out, which begin with {} grains",
+  const std::string note = fmt::format(
+      "{} and {} in {}; {} left out, which begin with {} grains; {}",
       counted(one.crystallites.size(), "crystallite"), counted(one.controls.size(), "control"),
-      counted(packings, "packing"), counted(one.left_out, "state"), grown_size);
-  note += size           ? fmt::format("; {:.3g} grains", size->value)
-          : !why.empty() ? "; " + why
-                         : "; too few packings, or no size grows as often as not";
+      counted(packings, "packing"), counted(one.left_out, "state"), grown_size, note_on(one, size));
   if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
   if (size) size->spread /= one.published;
-  Verdict verdict =
-      decide({fmt::format("C: at A = {} rad a crystallite of {} grains grows as often as not",
-                          one.amplitude, one.published),
-              margin_critical_size},
-             fmt::format("size that grows as often as not, relative difference from {} grains",
-                         one.published),
-             size, packings, note);
+  Verdict verdict = decide(
+      {fmt::format("C: at A = {} rad half of the crystallites of {} grains grow", one.amplitude,
+                   one.published),
+       margin_critical_size},
+      fmt::format("size of which half grow, relative difference from {} grains", one.published),
+      size, packings, note);
   verdict.entered = fates_of({&one});
   return verdict;
 }
@@ -351,25 +351,15 @@ Verdict size_is_published(const Amplitude& one) {
 /// The supplement's size grows from the one amplitude to the other. Their clones are taken as
 /// independent, since states of one packing at two amplitudes have nothing else in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
+  const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;
-  std::string note;
-  for (const Amplitude* one : {&low, &high}) {
-    if (note.empty()) note = why_undefined(*one);
-  }
-  if (note.empty()) {
-    const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
-    if (before && after) {
-      growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
-    } else {
-      note = "no size grows as often as not";
-    }
-  }
+  if (before && after) growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
   Verdict verdict =
       decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
                                   high.amplitude, low.amplitude),
               .claimed = Claimed::above},
-             "ratio of the sizes that grow as often as not, less 1", growth,
-             growth ? growth->runs : 0, note);
+             "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
+             note_on(low, before) + "; " + note_on(high, after));
   verdict.counted = Counted::runs_per_variant;
   verdict.entered = fates_of({&low, &high});
   return verdict;

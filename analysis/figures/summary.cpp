@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "analysis/claims.hpp"
+#include "analysis/committor.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/published.hpp"
@@ -107,19 +108,19 @@ FigureTable size_against_cycles(Parts parts) {
     for (const FigureTable& sizes : part.result.tables) {
       if (sizes.name != "committor_sizes") continue;
       const auto amplitude = column_of(sizes, "amplitude_rad");
+      const auto rule = column_of(sizes, "cycles_without");
       const auto size = column_of(sizes, "half_size_grains");
-      std::set<double> known;
       for (const TableRow& row : sizes.rows) {
         const auto* at = size ? std::get_if<double>(&row.at(*size)) : nullptr;
         const auto* of = amplitude ? std::get_if<double>(&row.at(*amplitude)) : nullptr;
-        if (at == nullptr || of == nullptr || !known.insert(*of).second) continue;
+        if (at == nullptr || of == nullptr || row.at(*rule) != TableValue(cycles_gone)) continue;
         const auto drawn = std::ranges::find_if(table.chart.series, [&](const Series& series) {
           return series.filter.value == TableValue(*of);
         });
         const bool has_colour = drawn != table.chart.series.end();
         table.chart.lines.push_back({.at = *at,
                                      .colour = has_colour ? drawn->colour : "#888888",
-                                     .title = "sizes that grow as often as not (committor)"});
+                                     .title = "sizes of which half grow (committor)"});
       }
     }
   }

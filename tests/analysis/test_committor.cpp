@@ -237,7 +237,10 @@ TEST(CommittorFigure, SaysThatNoSizeIsDefinedWhereTheControlsGrowAsOften) {
   Clones clones(0.1);
   add_states(clones, [](auto size) { return size < 5 ? 0.3 : 0.7; });
   add_controls(clones, 0.45);
-  const Verdict verdict = figure_of(clones.runs()).verdicts.at(0);
+  const FigureResult figure = figure_of(clones.runs());
+  EXPECT_TRUE(std::isnan(number_at(figure, 0.1, 2, "half_size_grains")));
+  EXPECT_GT(number_at(figure, 0.1, 2, "not_corrected_grains"), 3);
+  const Verdict& verdict = figure.verdicts.at(0);
   EXPECT_FALSE(verdict.estimate);
   EXPECT_NE(verdict.note.find("no critical size is defined"), std::string::npos) << verdict.note;
 }
