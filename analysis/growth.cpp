@@ -104,12 +104,12 @@ GrowthCount& GrowthCount::operator+=(const GrowthCount& other) {
 }
 
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts) {
-  struct Fate {
+  struct Outcome {
     std::int32_t larger = 0;
     std::int32_t same = 0;
     std::int32_t smaller = 0;
   };
-  std::vector<Fate> fates(now.size.size());
+  std::vector<Outcome> fates(now.size.size());
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by both labels
   std::size_t l = 0;  // both lists of grains ascend
   for (std::size_t k = 0; k < now.grain.size(); ++k) {
