@@ -168,7 +168,12 @@ std::filesystem::path write_csv(const FigureTable& table, const std::filesystem:
 
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {
   const SeriesColumns& from = series.columns;
-  if (from.x.empty()) return series.points;
+  if (from.x.empty()) {
+    std::vector<ChartPoint> points = series.points;
+    std::erase_if(points,
+                  [](const ChartPoint& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
+    return points;
+  }
   const auto number = [&](const std::string& name) {
     return name.empty() ? 0 : column_number(table, name);
   };

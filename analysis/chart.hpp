@@ -164,7 +164,7 @@ std::string to_csv(const FigureTable& table);
 /// Writes FOLDER/NAME.csv and returns its path. Throws std::runtime_error when it cannot.
 std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
 
-/// The points of one series, without its shift. Rows in which x or y is not a finite number are
+/// The points of one series, without its shift. Points of which x or y is not a finite number are
 /// left out.
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
 

@@ -572,7 +572,7 @@ std::vector<CheckpointRecord> Store::prune_leftovers() const {
   return found;
 }
 
-std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
+std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool last_too) {
   must_write();
   const std::scoped_lock guard(mutex_);
   {
@@ -583,7 +583,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records) {
       const auto run = query_stage(database_, record.run);
       const bool last = run && now && now->step >= run->step;
       if (!now || !run || now->state != CheckpointState::recorded) continue;
-      if (last && run->state != StageState::completed) continue;
+      if (last && !(last_too && run->state == StageState::completed)) continue;
       append(run_stream(record.run), encode(events::CheckpointPruned{{*now}}), lock);
     }
     lock.commit();

@@ -184,14 +184,14 @@ class Store {
   /// head is damaged. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
-  /// The checkpoints that `prune` would free: never the newest checkpoint of a run, the newest that
-  /// can be read, or the initial state of another stage.
+  /// The checkpoints that `prune` would free: without PruneChoice::last_too never the newest
+  /// checkpoint of a run, the newest that can be read, or the initial state of another stage.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files a crash left behind.
   std::vector<CheckpointRecord> prune_leftovers() const;
   /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that may no
   /// longer be pruned. Returns the number of bytes freed.
-  std::uint64_t prune(const std::vector<CheckpointRecord>& records);
+  std::uint64_t prune(const std::vector<CheckpointRecord>& records, bool last_too = false);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
   /// Appends ReplayVerified or ReplayDiverged.

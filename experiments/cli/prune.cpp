@@ -130,7 +130,7 @@ void prune(const PruneOptions& options, Context& context) {
     }
   }
   const std::vector<CheckpointRecord> all = with_leftovers();
-  const std::uint64_t freed = go ? store.prune(all) : 0;
+  const std::uint64_t freed = go ? store.prune(all, options.choice.last_too) : 0;
   if (context.json) {
     const auto checkpoint = [](const CheckpointRecord& record) -> nlohmann::json {
       return {{"run", record.run},

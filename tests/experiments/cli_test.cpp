@@ -152,7 +152,7 @@ TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
   };
   for (const Expected& expected : {Expected{"smoke", 4, 6, 4.0 * 600 * 5 * 45600},
                                    Expected{"desk", 12, 18, 12.0 * 5200 * 120 * 45600},
-                                   Expected{"paper", 12, 18, 12.0 * 7900 * 150 * 45600}}) {
+                                   Expected{"paper", 20, 30, 20.0 * 5200 * 120 * 45600}}) {
     const nlohmann::json plan = json({"plan", kDrag, "--scale", expected.scale, "--json"});
     EXPECT_EQ(plan.at("runs"), expected.runs);
     EXPECT_EQ(plan.at("stages").size(), static_cast<std::size_t>(expected.stages));
