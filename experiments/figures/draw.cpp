@@ -140,9 +140,12 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
 bool has_no_value(const FigureTable& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
+  // Points that are stated beside columns are published ones.
+  const auto has_columns = [](const Series& one) { return one.thin || !one.columns.x.empty(); };
+  const bool all_stated = std::ranges::none_of(table.chart.series, has_columns);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
-    const bool of_runs = series.thin || !series.columns.x.empty();
-    return !of_runs || std::ranges::none_of(points_of(table, series), is_drawn);
+    return !(all_stated || has_columns(series)) ||
+           std::ranges::none_of(points_of(table, series), is_drawn);
   });
 }
 

@@ -726,7 +726,8 @@ struct Reader {
       read(item, {.longest = about.longest}, name);
       if (name.empty()) continue;
       if (std::ranges::find(names, name) != names.end()) {
-        reject_value(item, format("names a {} twice", about.name == "primary" ? "claim" : "figure"),
+        reject_value(item,
+                     fmt::format("names a {} twice", about.name == "primary" ? "claim" : "figure"),
                      "Keep one of them.");
       } else if (about.name != "primary" && find_figure(name) == nullptr) {
         reject_value(item, with_nearest("names an unknown figure", name, names_of(all_figures())),

@@ -13,6 +13,10 @@ case "${1:-} ${2:-}" in
   "pack "?*)
     "$program" merge "${SHEARCELL_STORE:-shearcell-store}" --store "$work/store"
     "$program" prune --last-too --yes --store "$work/store"
+    if [ -n "$(find "$work/store/objects" -type f)" ]; then
+      echo "runs are unfinished, so their files are needed: finish them with \`shearcell resume\`" >&2
+      exit 1
+    fi
     # Without what the published figures do not draw: curves, stresses, motion.
     python3 - "$work/store/derived.sqlite" << 'END'
 import sqlite3

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Every line of published.txt must name a manifest, a scale and variants that exist, and the campaign must cost at most a
 # night on two cores, 1.5e13 particle-steps:
-#   sh published.sh PROGRAM RESULTS_FOLDER
+#   sh published.sh PROGRAM RESULTS_FOLDER      # absolute paths
 set -eu
+cd "$2/../.."
 grep -v '^#' "$2/published.txt" | while IFS='|' read -r folder manifest options of_run _; do
   # shellcheck disable=SC2086,SC2116,SC2046  # one word an option
   "$1" plan "$2/../"$(echo $manifest) $options $of_run --store /nonexistent > /dev/null || {
