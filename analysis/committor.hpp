@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What becomes of a crystallite in a clone of its state: it grows, it is gone, or it is swallowed.
+// The fates of a crystallite in the clones of a recorded state: grown, gone or merged.
 #pragma once
 
 #include <cstddef>

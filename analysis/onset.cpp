@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "analysis/published.hpp"
@@ -34,27 +35,18 @@ struct Slope {
   double cycle;
 };
 std::optional<Slope> slope_at(std::span<const Point> points, double phi) {
-  constexpr double least_points = 4;
-  double n = 0, x = 0, y = 0, cycle = 0;
-  double low = phi, high = phi;
-  const auto within = [&](const Point& p) { return std::abs(p.phi - phi) <= slope_window / 2; };
+  constexpr std::size_t least_points = 4;
+  std::vector<std::pair<double, double>> within;
+  double cycle = 0, low = phi, high = phi;
   for (const Point& p : points) {
-    if (!within(p)) continue;
-    ++n;
-    x += p.phi;
-    y += p.log_size;
+    if (std::abs(p.phi - phi) > slope_window / 2) continue;
+    within.emplace_back(p.phi, p.log_size);
     cycle += p.cycle;
     low = std::min(low, p.phi);
     high = std::max(high, p.phi);
   }
-  if (n < least_points || high - low < slope_window / 2) return std::nullopt;
-  double xx = 0, xy = 0;
-  for (const Point& p : points) {
-    if (!within(p)) continue;
-    xx += (p.phi - x / n) * (p.phi - x / n);
-    xy += (p.phi - x / n) * (p.log_size - y / n);
-  }
-  return Slope{xy / xx, cycle / n};
+  if (within.size() < least_points || high - low < slope_window / 2) return std::nullopt;
+  return Slope{least_squares_slope(within), cycle / static_cast<double>(within.size())};
 }
 
 }  // namespace

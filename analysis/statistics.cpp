@@ -119,6 +119,20 @@ RunStatistics rms_over_runs(std::span<const double> values) {
   return result;
 }
 
+double least_squares_slope(std::span<const std::pair<double, double>> points) {
+  const auto n = static_cast<double>(points.size());
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (const auto& [at, value] : points) {
+    x += at;
+    y += value;
+  }
+  for (const auto& [at, value] : points) {
+    xx += (at - x / n) * (at - x / n);
+    xy += (at - x / n) * (value - y / n);
+  }
+  return xy / xx;
+}
+
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
   if (runs < 2) return std::nullopt;
   const RunStatistics found = over_runs(bootstrap_values(runs, runs, statistic));

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace shearcell {
@@ -22,6 +23,9 @@ RunStatistics over_runs(std::span<const double> values);
 
 /// The root mean square, as `mean`, with the error of the mean square over twice the root.
 RunStatistics rms_over_runs(std::span<const double> values);
+
+/// Slope of the straight line of y against x, by least squares; not a number if all x are equal.
+double least_squares_slope(std::span<const std::pair<double, double>> points);
 
 /// A number computed from a selection of runs, in which a run may occur several times. The
 /// bootstrap takes 1000 selections, drawn with replacement by a counter-based generator, so the

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
@@ -55,13 +57,20 @@ std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
   return GrowthCurve(runs).critical_size();
 }
 
+/// What crystallites that are followed over so many cycles give.
+struct SizeAfter {
+  std::size_t packings = 0;
+  std::optional<Estimate> critical = {};
+};
+
 struct AmplitudeGrowth {
   CurveStyle style;
   double amplitude;
   const PublishedAmplitude* published;
   std::vector<const FigureRun*> all_runs;
-  std::vector<GrowthBySize> runs;     ///< followed over n_bin cycles
-  std::optional<double> onset_cycle;  ///< median over runs
+  std::map<std::int64_t, SizeAfter> after;  ///< by cycles_to_follow()
+  std::vector<GrowthBySize> runs;           ///< followed over n_bin cycles
+  std::optional<double> onset_cycle;        ///< median over runs
   GrowthCurve curve;
   std::optional<Estimate> critical;
   std::optional<Estimate> without_absorbed;
@@ -76,7 +85,13 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const PublishedAmplitude& published = published_nearest(amplitude);
-    const std::vector<GrowthBySize> counts = followed(members, published.n_bin);
+    std::map<std::int64_t, SizeAfter> after;
+    std::vector<GrowthBySize> counts;
+    for (const std::int64_t cycles : cycles_to_follow()) {
+      std::vector<GrowthBySize> packings = followed(members, cycles);
+      after[cycles] = {packings.size(), GrowthCurve(packings).critical_size()};
+      if (cycles == published.n_bin) counts = std::move(packings);
+    }
     const GrowthCurve curve(counts);
     const std::size_t k = all.size();
     all.push_back({.style = {{{"amplitude_rad", amplitude}},
@@ -86,21 +101,16 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
                    .amplitude = amplitude,
                    .published = &published,
                    .all_runs = members,
+                   .after = after,
                    .runs = counts,
                    .onset_cycle = median_wait(waits_for_onset(members)),
                    .curve = curve,
-                   .critical = curve.critical_size(),
+                   .critical = after.at(published.n_bin).critical,
                    .without_absorbed = critical_size_without(&GrowthCount::absorbed, counts),
                    .without_vanished = critical_size_without(&GrowthCount::vanished, counts),
                    .repeated = curve.repeated_critical_size(published_runs)});
   }
   return all;
-}
-
-ReferenceLine critical_line(const AmplitudeGrowth& one) {
-  return {.at = one.published->critical_size,
-          .colour = one.style.colour,
-          .title = "the supplement's critical sizes"};
 }
 
 /// Points of fewer crystallites are not drawn. [choice]
@@ -138,7 +148,8 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
     for (const GrowthRate& bin : growth_rates(one.runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
-    ReferenceLine& line = chart.lines.emplace_back(critical_line(one));
+    ReferenceLine& line =
+        chart.lines.emplace_back(critical_line(one.published->critical_size, one.style.colour));
     line.vertical = line.stub = true;
   }
   return chart;
@@ -166,23 +177,6 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
   }
   table.chart = chart_of(all);
   return table;
-}
-
-/// Columns of a size, its interval and its standard error.
-void add_size_columns(const std::string& name, std::vector<std::string>& columns) {
-  for (const char* ending : {"", "_low", "_high", "_standard_error"}) {
-    columns.push_back(name + ending + "_grains");
-  }
-}
-
-/// The values of those columns; empty without an estimate.
-void add_size(const std::optional<Estimate>& size, TableRow& row) {
-  if (!size) {
-    row.resize(row.size() + 4);
-    return;
-  }
-  row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
-                         size->spread / std::sqrt(static_cast<double>(size->runs))});
 }
 
 FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
@@ -230,14 +224,13 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
                  .y = {.name = "critical size", .unit = "grains", .log = true},
                  .note = "large open symbols are the supplement's"};
   for (const AmplitudeGrowth& one : all) {
-    for (const std::int64_t cycles : cycles_to_follow()) {
-      const std::vector<GrowthBySize> runs = followed(one.all_runs, cycles);
+    for (const auto& [cycles, after] : one.after) {
       const bool is_published = cycles == one.published->n_bin;
-      if (runs.empty() && !is_published) continue;
+      if (after.packings == 0 && !is_published) continue;
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles});
-      add_size(GrowthCurve(runs).critical_size(), row);
+      add_size(after.critical, row);
       row.emplace_back(is_published ? TableValue(one.published->critical_size) : TableValue());
-      row.emplace_back(runs.size());
+      row.emplace_back(after.packings);
     }
     const RowFilter rows = {"amplitude_rad", one.amplitude};
     table.chart.series.push_back({.title = one.style.title,
@@ -265,7 +258,9 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
   const MeasureColumn largest{"largest_crystallite", "grains", "largest_crystallite", 1};
   FigureTable table = against_phi("C_largest", curves_of(runs, styles), largest,
                                   {.name = "largest crystallite", .unit = "grains", .log = true});
-  for (const AmplitudeGrowth& one : all) table.chart.lines.push_back(critical_line(one));
+  for (const AmplitudeGrowth& one : all) {
+    table.chart.lines.push_back(critical_line(one.published->critical_size, one.style.colour));
+  }
   return table;
 }
 
@@ -353,8 +348,7 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
   std::vector<Sized> sized;
   std::string note = fmt::format("crystallites followed over {} cycles", cycles_compared);
   for (const AmplitudeGrowth& one : all) {
-    const auto runs = followed(one.all_runs, cycles_compared);
-    const std::optional<Estimate> size = GrowthCurve(runs).critical_size();
+    const std::optional<Estimate>& size = one.after.at(cycles_compared).critical;
     note += fmt::format("; A = {} rad: {} grains", one.amplitude, in_grains(size));
     if (size) sized.push_back({&one, *size});
   }

@@ -241,40 +241,21 @@ FigureTable probability_table(std::span<const Amplitude> all) {
 }
 
 FigureTable sizes_table(std::span<const Amplitude> all) {
-  FigureTable table{.name = "committor_sizes",
-                    .columns = {"amplitude_rad",
-                                "cycles_without",
-                                "half_size_grains",
-                                "half_size_low_grains",
-                                "half_size_high_grains",
-                                "half_size_standard_error_grains",
-                                "not_corrected_grains",
-                                "undecided_as_grown_grains",
-                                "undecided_as_gone_grains",
-                                "states",
-                                "states_left_out",
-                                "packings",
-                                "crystallites",
-                                "grown",
-                                "gone",
-                                "merged",
-                                "undecided",
-                                "revived",
-                                "control_states",
-                                "control_share",
-                                "supplement_grains"}};
+  FigureTable table{.name = "committor_sizes", .columns = {"amplitude_rad", "cycles_without"}};
+  add_size_columns("half_size", table.columns);
+  for (const char* name :
+       {"not_corrected_grains", "undecided_as_grown_grains", "undecided_as_gone_grains", "states",
+        "states_left_out", "packings", "crystallites", "grown", "gone", "merged", "undecided",
+        "revived", "control_states", "control_share", "supplement_grains"}) {
+    table.columns.emplace_back(name);
+  }
   table.chart = {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
       .y = {.name = "size of which half grow", .unit = "grains", .low = 0, .high = 25}};
   for (const Amplitude& one : all) {
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});
-      if (const auto size = half_size(one, rule)) {
-        row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
-                               size->spread / std::sqrt(static_cast<double>(size->runs))});
-      } else {
-        row.resize(row.size() + 4);
-      }
+      add_size(half_size(one, rule), row);
       for (const Undecided undecided : {Undecided::left_out, Undecided::grown, Undecided::gone}) {
         const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
         row.push_back(size ? TableValue(size->value) : TableValue());
@@ -294,9 +275,7 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
                                               .y_error = "half_size_standard_error_grains"},
                                   .filter = {"amplitude_rad", one.amplitude},
                                   .shift = 0.04 * static_cast<double>(table.chart.series.size())});
-    table.chart.lines.push_back({.at = one.published,
-                                 .colour = one.style.colour,
-                                 .title = "the supplement's critical sizes"});
+    table.chart.lines.push_back(critical_line(one.published, one.style.colour));
   }
   return table;
 }

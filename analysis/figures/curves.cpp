@@ -251,6 +251,25 @@ std::vector<ReferenceLine> onset_lines() {
           {.at = published_onset_phi + published_onset_error, .title = title}};
 }
 
+ReferenceLine critical_line(double size, const std::string& colour) {
+  return {.at = size, .colour = colour, .title = "the supplement's critical sizes"};
+}
+
+void add_size_columns(const std::string& name, std::vector<std::string>& columns) {
+  for (const char* ending : {"", "_low", "_high", "_standard_error"}) {
+    columns.push_back(name + ending + "_grains");
+  }
+}
+
+void add_size(const std::optional<Estimate>& size, TableRow& row) {
+  if (!size) {
+    row.resize(row.size() + 4);
+    return;
+  }
+  row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
+                         size->spread / std::sqrt(static_cast<double>(size->runs))});
+}
+
 Series thin_line(Text title, std::string colour, int point) {
   return {.title = std::move(title),
           .colour = std::move(colour),

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,6 +60,13 @@ Axis onset_axis();      ///< phi at the onset
 
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
 std::vector<ReferenceLine> onset_lines();
+/// The supplement's critical size [grains] of one amplitude.
+ReferenceLine critical_line(double size, const std::string& colour);
+
+/// Columns of a size, its interval and its standard error, all in grains.
+void add_size_columns(const std::string& name, std::vector<std::string>& columns);
+/// The values of those columns; empty without an estimate.
+void add_size(const std::optional<Estimate>& size, TableRow& row);
 
 /// Colours for readers with any colour vision (Okabe and Ito, jfly.uni-koeln.de/color), and their
 /// names in manifests.

@@ -222,10 +222,7 @@ std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, Ru
 
 /// The slope of phi at the onset against ln N_inves, by least squares over the runs that have one.
 Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
-  struct Point {
-    double ln_size, phi;
-  };
-  std::vector<Point> points;
+  std::vector<std::pair<double, double>> points;  // ln N_inves and phi
   std::set<double> sizes;
   Entered entered = entered_with({"interior_grains", "onset_phi"});
   for (const FigureRun& run : runs) {
@@ -233,21 +230,14 @@ Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
     if (onset.observed != Observed::yes) continue;
     const double interior = run.checkpoints.front().measures.number("interior_grains");
     if (!(interior > 0)) continue;
-    points.push_back({std::log(interior), onset.phi});
+    points.emplace_back(std::log(interior), onset.phi);
     sizes.insert(number_of(run, "grains"));
     enter(run, {interior, onset.phi}, entered);
   }
   const auto slope = [&](std::span<const std::size_t> selection) -> std::optional<double> {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const std::size_t k : selection) {
-      const auto& [ln_size, phi] = points[k];
-      n += 1;
-      x += ln_size;
-      y += phi;
-      xx += ln_size * ln_size;
-      xy += ln_size * phi;
-    }
-    return (xy - x * y / n) / (xx - x * x / n);
+    std::vector<std::pair<double, double>> chosen;
+    for (const std::size_t k : selection) chosen.push_back(points[k]);
+    return least_squares_slope(chosen);
   };
   Verdict verdict =
       decide({"C: phi at the onset does not depend on the size of the cell", margin_onset_slope},

@@ -192,8 +192,7 @@ std::vector<Stage> known_runs(const Context& context) {
 
 // Whether runs of the manifest begin with the states of others.
 bool starts_from_a_run(const Manifest& manifest) {
-  return manifest.base.start.is_recorded() ||
-         std::ranges::any_of(manifest.scales,
+  return std::ranges::any_of(scales_of(manifest),
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 

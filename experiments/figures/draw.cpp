@@ -208,9 +208,9 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
 void mark_primary(const Store& store, const FigureSummary& summary,
                   std::vector<Verdict>& verdicts) {
   for (const RegisteredManifest& registered : newest_manifests(store)) {
+    if (!summary.experiment.empty() && registered.experiment != summary.experiment) continue;
     const std::optional<Manifest> manifest = parsed(registered);
     if (!manifest) continue;
-    if (!summary.experiment.empty() && registered.experiment != summary.experiment) continue;
     for (const Scale& scale : scales_of(*manifest)) {
       if (scale.name != summary.scale) continue;
       for (Verdict& verdict : verdicts) {
@@ -240,12 +240,10 @@ ComputedFigure compute_summary(const Store& store, const WantedFigure& wanted,
   FigureOptions of_part = options;
   of_part.runs.scales = {scale_name(collected.scale)};
   const std::vector<std::string>& experiments = options.runs.experiments;
-  std::vector<std::string> names = summary_parts();
-  std::erase_if(names, [](const std::string& name) { return find_figure(name) == nullptr; });
   std::vector<FigurePart> parts;
   std::set<nlohmann::json> inputs;
   std::set<std::pair<std::string, std::string>> runs;  // of each experiment
-  for (const WantedFigure& part : wanted_figures(store, names).figures) {
+  for (const WantedFigure& part : wanted_figures(store, summary_parts()).figures) {
     if (!experiments.empty() && std::ranges::count(experiments, part.experiment) == 0) continue;
     try {
       ComputedFigure one = compute_figure(store, part, of_part);

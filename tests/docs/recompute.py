@@ -58,8 +58,8 @@ def estimate(claim, rows):
 def ruling(claim):
     low, high = claim["interval"]
     margin = claim["margin"]
-    if claim["verdict"] in ("supported", "refuted"):
-        return claim["verdict"]  # of a direction, which the margin alone does not tell
+    if claim["verdict"] in ("supported", "refuted"):  # of a direction, which may be either
+        return claim["verdict"] if low > margin or high < margin else "undecided"
     if -margin <= low and high <= margin:
         return "agrees"
     return "differs" if high < -margin or low > margin else "undecided"

@@ -39,8 +39,8 @@ HEADLINES = [
     [("S7", "E: crystallites are equally probable", "share of nuclei in the inner minus the outer half", "equal"),
      ("S7", "E: crystallites are more probable near the top", "in the upper minus the lower third", "more near the top")],
 ]
-# Folders of earlier results; a claim is shown as the campaign measured it, or else the first of these.
-SOURCES = ("earlier/decide", "earlier/larger_step", "earlier/volume", "earlier/paper", "desk")
+# Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
+SOURCES = ("earlier/decide", "earlier/larger_step", "earlier/volume", "earlier/paper", "desk", "earlier")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices", "accuracy")
 
@@ -123,8 +123,7 @@ def best_of(found):
     the first of SOURCES, and there the one with the most runs."""
     def rank(one):
         place, _, claim = one
-        of_campaign = place.split("/")[0] not in ("earlier", "desk")
-        source = -1 if of_campaign else position(SOURCES, "/".join(place.split("/")[:2 if place.startswith("earlier") else 1]))
+        source = next((k for k, beginning in enumerate(SOURCES) if place.startswith(beginning)), -1)
         return claim["estimate"] is None, source, -claim["runs"]
     return min(found, key=rank)
 
