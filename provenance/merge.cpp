@@ -50,7 +50,7 @@ using Step = std::pair<std::string, std::uint64_t>;  // run and step
 
 std::map<Step, std::set<std::string>> states_of(const Database& tables) {
   std::map<Step, std::set<std::string>> states;
-  for (const CheckpointRecord& record : query_checkpoints(tables)) {
+  for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
     if (record.state == CheckpointState::rejected) continue;
     states[{record.run, record.step}].insert(record.state_hash);
   }
@@ -105,7 +105,7 @@ bool is_news(const Database& into, const CheckpointRecord& record) {
 
 /// Checkpoints of the source whose files must be copied.
 std::vector<CheckpointRecord> needed_objects(const Database& into, const Source& source) {
-  auto needed = query_checkpoints(source.tables);
+  auto needed = query_all_checkpoints(source.tables);
   std::erase_if(needed, [&](const CheckpointRecord& record) {
     return record.state != CheckpointState::recorded || !is_news(into, record);
   });

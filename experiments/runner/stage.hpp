@@ -38,9 +38,9 @@ struct StageStatus {
 
 struct StageOptions {
   Parallel parallel = {};
-  std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
-  std::function<void()> begun;                      ///< called when an attempt has been recorded
-  std::function<void(const StageStatus&)> report;   ///< called a few times a second
+  std::function<void(const std::string&)> damaged = {};  ///< called for each skipped checkpoint
+  std::function<void()> begun = {};                      ///< called when an attempt is recorded
+  std::function<void(const StageStatus&)> report = {};   ///< called a few times a second
 };
 
 /// Computes the stage `id` until its target, then its missing checkpoints. Starts from the newest
@@ -76,9 +76,9 @@ nlohmann::json to_json(const Divergence& divergence);
 
 struct Replay {
   CheckpointRecord record;
-  std::optional<CheckpointRecord> from;  ///< nothing: from the beginning of the stage
-  std::uint64_t steps = 0;               ///< number of recomputed steps
-  std::optional<Divergence> divergence;
+  std::optional<CheckpointRecord> from = {};  ///< nothing: from the beginning of the stage
+  std::uint64_t steps = 0;                    ///< number of recomputed steps
+  std::optional<Divergence> divergence = {};
   bool interrupted = false;  ///< by a signal; there is no result and nothing was recorded
 };
 

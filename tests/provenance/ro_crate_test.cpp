@@ -167,7 +167,7 @@ TEST_F(Crate, APrunedCheckpointIsListedAndNotCopied) {
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, pruned), StoreDamaged);
-  append_to_run(store_, history_.sheared, events::encode(events::CheckpointPruned{{record}}));
+  store_.prune({record});
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
   const std::string metadata = read_bytes(pruned / "ro-crate-metadata.json");
@@ -177,7 +177,7 @@ TEST_F(Crate, APrunedCheckpointIsListedAndNotCopied) {
   write_ro_crate(store_, history_.sheared, crate_);
   EXPECT_FALSE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256))) << "of an earlier one";
   EXPECT_TRUE(fs::exists(crate_ / "checkpoints" / "notes"));
-  append_to_run(store_, history_.sheared, events::encode(events::CheckpointRegenerated{{record}}));
+  store_.restore_checkpoint(record, sample_checkpoint(history_.sheared, record.step));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(record.sha256)->kept());
 }
 
