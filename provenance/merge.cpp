@@ -76,11 +76,9 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
 
 void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
                         const std::string& b_name) {
-  std::map<std::string, Stage> known;
-  for (Stage& run : query_stages(a)) known.emplace(run.id, std::move(run));
   for (const Stage& run : query_stages(b)) {
-    const auto same = known.find(run.id);
-    if (same == known.end() || same_computation(same->second, run)) continue;
+    const auto same = query_stage(a, run.id);
+    if (!same || same_computation(*same, run)) continue;
     throw StoreDamaged(fmt::format(
         "run {}: {} and {} have different parameters for it; one of them was changed by "
         "hand. Nothing was merged",

@@ -156,16 +156,15 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
   return "";
 }
 
-/// Checkpoints of which the cache keeps a measure, each once.
+/// Checkpoints of which the cache keeps a measure.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
                                                    MeasureSources& sources, Listed listed) {
   std::vector<CheckpointRecord> found;
-  std::set<std::string> seen;
   for (const Stage& run : store.stages()) {
     for (CheckpointRecord& record : store.checkpoints(run.id, listed)) {
       const Cached cached = cache.get(keys_of(record, sources));
       const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
-      if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
+      if (any) found.push_back(std::move(record));
     }
   }
   return found;

@@ -17,7 +17,6 @@
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/variants.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
@@ -43,17 +42,6 @@ constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
 
-std::string describe(const StageStatus& status) {
-  const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
-  const std::string where =
-      status.target_cycles > 0
-          ? fmt::format("cycle {:.2f} of {:g}", status.cycle, status.target_cycles)
-          : fmt::format("step {}", status.step);
-  const std::string left =
-      status.seconds_left >= 0 ? format_duration(status.seconds_left) + " left" : "";
-  return fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate, left);
-}
-
 /// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
 /// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
 class Progress {
@@ -68,10 +56,10 @@ class Progress {
     if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
   }
 
-  void update(const StageJob& job, const StageStatus& status) {
+  void update(const StageJob& job, const std::string& text) {
     const std::lock_guard lock(mutex_);
     Shown& shown = running_[job.id];
-    shown.text = describe(status);
+    shown.text = text;
     if (quiet_) return;
     if (terminal_) return draw();
     if (shown.said.seconds() < 10) return;
@@ -312,7 +300,7 @@ class Campaign {
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
-    options.report = [&](const StageStatus& status) { progress_.update(job, status); };
+    options.report = [&](const std::string& text) { progress_.update(job, text); };
     const StageOutcome outcome = run_stage(store_, job.id, options);
     switch (outcome) {
       case StageOutcome::completed:

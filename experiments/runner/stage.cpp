@@ -30,6 +30,7 @@
 #include "provenance/io/clock.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/lineage.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -437,7 +438,6 @@ class StageAttempt {
       for (const std::uint64_t step : steps) {
         const auto pause = [&](const StageProgress& progress) {
           give_up_if_requested();
-          must_hold();
           report(engine, progress.cycle);
         };
         const StageProgress there = advance_to(engine, step, pause);
@@ -509,13 +509,8 @@ class StageAttempt {
       const bool whole = progress.cycle == std::floor(progress.cycle);
       if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();
-      must_hold();
       report(engine, progress.cycle);
     }
-  }
-
-  void must_hold() const {
-    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
   }
 
   StageOutcome interrupted() {
@@ -554,21 +549,21 @@ class StageAttempt {
     recorded_evaluations_ = engine.evaluations();
   }
 
+  // Throws when another program took the stage.
   void report(const Engine& engine, double cycle) {
+    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
     const double since = reported_.seconds();
     if (!options_.report || since < 0.2) return;
-    StageStatus status;
-    status.cycle = cycle;
-    status.target_cycles = static_cast<double>(plan_.stage.target_cycles);
-    status.steps_per_second =
-        static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
-    status.grains = plan_.stage.grains;
-    status.step = engine.step();
-    const std::uint64_t end = plan_.protocol->last_step();
+    const auto steps = static_cast<double>(engine.evaluations() - reported_evaluations_);
+    const double rate = 1e-6 * steps * static_cast<double>(plan_.stage.grains) / since;
+    const std::uint64_t target = plan_.stage.target_cycles, end = plan_.protocol->last_step();
+    const std::string where = target > 0 ? fmt::format("cycle {:.2f} of {}", cycle, target)
+                                         : fmt::format("step {}", engine.step());
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
-    status.seconds_left =
-        end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;
-    options_.report(status);
+    const bool known = end > 0 && mean_rate > 0;
+    const double left = static_cast<double>(end - engine.step()) / mean_rate;
+    options_.report(fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate,
+                                known ? format_duration(left) + " left" : ""));
     reported_.restart();
     reported_evaluations_ = engine.evaluations();
   }
