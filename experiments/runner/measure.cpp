@@ -35,11 +35,9 @@ class Measuring {
         sources_(store, options.cadence),
         options_(options),
         cache_(store.folder()) {
-    for (const std::string& name : names) {
-      const Provider& one = provider(name);
-      const bool listed = std::ranges::find(providers_, &one) != providers_.end();
-      if (one.is_kept() && !listed) providers_.push_back(&one);
-    }
+    for (const std::string& name : names) add(provider(name));
+    wanted_ = providers_.size();
+    for (const std::string& name : options.also) add(provider(name));
     std::map<std::string_view, std::size_t> known;  // a run of two experiments is listed twice
     for (const CheckpointRecord& record : records) {
       sources_.read_run(record.run);
@@ -67,7 +65,8 @@ class Measuring {
   MeasuredCheckpoints run() {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      if (std::ranges::any_of(results_[i], &json::is_null)) todo_.push_back(i);
+      const auto wanted = std::span(results_[i]).first(wanted_);
+      if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
     }
     outcome_.cached = distinct_.size() - todo_.size();
     UnreadCheckpoints& unread = outcome_;
@@ -88,6 +87,11 @@ class Measuring {
   }
 
  private:
+  void add(const Provider& one) {
+    const bool listed = std::ranges::find(providers_, &one) != providers_.end();
+    if (one.is_kept() && !listed) providers_.push_back(&one);
+  }
+
   /// Whether the provider is asked for a result of this checkpoint.
   bool takes(const CheckpointRecord& record, const Provider& one) const {
     if (one.from != ComputedFrom::simulation || !options_.simulated) return true;
@@ -139,7 +143,7 @@ class Measuring {
   void read(const CheckpointRecord& record, const Results& results) try {
     std::vector<std::string>& lacking = outcome_.lacking.emplace_back();
     Measures& found = outcome_.measures.emplace_back();
-    for (std::size_t p = 0; p < providers_.size(); ++p) {
+    for (std::size_t p = 0; p < wanted_; ++p) {
       if (results[p].is_null()) {
         lacking.push_back(providers_[p]->name);
       } else {
@@ -155,7 +159,8 @@ class Measuring {
   const std::span<const CheckpointRecord> records_;
   MeasureSources sources_;
   const MeasureOptions& options_;
-  std::vector<const Provider*> providers_;
+  std::vector<const Provider*> providers_;  // those that are asked for, then MeasureOptions::also
+  std::size_t wanted_ = 0;                  // the number of those that are asked for
   std::vector<const CheckpointRecord*> distinct_;
   std::vector<std::size_t> place_;  // of each record in distinct_
   std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the providers

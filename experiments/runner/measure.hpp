@@ -28,6 +28,9 @@ struct MeasureOptions {
   /// Cycles between the checkpoints that the experiment asks of a run, by the run's id; 1 if not
   /// given. Measures over two checkpoints use checkpoints of this cadence only.
   std::map<std::string, std::uint64_t> cadence = {};
+  /// Names of further providers, whose results are computed and cached whenever a checkpoint is
+  /// analysed, so that one analysis serves many callers. They must not need earlier checkpoints.
+  std::vector<std::string> also = {};
   /// First and last cycle of the checkpoints for which measures are simulated
   /// (ComputedFrom::simulation). Other checkpoints lack these measures.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};

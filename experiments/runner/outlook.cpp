@@ -302,12 +302,12 @@ void measure_from(const Store& store, const CheckpointRecord& first,
     if (chosen.size() == options.workers) break;
   }
   // The crystallites come from the same analysis, and figures need them.
-  static const std::array<std::string, 2> providers = {"scalars", "crystallites"};
-  MeasuredCheckpoints found = measure_checkpoints(
-      store, chosen, providers, {.workers = options.workers, .report = options.report});
+  static const std::array<std::string, 1> scalars = {"scalars"};
+  const MeasureOptions also = {
+      .workers = options.workers, .report = options.report, .also = {"crystallites"}};
+  MeasuredCheckpoints found = measure_checkpoints(store, chosen, scalars, also);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (found.lacks(k, "scalars")) continue;
-    measures[chosen[k].sha256].numbers = std::move(found.measures[k].numbers);
+    if (!found.lacks(k, "scalars")) measures[chosen[k].sha256] = std::move(found.measures[k]);
   }
   if (!measures.contains(chosen.front().sha256)) refuse_unread(first);
 }
