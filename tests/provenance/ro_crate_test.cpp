@@ -166,6 +166,7 @@ TEST_F(Crate, APrunedCheckpointIsListedAndNotCopied) {
   fs::remove(store_.folder() / record.file);
   const fs::path pruned = folder_.path() / "pruned";
   EXPECT_THROW(write_ro_crate(store_, history_.sheared, pruned), StoreDamaged);
+  fs::remove_all(pruned);
   store_.prune({record});
   write_ro_crate(store_, history_.sheared, pruned);
   EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
