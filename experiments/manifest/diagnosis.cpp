@@ -84,8 +84,8 @@ struct VariantCheck {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
       return found == scale.settle.end() ? nullptr : &found->second;
     }
-    for (const auto& [name, setting] : variant.swept) {
-      if (name == key) return setting;
+    if (const SweepAxis* axis = find_axis(scale.sweep, key); axis != nullptr && !is_length(key)) {
+      return &*std::ranges::find(axis->values, variant.swept.at(axis->key), &Setting::value);
     }
     for (const Settings* settings : {&scale.settings, &scale.start.settings}) {
       const auto found = settings->find(key);
@@ -102,6 +102,10 @@ struct VariantCheck {
     const Setting* blamed = stated == nullptr ? find(cause) : stated;
     problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), std::move(problem),
                  stated != nullptr ? text : "the default " + text, std::move(remedy));
+  }
+
+  void refuse(const Position& at, const char* key, string problem, string remedy) {
+    problems.add(at, key, std::move(problem), "", std::move(remedy));
   }
 
   // The last of the keys that is stated; "" if none is.
@@ -194,9 +198,6 @@ struct VariantCheck {
 
   void check_start() {
     const Start& start = scale.start;
-    const auto refuse = [&](const Position& at, const char* key, string problem, string remedy) {
-      problems.add(at, key, std::move(problem), "", std::move(remedy));
-    };
     if (!start.is_recorded()) {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
@@ -223,18 +224,16 @@ struct VariantCheck {
   }
 
   void check_phases() {
-    const auto refuse = [&](string problem, string remedy) {
-      problems.add(scale.checkpoints.at, "checkpoints.phases", std::move(problem), "",
-                   std::move(remedy));
-    };
     const Drive motion = drive(p);
-    const std::vector<double>& phases = scale.checkpoints.phases;
+    const auto& [every, phases, at] = scale.checkpoints;
+    constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
+      refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
     } else if (string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(std::move(why), "Leave them out, or the engine.");
+      refuse(at, key, std::move(why), "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
-      refuse(format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
+      refuse(at, key,
+             format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
                     cycle_steps(motion)),
              "Use fewer of them, or more steps_per_cycle.");
     }
@@ -256,7 +255,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<json> variants;
-    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept_values());
+    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept);
     const auto names = variant_names(variants, manifest.labels);
     // By what a reader sees: the name, and its label or null.
     std::map<string, std::pair<string, const VariantLabel*>> named;
@@ -397,7 +396,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
     for (const string& one : advice_on(variant, settles)) {
       auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
       if (known == advice.end()) known = advice.insert(known, {one, {}});
-      known->second.push_back(variant.name());
+      known->second.push_back(variant.name);
     }
   }
   for (const auto& [one, of] : advice) {
@@ -461,7 +460,7 @@ string averaged_over(const std::vector<string>& keys, std::span<const Variant> v
     for (const string& key : keys) {
       if (const Field* field = find_field(key)) curve.push_back(field->get(variant.parameters));
     }
-    values.emplace_back(std::move(curve), variant.swept_values());
+    values.emplace_back(std::move(curve), variant.swept);
   }
   return averaged_key(values);
 }
@@ -525,7 +524,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
   std::set<json> curves;
   for (const Variant& variant : variants) {
     if (!has_values(variant, series.where)) continue;
-    json curve = variant.swept_values();
+    json curve = variant.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
     curve.erase(plot.panel);
     if (!plot.by.empty()) curve = find_field(plot.by)->get(variant.parameters);

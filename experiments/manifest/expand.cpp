@@ -87,8 +87,8 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
                        const std::optional<PackingText>& file) {
   PlannedRun run;
   run.ask = common;
-  run.ask.variant = variant.name();
-  run.ask.swept = variant.swept_values();
+  run.ask.variant = variant.name;
+  run.ask.swept = variant.swept;
   run.ask.seed = seed;
   run.parameters = variant.parameters;
   run.ask.target_cycles = target_cycles(run.parameters);
@@ -116,7 +116,7 @@ void take_declared_lengths(const Place& place, std::span<const Stage> known,
     }
   }
   for (Variant& variant : variants) {
-    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name()]);
+    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name]);
   }
 }
 
@@ -157,17 +157,16 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   std::set<std::string> fitted;                   // packings into which the file fits
   Filter wanted(options.variants), seed_filter(options.only_seeds);
-  std::vector<std::uint64_t> chosen_seeds;
-  std::ranges::copy_if(seeds, std::back_inserter(chosen_seeds), [&](std::uint64_t seed) {
-    return seed_filter.passes(std::to_string(seed));
-  });
+  std::vector<std::uint64_t> chosen_seeds = seeds;
+  std::erase_if(chosen_seeds,
+                [&](std::uint64_t seed) { return !seed_filter.passes(std::to_string(seed)); });
   if (const std::string* missing = seed_filter.unfound()) {
     refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
            fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
   }
   std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
-    if (!wanted.passes(variant.name())) continue;
+    if (!wanted.passes(variant.name)) continue;
     chosen.push_back(variant);
     if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {
@@ -178,11 +177,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (scale.start.is_recorded()) {
       recorded = &recorded_run(manifest, scale, variant, options.known);
     }
-    const auto first = seeds.begin();
-    const auto last =
-        first + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(variant.seeds, seeds.size()));
+    const auto own = std::span(seeds).first(std::min<std::size_t>(variant.seeds, seeds.size()));
     for (const std::uint64_t seed : chosen_seeds) {
-      if (std::find(first, last, seed) == last) continue;
+      if (std::ranges::count(own, seed) == 0) continue;
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
