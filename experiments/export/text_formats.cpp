@@ -49,7 +49,7 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
       fmt::join(e.reshaped(), " "), fmt::join(o, " "), f.time_s, f.step, f.cycle, f.theta);
   for (const FrameColumn& column : f.columns) {
-    line += fmt::format(":{}:{}:1", column.name, column.values.index() == 0 ? 'R' : 'I');
+    line += fmt::format(":{}:{}:1", column.name, column.whole ? 'I' : 'R');
   }
   line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
                       si ? "m/s" : "d/s", d, quoted(f.checkpoint));
@@ -89,11 +89,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
       fmt::format_to(line, "{} {:.17g} {:.17g} {} {:.17g} {}", f.type[i] == 0 ? "H" : "He",
                      fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / unit, f.type[i]);
       for (const FrameColumn& column : f.columns) {
-        if (const auto* real = std::get_if<0>(&column.values)) {
-          fmt::format_to(line, " {:.17g}", (*real)[i]);
-        } else {
-          fmt::format_to(line, " {}", std::get<1>(column.values)[i]);
-        }
+        fmt::format_to(line, " {:.17g}", column.values[i]);
       }
       text += '\n';
     }
