@@ -3,7 +3,6 @@
 // identity. Reading, suggestions, identity and experiments/REFERENCE.md use it.
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>

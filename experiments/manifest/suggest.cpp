@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include "experiments/manifest/schema.hpp"
 
@@ -33,17 +33,10 @@ std::size_t edit_distance(string_view a, string_view b) {
   return d[a.size()][b.size()];
 }
 
-bool has_no_unit(string_view name) {
-  const Field* field = find_field(name);
-  return field != nullptr && (field->unit.empty() || field->unit == "1");
-}
-
 }  // namespace
 
 std::string lower(string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
+  return boost::algorithm::to_lower_copy(std::string(text));
 }
 
 string_view trimmed(string_view text) {
@@ -63,7 +56,12 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
   }
   // `stiffness` begins several names, but only stiffness_N_per_m ends in a unit. `settle` begins
   // several with a unit, so none is suggested.
-  if (with_unit.size() > 1) std::erase_if(with_unit, has_no_unit);
+  if (with_unit.size() > 1) {
+    std::erase_if(with_unit, [](string_view name) {
+      const Field* field = find_field(name);
+      return field != nullptr && (field->unit.empty() || field->unit == "1");
+    });
+  }
   if (with_unit.size() == 1) return std::string(with_unit.front());
 
   const std::size_t allowed = std::max<std::size_t>(2, written.size() / 3);
