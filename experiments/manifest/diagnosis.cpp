@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "analysis/expression.hpp"
@@ -44,19 +45,13 @@ bool has_interior(const Parameters& p) {
 /// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
 /// "Use more grains." if N is beyond the range of `grains`.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
-  const auto fits = [&](std::uint64_t grains) {
-    p.grains = grains;
-    return enough(p);
-  };
-  const Range& range = find_field("grains")->range;
-  std::uint64_t few = p.grains, many = 2 * few;
-  for (; !fits(many) && range.contains(static_cast<double>(many)); many *= 2) few = many;
+  const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
+  std::uint64_t few = p.grains, many = most + 1;
   while (many - few > 1) {
-    const std::uint64_t middle = few + (many - few) / 2;
-    (fits(middle) ? many : few) = middle;
+    p.grains = few + (many - few) / 2;
+    (enough(p) ? many : few) = p.grains;
   }
-  return range.contains(static_cast<double>(many)) ? format("Use at least {} grains.", many)
-                                                   : "Use more grains.";
+  return many > most ? "Use more grains." : format("Use at least {} grains.", many);
 }
 
 // Checks one variant at one scale.
@@ -335,6 +330,9 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
+  const auto when = [](double seconds) {
+    return seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late";
+  };
   if (!pressure_lifts_column(p)) {
     advice.push_back(
         format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
@@ -360,28 +358,23 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
                "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
                p.settle_time_limit_s));
   } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(format(
-        "with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-        "settle_time_limit_s ({:g} s). Raise one of them.",
-        packing.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
-        p.settle_time_limit_s));
+    advice.push_back(
+        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
+               "settle_time_limit_s ({:g} s). Raise one of them.",
+               packing.drag_kg_per_s, when(time), p.settle_time_limit_s));
   }
   if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
     advice.push_back(format(
         "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses the "
         "grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower the drag, or "
         "raise pressure_Pa or that limit.",
-        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s,
-        time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
+        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
         p.settle_time_limit_s));
   }
-  if (p.protocol != ProtocolKind::stiffen) {
-    if (auto step = time_step_advice(shear_time_step(p), "steps_per_cycle"))
-      advice.push_back(*step);
-  }
-  if (auto step = time_step_advice(settle_time_step(packing), "settle_time_step_s");
-      settles && step) {
-    advice.push_back(*step);
+  for (const auto& [step, key, is_used] :
+       {std::tuple(shear_time_step(p), "steps_per_cycle", p.protocol != ProtocolKind::stiffen),
+        {settle_time_step(packing), "settle_time_step_s", settles}}) {
+    if (const auto one = time_step_advice(step, key); one && is_used) advice.push_back(*one);
   }
   return advice;
 }

@@ -156,17 +156,20 @@ class TreeBuilder : public YAML::EventHandler {
   void check_text(const YAML::Mark& mark, string_view text) {
     for (string_view rest = text; !rest.empty();) {
       const auto [length, c] = decode(rest);
-      const char* remedy = "Remove it.";
-      std::string problem;
+      const auto reject = [&](const std::string& problem, const char* remedy = "Remove it.") {
+        refuse(file_, position(mark), "", problem, printable(text), remedy);
+      };
       if (length == 0) {
-        problem = "the escapes \\_ and \\N are not read";
-        remedy = "Write _ without the backslash, or the text in single quotes.";
-      } else if (is_control(c) && c != '\n') {
-        problem = fmt::format("holds the control character U+{:04X}", static_cast<unsigned>(c));
-      } else if (is_noncharacter(c)) {
-        problem = fmt::format("holds U+{:04X}, which is not a character", static_cast<unsigned>(c));
+        reject("the escapes \\_ and \\N are not read",
+               "Write _ without the backslash, or the text in single quotes.");
       }
-      if (!problem.empty()) refuse(file_, position(mark), "", problem, printable(text), remedy);
+      const auto number = static_cast<unsigned>(c);
+      if (is_control(c) && c != '\n') {
+        reject(fmt::format("holds the control character U+{:04X}", number));
+      }
+      if (is_noncharacter(c)) {
+        reject(fmt::format("holds U+{:04X}, which is not a character", number));
+      }
       rest.remove_prefix(length);
     }
   }

@@ -120,13 +120,6 @@ void take_declared_lengths(const Place& place, std::span<const Stage> known,
   }
 }
 
-void name_variants(const Manifest& manifest, Plan& plan) {
-  std::vector<nlohmann::json> variants;
-  for (const PlannedRun& run : plan.runs) variants.push_back(run.ask.swept);
-  const auto names = variant_names(variants, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
-}
-
 }  // namespace
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
@@ -201,7 +194,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            printable(fmt::format("{}", fmt::join(options.variants, " and "))),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
-  name_variants(manifest, plan);
+  std::vector<nlohmann::json> swept;
+  for (const PlannedRun& run : plan.runs) swept.push_back(run.ask.swept);
+  const auto names = variant_names(swept, manifest.labels);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
   take_declared_lengths(common, options.known, variants);
   std::ranges::move(warnings_of(manifest, scale, variants, chosen, seeds.size()),
                     std::back_inserter(plan.warnings));

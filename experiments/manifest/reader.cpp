@@ -90,11 +90,11 @@ void fields(Start& start, const auto& visit) {
                 "those of the keys that both sweep",
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
-  visit(start.checkpoint, {.name = "checkpoint",
-                           .doc = "instead of experiment, seed and cycle: the beginning of the "
-                                  "run's id and a whole cycle",
-                           .example = "0123abcd@10",
-                           .longest = kLongestLabel});
+  visit(start.run, {.name = "checkpoint",
+                    .doc = "instead of experiment, seed and cycle: the beginning of the "
+                           "run's id and a whole cycle",
+                    .example = "0123abcd@10",
+                    .longest = kLongestLabel});
   visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
   visit(start.settings, {.name = "cycle", .doc = "parameter start_cycle, default 0"});
   visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
@@ -992,13 +992,13 @@ struct Reader {
     }
     const Node* checkpoint = in.find("checkpoint");
     if (checkpoint == nullptr) return;
-    const std::size_t at = start.checkpoint.find('@');
-    start.run = start.checkpoint.substr(0, at);
+    const string_view text = checkpoint->text;
+    const std::size_t at = std::min(text.find('@'), text.size());
+    start.run = text.substr(0, at);
     const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
                        start.run.find_first_not_of("0123456789abcdef") == string::npos;
     auto cycle =
-        read_value(*find_field("start_cycle"),
-                   at == string::npos ? "" : string_view(start.checkpoint).substr(at + 1), false);
+        read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
     if (!is_id || cycle.index() != 0) {
       return reject_value(*checkpoint, "is not a run and a whole cycle",
                           "It takes `0123abcd@10`: at least eight digits of the run's id.");
@@ -1212,7 +1212,8 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     problems.raise();
   }
   // Scales begin with what is stated for all of them.
-  std::ranges::stable_partition(root.parts, [](const Node& part) { return part.key != "scales"; });
+  std::stable_partition(root.parts.begin(), root.parts.end(),
+                        [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;
   reader.read_keys(root, manifest);
   if (const Node* experiment = root.find("experiment")) {

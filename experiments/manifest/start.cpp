@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -50,16 +51,13 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
 /// The nominal packing fraction at which the cell is so wide; nothing if there is none.
 std::optional<double> fraction_for_width(Geometry shape, double width) {
   const Range& range = find_field("nominal_packing_fraction")->range;
-  double low = range.min, high = range.max;  // a denser cell is narrower
-  const auto width_at = [&](double fraction) {
+  const auto excess = [&](double fraction) {
     shape.nominal_packing_fraction = fraction;
-    return cell_width(shape);
+    return cell_width(shape) - width;
   };
-  if (width_at(low) < width || width_at(high) > width) return std::nullopt;
-  for (int k = 0; k < 200; ++k) {
-    const double middle = 0.5 * (low + high);
-    (width_at(middle) > width ? low : high) = middle;
-  }
+  if (excess(range.min) < 0 || excess(range.max) > 0) return std::nullopt;  // denser is narrower
+  const auto [low, high] = boost::math::tools::bisect(excess, range.min, range.max,
+                                                      boost::math::tools::eps_tolerance<double>());
   return 0.5 * (low + high);
 }
 

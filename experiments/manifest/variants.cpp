@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
-#include <set>
 #include <sstream>
 
 #include "analysis/figure.hpp"
