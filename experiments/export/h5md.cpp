@@ -145,7 +145,6 @@ class Trajectory {
       put_unit(made, unit);
       sets_.emplace(path, std::move(made));
     }
-    if (next_ >= frames_) throw std::runtime_error("more frames than were announced");
     const Handle& set = sets_.at(path);
     const Handle space(require(H5Dget_space(set.get()), path), H5Sclose);
     count.front() = 1;
