@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <memory>
 #include <string_view>
 
 #include "experiments/export/formats.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell {
@@ -18,10 +18,7 @@ namespace {
 /// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both ignore
 /// the quotes; ASE takes lists apart at spaces and commas, so the first item decides.
 bool looks_like_a_value(std::string_view text) {
-  std::string word;
-  for (const char c : text.substr(0, text.find_first_of(" ,"))) {
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
   const bool number = std::ranges::none_of(word, of_a_name);  // "1e3", also Fortran's "1d3"
   word.erase(0, word.find_first_not_of("+-"));

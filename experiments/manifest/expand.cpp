@@ -53,19 +53,17 @@ void check_option(const Manifest& manifest, const char* key, const nlohmann::jso
 
 std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& stated,
                                         const std::optional<std::uint64_t>& wanted) {
-  if (!wanted) return stated.values;
+  std::vector<std::uint64_t> seeds = stated.values;
+  if (!wanted) return seeds;
   check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
-  if (stated.counted) {
-    std::vector<std::uint64_t> seeds(*wanted);
-    std::iota(seeds.begin(), seeds.end(), 1);
-    return seeds;
-  }
-  if (*wanted > stated.values.size()) {
+  if (!stated.counted && *wanted > seeds.size()) {
     refuse(manifest.file, {}, "seeds",
-           fmt::format("the manifest lists {} seeds only", stated.values.size()),
-           std::to_string(*wanted), "List more, or state a count.");
+           fmt::format("the manifest lists {} seeds only", seeds.size()), std::to_string(*wanted),
+           "List more, or state a count.");
   }
-  return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
+  seeds.resize(*wanted);
+  if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);
+  return seeds;
 }
 
 // Adds the engine as a swept key, so that figures never average runs of two engines.
