@@ -95,7 +95,7 @@ std::vector<double> made_up(std::size_t particles, double step) {
 }
 
 std::vector<double>& column(Frame& frame, const std::string& name) {
-  return std::get<0>(std::ranges::find(frame.columns, name, &FrameColumn::name)->values);
+  return std::ranges::find(frame.columns, name, &FrameColumn::name)->values;
 }
 
 /// From the checkpoint and its analysis, not through Frame.
@@ -357,8 +357,8 @@ void expect_the_checkpoint(const fs::path& file, const PackingFacts& facts) {
   ASSERT_TRUE(packing.velocity && packing.box);
   EXPECT_LT((*packing.velocity - c.state.velocity).cwiseAbs().maxCoeff(), 1e-12);
   const Eigen::Vector3d low(0, c.state.wall_height, 0);
-  EXPECT_LT((packing.box->low - low).norm(), 1e-13);
-  EXPECT_LT((packing.box->high - Eigen::Vector3d(c.cell.width, c.cell.top, c.cell.depth)).norm(),
+  EXPECT_LT((packing.box->min() - low).norm(), 1e-13);
+  EXPECT_LT((packing.box->max() - Eigen::Vector3d(c.cell.width, c.cell.top, c.cell.depth)).norm(),
             1e-12);
 }
 
