@@ -90,7 +90,7 @@ void take_packing(Input input) {
     if (!packing.box) return;
     for (Eigen::Index i = 0; i < packing.position.cols(); ++i) {
       const Eigen::Array3d p = packing.position.col(i).array();
-      require((p >= packing.box->low.array() && p <= packing.box->high.array()).all(),
+      require((p >= packing.box->min().array() && p <= packing.box->max().array()).all(),
               "grains are within the box");
     }
   } catch (const ManifestError& error) {
@@ -113,7 +113,7 @@ void take_events(Input input) {
   attempt<StoreDamaged>([&] {
     for (const Stage& record : query_stages(database)) {
       query_checkpoints(database, record.id);
-      query_stage_ids(database, record.id.substr(0, 3), 10);
+      query_stages(database, record.id.substr(0, 3));
     }
     query_figures(database);
     projection_rows(database);
