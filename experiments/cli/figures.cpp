@@ -23,11 +23,11 @@ struct FigureArguments {
   FigureOptions how;
 };
 
-std::string path_of(const FigureSummary& result) {
+std::string path_of(const ComputedFigure& result) {
   return result.experiment.empty() ? result.name : result.experiment + "/" + result.name;
 }
 
-void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
+void complain(const ComputedFigure& result, std::set<std::string>& told, Context& context) {
   for (const std::string& note : result.notes) {
     if (told.insert(note).second) print_stderr("{}\n", note);
   }
@@ -45,7 +45,7 @@ void complain(const FigureSummary& result, std::set<std::string>& told, Context&
   }
 }
 
-nlohmann::json facts(const FigureSummary& result) {
+nlohmann::json facts(const ComputedFigure& result) {
   return {{"figure", result.name},
           {"experiment", result.experiment},
           {"scale", result.scale},
@@ -61,7 +61,7 @@ nlohmann::json facts(const FigureSummary& result) {
           {"verdict", to_json(result.verdicts)}};
 }
 
-void print_verdicts(const FigureSummary& result) {
+void print_verdicts(const ComputedFigure& result) {
   if (result.verdicts.empty()) return;
   print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
@@ -72,7 +72,7 @@ void print_verdicts(const FigureSummary& result) {
 }
 
 /// Adds the figure's summary to the list, and prints it unless --json is given.
-void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
+void take(const ComputedFigure& result, nlohmann::json& list, Context& context) {
   if (!result.undrawn.empty()) fail(context, kOtherError);
   list.push_back(facts(result));
   if (context.json) return;
@@ -108,7 +108,7 @@ void figures(FigureArguments& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   for (const WantedFigure& figure : wanted.figures) {
     try {
-      const FigureSummary result = draw_figure(store, figure, how);
+      const ComputedFigure result = draw_figure(store, figure, how);
       complain(result, told, context);
       take(result, list, context);
     } catch (const UsageError& problem) {
