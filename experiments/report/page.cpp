@@ -175,14 +175,6 @@ std::optional<FigureRecord> recorded_as(const Content& content, const FigureLine
   return newest;
 }
 
-std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
-  std::vector<double> cycles;
-  for (const std::string& sha256 : input.checkpoints) {
-    if (const CheckpointHistory* known = run.find(sha256)) cycles.push_back(known->record.cycle);
-  }
-  return cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front(), cycles.back());
-}
-
 /// Where a figure comes from.
 json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
                   const std::optional<FigureRecord>& recorded) {
@@ -206,15 +198,18 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
         {{"brief", brief(manifest.sha256)}, {"path", manifest.path}, {"sha256", manifest.sha256}});
   }
   for (const FigureInput& input : lineage.inputs) {
+    const Cycles& cycles = input.states.cycles;
     std::set<int> lines;
     for (const ManifestLine& line : input.lines) lines.insert(line.line);
-    inputs.push_back({{"brief", brief(input.run)},
-                      {"experiment", input.experiment},
-                      {"variant", input.variant},
-                      {"seed", input.seed},
-                      {"checkpoints", input.checkpoints.size()},
-                      {"cycles", span_of_cycles(input, lineage.runs.at(input.run))},
-                      {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
+    inputs.push_back(
+        {{"brief", brief(input.run)},
+         {"experiment", input.experiment},
+         {"variant", input.variant},
+         {"seed", input.seed},
+         {"checkpoints", input.checkpoints.size()},
+         {"cycles",
+          cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front()[0], cycles.back()[1])},
+         {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
   }
   const std::string command = "shearcell figures " + figure.name;
   return {{"scale", scale_name(lineage.scale)},
