@@ -1,0 +1,83 @@
+set terminal svg size 325,275 enhanced font 'Helvetica,10.67' background '#ffffff'
+set encoding utf8
+set datafile separator ','
+set border 15 lw 0.8
+set xtics in mirror scale 0.9,0.5
+set ytics in mirror scale 0.9,0.5
+set mxtics 2
+set mytics 2
+set autoscale noextend
+set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
+set output 'S1.svg'
+set key maxcols 1 width -9
+set xlabel 'mean overlap  ⟨{/:Italic δ}⟩  [{/:Italic d}]'
+set ylabel 'volume fraction  {/:Italic ϕ}'
+set logscale x
+set format x '10^{%T}'
+set mxtics 10
+set ytics 0.002
+set format y '%.3f'
+set xrange [*:*]
+set yrange [*:*]
+set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05
+$series0 << EOD
+0.00361717667,0.650711604,2.06165939e-05,0.000107057245
+0.00245597203,0.647553418,1.56293729e-05,7.76852281e-05
+0.00152343147,0.644869345,1.15699767e-05,6.23856512e-05
+0.000936968029,0.643116914,8.88623645e-06,7.06454955e-05
+0.000555561829,0.641903121,4.38124843e-06,7.36289493e-05
+0.000325166476,0.641194415,2.87436785e-06,7.5644618e-05
+0.00018742837,0.640735836,1.98829226e-06,7.99493708e-05
+0.000108385471,0.640462676,1.10974851e-06,8.65350349e-05
+6.19597276e-05,0.640319124,6.51139748e-07,8.99775742e-05
+EOD
+$series1 << EOD
+0.00361717667,0.638310235,2.06165939e-05,7.82933019e-05
+0.00245597203,0.639143598,1.56293729e-05,6.62623105e-05
+0.00152343147,0.639694652,1.15699767e-05,7.09183854e-05
+0.000936968029,0.639950719,8.88623645e-06,7.40554464e-05
+0.000555561829,0.640036215,4.38124843e-06,7.57657842e-05
+0.000325166476,0.640106983,2.87436785e-06,7.99465496e-05
+0.00018742837,0.640112121,1.98829226e-06,8.22402239e-05
+0.000108385471,0.640102873,1.10974851e-06,8.77479275e-05
+6.19597276e-05,0.640114071,6.51139748e-07,9.07466218e-05
+EOD
+$series2 << EOD
+0.00219323561,0.646271921,3.20009925e-05,0.000121642339
+0.00136428081,0.643882897,1.98141314e-05,0.000131359263
+0.000854041247,0.642341846,9.3287339e-06,0.000126006449
+0.000512500357,0.6412623,7.8065672e-06,0.000129318814
+0.000298595457,0.640564426,5.68551711e-06,0.000140645954
+0.000174167021,0.640176197,5.37007014e-06,0.000141516378
+0.000101022971,0.639942627,2.55032676e-06,0.000137988338
+5.68004369e-05,0.639855286,1.75559261e-06,0.000131720971
+3.15823094e-05,0.63979923,1.02385152e-06,0.000125177669
+EOD
+$series3 << EOD
+0.00219323561,0.638805193,3.20009925e-05,0.0001411561
+0.00136428081,0.639278372,1.98141314e-05,0.000100894061
+0.000854041247,0.639466129,9.3287339e-06,0.000135035854
+0.000512500357,0.639543405,7.8065672e-06,0.00013507501
+0.000298595457,0.639570038,5.68551711e-06,0.000139116799
+0.000174167021,0.639599758,5.37007014e-06,0.000137697604
+0.000101022971,0.639609432,2.55032676e-06,0.000135206406
+5.68004369e-05,0.639668083,1.75559261e-06,0.000132201368
+3.15823094e-05,0.639695589,1.02385152e-06,0.000124308359
+EOD
+plot keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title '{/:Italic ϕ}_{u}, uncorrected', \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic ϕ}', \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title '{/:Italic ϕ}_{u}, uncorrected, P on the moving wall', \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic ϕ}, P on the moving wall', \
+     $series3 every 1 using ($1-$3>0?$1-$3:3.05584579e-05):2:($1+$3-($1-$3>0?$1-$3:3.05584579e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series3 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series2 every 1 using ($1-$3>0?$1-$3:3.05584579e-05):2:($1+$3-($1-$3>0?$1-$3:3.05584579e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series2 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series2 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series1 every 1 using ($1-$3>0?$1-$3:3.05584579e-05):2:($1+$3-($1-$3>0?$1-$3:3.05584579e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series1 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series0 every 1 using ($1-$3>0?$1-$3:3.05584579e-05):2:($1+$3-($1-$3>0?$1-$3:3.05584579e-05)):(0) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle
+set output
