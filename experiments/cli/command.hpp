@@ -16,7 +16,6 @@
 
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/store.hpp"

@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"

@@ -16,6 +16,7 @@
 #include "experiments/cluster/submission.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `submit`: queues the rest of a campaign on a cluster as an array job.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
+#include "experiments/runner/campaign.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"

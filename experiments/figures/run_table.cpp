@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -44,8 +43,9 @@ json number(double value) {
 }
 
 template <class Value>
-Column of_run(const char* name, const char* meaning, Value value) {
-  return {{name, meaning}, [value](const Row& row) -> json { return value(*row.run); }};
+Column of_run(std::string_view name, std::string_view meaning, Value value) {
+  return {{std::string(name), std::string(meaning)},
+          [value](const Row& row) -> json { return value(*row.run); }};
 }
 
 template <class Value>
@@ -75,12 +75,6 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// Counts are whole numbers.
-json cell_of(const Measure& measure, double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return measure.kind == MeasureKind::count ? json(static_cast<std::uint64_t>(value)) : json(value);
-}
-
 /// The numbers of a checkpoint; simulated ones only of the providers that `simulated` names.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
@@ -90,7 +84,9 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
     if (by.from == ComputedFrom::simulation && !listed) continue;
     columns.push_back(
         of_checkpoint(measure->name, measure->meaning, [measure](const CollectedCheckpoint& c) {
-          return cell_of(*measure, c.measures.number(measure->name));
+          const double value = c.measures.number(measure->name);
+          const bool count = measure->kind == MeasureKind::count && std::isfinite(value);
+          return count ? json(static_cast<std::uint64_t>(value)) : number(value);
         }));
   }
   return columns;
@@ -153,8 +149,8 @@ std::vector<Column> columns_of_runs(const std::vector<CollectedRun>& runs,
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
-    columns.push_back({{std::string(field.name), std::string(field.doc)},
-                       [&field](const Row& row) { return swept_value(field, *row.run); }});
+    columns.push_back(of_run(field.name, field.doc,
+                             [&field](const Run& run) { return swept_value(field, run); }));
   }
   return columns;
 }

@@ -17,7 +17,6 @@
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
