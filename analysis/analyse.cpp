@@ -2,7 +2,6 @@
 #include "analysis/analyse.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -91,13 +90,7 @@ std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains) {
 }
 
 double mean_surface(const GrainMeasures& grains) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    if (grains.interior[i] == 0) continue;
-    sum += grains.cell_surface[i];
-    ++count;
-  }
-  return count > 0 ? sum / count : 0;
+  return interior_mean(grains, [&](std::size_t i) { return grains.cell_surface[i]; });
 }
 
 Provider packing_provider() {

@@ -3,6 +3,7 @@
 // once, and most measures follow from them.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -55,22 +56,29 @@ struct Analysis {
 Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
 Analysis analyse(const Checkpoint& checkpoint);
 
+/// Mean of the finite values of interior grains; not a number without any.
+template <class Value>
+double interior_mean(const GrainMeasures& grains, const Value& value_of) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
+    const double value = grains.interior[i] != 0 ? value_of(i) : std::nan("");
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return sum / count;
+}
+
 /// Share of the interior grains for which `holds` [%]; not a number without any.
 template <class Predicate>
 double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
-  double count = 0, found = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    if (grains.interior[i] == 0) continue;
-    ++count;
-    found += holds(i) ? 1 : 0;
-  }
-  return 100 * found / count;
+  return interior_mean(grains, [&](std::size_t i) { return holds(i) ? 100 : 0; });
 }
 
 /// One entry per grain: 1 for crystalline interior grains, else 0.
 std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
 
-/// Mean surface of the cells of interior grains [d^2]; 0 without interior grains.
+/// Mean surface of the cells of interior grains [d^2]; not a number without any.
 double mean_surface(const GrainMeasures& grains);
 
 }  // namespace shearcell

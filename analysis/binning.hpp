@@ -3,7 +3,6 @@
 // averaged at equal phi.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,6 +26,6 @@ struct PhiBin {
 /// Ascending bins between whole multiples of phi_bin; only those that some run visits. Checkpoints
 /// without a finite phi are left out. Values below `least` count as `least`.
 std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure,
-                                  double least = -std::numeric_limits<double>::infinity());
+                                  double least = -infinite);
 
 }  // namespace shearcell

@@ -5,9 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
-#include <cstdlib>
-#include <iterator>
 #include <limits>
 
 #include "analysis/error.hpp"
@@ -139,12 +138,7 @@ std::string digits(double value) {
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
 std::string to_csv(const FigureTable& table) {
@@ -242,13 +236,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
   std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
-  std::vector<std::pair<std::string, std::vector<std::string>>> notes;  // with their panels
-  const auto add_note = [&](const std::string& note, const std::string& letter) {
-    if (note.empty()) return;
-    auto known = std::ranges::find(notes, note, [](const auto& one) { return one.first; });
-    if (known == notes.end()) known = notes.insert(known, {note, {}});
-    known->second.push_back(letter);
-  };
+  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // with their panels
   std::size_t charts = 0;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
@@ -273,10 +261,12 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
         lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
     }
-    add_note(chart.note, chart.letter);
+    if (!chart.note.empty()) notes[chart.note].push_back(chart.letter);
     add_once(sources, chart.sources);
-    if (lost > 0)
-      add_note(fmt::format("Values that are not positive are not drawn: {}", lost), chart.letter);
+    if (lost > 0) {
+      notes[fmt::format("Values that are not positive are not drawn: {}", lost)].push_back(
+          chart.letter);
+    }
     for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   for (const auto& [names, what] : panels) {

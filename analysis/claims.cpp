@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "analysis/binning.hpp"
+#include "analysis/expression.hpp"
+#include "analysis/own_figure.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -18,39 +21,46 @@ namespace {
 constexpr const char* no_group =
     "there are no such runs, or they differ in another swept parameter too";
 
+void add(std::string& note, const std::string& text) {
+  note += (note.empty() ? "" : "; ") + text;
+}
+
+/// What is compared of the value of a run.
+using Number = std::function<double(double value)>;
+
 /// The numbers of one or two groups of runs, and why other runs have none.
 struct Values {
-  std::map<const FigureRun*, double> found;
+  std::map<const FigureRun*, double> numbers;  ///< not finite where there is none
   std::size_t runs = 0;
   std::map<Missing, std::size_t> missing;
-  std::size_t not_positive = 0;  ///< numbers without a logarithm, which are left out
+  std::size_t not_positive = 0;  ///< values without a logarithm, which are left out
   bool enough = true;            ///< three quarters of each group have a number
+  Entered entered = entered_with({"value", "missing"});
 
-  /// With `logarithms` only positive numbers count.
-  void take(const Scalar& scalar, RunGroup group, bool logarithms = false) {
+  void take(const Scalar& scalar, RunGroup group, const Number& number) {
     std::size_t without = 0;
     for (const FigureRun* run : group) {
       const RunValue value = scalar.of(*run);
-      const bool found_one = value.missing == Missing::nothing;
-      const bool counts = found_one && (!logarithms || value.value > 0);
-      ++runs;
-      if (!found_one) ++missing[value.missing];
-      if (found_one && !counts) ++not_positive;
-      if (counts) {
-        found[run] = value.value;
-      } else {
-        ++without;
-      }
+      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
+      const double found = numbers[run] = number(value.or_nan());
+      if (value.missing != Missing::nothing) ++missing[value.missing];
+      if (std::isfinite(found)) continue;
+      ++without;
+      not_positive += value.missing == Missing::nothing ? 1 : 0;
     }
+    runs += group.size();
     enough = enough && 4 * without <= group.size();
+  }
+  std::vector<double> over_packings(RunGroup group) const {
+    std::vector<double> values;
+    for (const FigureRun* run : group) values.push_back(numbers.at(run));
+    return shearcell::over_packings(group, values);
   }
 };
 
-void add(std::string& note, const std::string& text) {
-  if (!text.empty()) note += (note.empty() ? "" : "; ") + text;
-}
-
-void add_missing(std::string& note, const Values& values, const Scalar& scalar) {
+/// `runs`: those with a number, or pairs of them.
+Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
+                 std::size_t runs, Values values, const Scalar& scalar, std::string note) {
   if (values.not_positive > 0) {
     add(note, fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
                           values.not_positive, values.runs, scalar.reach));
@@ -63,23 +73,6 @@ void add_missing(std::string& note, const Values& values, const Scalar& scalar) 
                                                       : "have no value at",
                           scalar.reach));
   }
-}
-
-/// One number of each run.
-Entered entered_by(const Scalar& scalar, std::initializer_list<RunGroup> groups) {
-  Entered entered = entered_with({"value", "missing"});
-  for (const RunGroup group : groups) {
-    for (const FigureRun* run : group) {
-      const RunValue value = scalar.of(*run);
-      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
-    }
-  }
-  return entered;
-}
-
-Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
-                 std::size_t runs, const Values& values, const Scalar& scalar, std::string note) {
-  add_missing(note, values, scalar);
   if (values.runs == 0) {
     note = no_group;
   } else if (!values.enough) {
@@ -88,18 +81,9 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   } else if (runs < least_runs) {
     add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
-  return decide(claim, quantity, estimate, runs, std::move(note));
-}
-
-/// The number of each run; not a number where it has none.
-std::vector<double> numbers_of(RunGroup group, const Values& values,
-                               const std::function<double(double)>& number) {
-  std::vector<double> numbers;
-  for (const FigureRun* run : group) {
-    const auto found = values.found.find(run);
-    numbers.push_back(found == values.found.end() ? std::nan("") : number(found->second));
-  }
-  return numbers;
+  Verdict verdict = decide(claim, quantity, estimate, runs, std::move(note));
+  verdict.entered = std::move(values.entered);
+  return verdict;
 }
 
 /// Differences a - b of the packings that both groups have: each of the mean over its runs.
@@ -108,17 +92,15 @@ struct Pairs {
   bool any = false;    ///< different runs share a packing, with numbers or without
   bool enough = true;  ///< three quarters of the packings of each group
 };
-Pairs paired(RunGroup a, RunGroup b, const Values& values,
-             const std::function<double(double)>& number) {
+Pairs paired(RunGroup a, RunGroup b, const Values& values) {
   Pairs pairs;
   const auto first = by_packing(a), second = by_packing(b);
   for (const auto& [packing, runs] : first) {
-    const auto same = std::ranges::find(second, packing, [](const auto& of) { return of.first; });
+    const auto same = second.find(packing);
     if (same == second.end() || same->second == runs) continue;
     pairs.any = true;
-    const std::vector<double> x = over_packings(runs, numbers_of(runs, values, number));
-    const std::vector<double> y =
-        over_packings(same->second, numbers_of(same->second, values, number));
+    const std::vector<double> x = values.over_packings(runs);
+    const std::vector<double> y = values.over_packings(same->second);
     if (!x.empty() && !y.empty()) pairs.differences.push_back(x.front() - y.front());
   }
   pairs.enough = 4 * pairs.differences.size() >= 3 * std::max(first.size(), second.size());
@@ -199,21 +181,16 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 
 PackingGroups by_packing(RunGroup group) {
   PackingGroups packings;
-  for (const FigureRun* run : group) {
-    auto same =
-        std::ranges::find(packings, packing_of(*run), [](const auto& of) { return of.first; });
-    if (same == packings.end()) same = packings.insert(same, {packing_of(*run), {}});
-    same->second.push_back(run);
-  }
+  for (const FigureRun* run : group) packings[packing_of(*run)].push_back(run);
   return packings;
 }
 
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
   const auto number = [&](double value) { return scalar.relative ? std::log(value) : value; };
   Values all;
-  all.take(scalar, a, scalar.relative);
-  all.take(scalar, b, scalar.relative);
-  const Pairs pairs = paired(a, b, all, number);
+  all.take(scalar, a, number);
+  all.take(scalar, b, number);
+  const Pairs pairs = paired(a, b, all);
   std::optional<Estimate> estimate;
   std::string note;
   std::size_t runs = 0;
@@ -227,8 +204,7 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
       estimate.reset();
     }
   } else {
-    const std::vector<double> x = over_packings(a, numbers_of(a, all, number));
-    const std::vector<double> y = over_packings(b, numbers_of(b, all, number));
+    const std::vector<double> x = all.over_packings(a), y = all.over_packings(b);
     estimate = difference_of_means(x, y);
     runs = std::min(x.size(), y.size());
     note = fmt::format("{} and {} independent runs", x.size(), y.size());
@@ -236,33 +212,30 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
   if (estimate && scalar.relative) {  // a difference of logarithms
     estimate = mapped(*estimate, [](double log_ratio) { return std::expm1(log_ratio); });
   }
-  if (a.empty() || b.empty()) all = {};
+  if (a.empty() || b.empty()) all.runs = 0;
   Verdict verdict = conclude(
       claim, (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
       estimate, runs, all, scalar, std::move(note));
   verdict.counted = pairs.any ? Counted::pairs : Counted::runs_per_variant;
-  verdict.entered = entered_by(scalar, {a, b});
   return verdict;
 }
 
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
-  Values all;
-  all.take(scalar, runs);
   const double sign = published < 0 ? -1 : 1;  // a higher value has a positive difference
   const auto number = [&](double value) {
     return scalar.relative ? sign * (value / published - 1) : value - published;
   };
-  std::vector<double> values = over_packings(runs, numbers_of(runs, all, number));
-  std::sort(values.begin(), values.end());  // not in the order of addresses
+  Values all;
+  all.take(scalar, runs, number);
+  std::vector<double> values = all.over_packings(runs);
+  std::sort(values.begin(), values.end());  // the same bits in any order of the runs
   std::string quantity = scalar.name;
   if (scalar.relative) {
     quantity += fmt::format(", relative difference from {:.6g}", published);
   } else if (published != 0) {
     quantity += fmt::format(" less {:.6g}", published);
   }
-  Verdict verdict = conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
-  verdict.entered = entered_by(scalar, {runs});
-  return verdict;
+  return conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
 }
 
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& measure, double level) {
@@ -321,20 +294,196 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
       decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
              runs, std::move(note));
   verdict.counted = Counted::runs_per_variant;
-  const auto cycle_of = [&](const FigureRun& run) -> RunValue {
-    const FigureRun* alone = &run;
-    const std::vector<Waiting> wait = waits(RunGroup(&alone, 1));
-    if (wait.empty()) return {0, Missing::checkpoint};
-    return {wait.front().cycle, wait.front().observed ? Missing::nothing : Missing::too_short};
-  };
   verdict.entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {
     for (const FigureRun* run : group) {
-      const RunValue cycle = cycle_of(*run);
+      RunValue cycle = {0, Missing::checkpoint};
+      for (const Waiting& wait : waits(RunGroup(&run, 1))) {
+        cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
+      }
       enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, verdict.entered);
     }
   }
   return verdict;
+}
+
+namespace {
+
+/// The compared number. Of an expression: the runs must come from with_values().
+Scalar scalar_of(const ClaimSpec& claim) {
+  const Measure* measure = find_measure(claim.compare);
+  const bool has_words = measure != nullptr && !measure->words.empty();
+  const std::string name = has_words ? std::string(measure->words) : claim.compare;
+  Scalar scalar;
+  if (const Measure* of_run = find_measure(claim.compare, MeasureKind::run)) {
+    scalar = of_whole_run(*of_run);
+  } else if (claim.cycles) {
+    scalar = over_cycles(name, claim.compare, static_cast<std::int64_t>(claim.cycles->at(0)),
+                         static_cast<std::int64_t>(claim.cycles->at(1)));
+  } else if (claim.phi) {
+    scalar = over_phi(name, claim.compare, claim.phi->at(0), claim.phi->at(1));
+  } else {
+    const auto of = [text = claim.compare](const FigureRun& run) {
+      return measured(number_of(run, text));
+    };
+    scalar = {claim.compare, claim.compare, of};
+  }
+  scalar.relative = claim.relative;
+  return scalar;
+}
+
+/// What the runs of such a claim wait for.
+std::string event_of(const ClaimSpec& claim) {
+  return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
+}
+
+/// The name of the compared number in sentences.
+std::string quantity_of(const ClaimSpec& claim) {
+  return compares_waits(claim) ? "the cycle of " + event_of(claim) : scalar_of(claim).name;
+}
+
+/// Crystallization changes a mean over cycles: the note counts the runs that begin to crystallize
+/// before the last of these.
+void note_early_onsets(const ClaimSpec& claim, std::initializer_list<RunGroup> groups,
+                       Verdict& verdict) {
+  if (!claim.cycles || claim.cycles->at(0) == claim.cycles->at(1)) return;
+  const std::uint64_t last = claim.cycles->at(1);
+  std::size_t early = 0, all = 0;
+  for (const RunGroup group : groups) {
+    all += group.size();
+    early += static_cast<std::size_t>(
+        std::ranges::count_if(waits_for_onset(group), [&](const Waiting& wait) {
+          return wait.observed && wait.cycle < static_cast<double>(last);
+        }));
+  }
+  if (early == 0) return;
+  verdict.note +=
+      fmt::format("; {} of all {} runs have their onset before cycle {}", early, all, last);
+}
+
+std::string published_in_words(const PublishedSpec& published) {
+  return fmt::format("{}{} ({})", published.value.value_or(0),
+                     published.error > 0 ? fmt::format(" ± {}", published.error) : "",
+                     published.source);
+}
+
+/// What the claim says. `sides`: names of the variants.
+Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
+  const bool waits = compares_waits(claim);
+  const std::string name = quantity_of(claim);
+  const bool same = claim.is == Relation::same, higher = claim.is == Relation::higher;
+  std::string how = same ? "the same" : std::string(name_of(claim.is));
+  if (waits && !same) how = higher ? "later" : "earlier";
+  if (!same && claim.margin > 0) {
+    how += " by more than " + (waits ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
+                               : claim.relative ? fmt::format("{} %", 100 * claim.margin)
+                                                : fmt::format("{}", claim.margin));
+  }
+  std::string text = claim.statement;
+  if (text.empty() && claim.published) {
+    text = fmt::format(
+        "{}: {} is {} {}{}", claim.name, name, same ? "as published," : how + " than published,",
+        published_in_words(*claim.published), sides[0].empty() ? "" : ", for " + sides[0]);
+  } else if (text.empty()) {
+    text = fmt::format("{}: {} is {} for {} {} {}", claim.name, name, how, sides[0],
+                       same ? "and" : "than for", sides[1]);
+  }
+  return {text, claim.is == Relation::lower ? -claim.margin : claim.margin, claim.is};
+}
+
+/// The verdict on runs of both sides, or of the first one with a published number.
+Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
+  if (compares_waits(claim)) {
+    const auto waits = [&claim](RunGroup runs) {
+      return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
+    };
+    return compare_waits(stated, event_of(claim), waits, a, b);
+  }
+  if (claim.published) {
+    const double published = *claim.published->value;
+    if (claim.margin > 0) return compare_with(stated, scalar_of(claim), a, published);
+    return compare_with({stated.text, published, stated.claimed}, scalar_of(claim), a, 0);
+  }
+  Verdict verdict = compare(stated, scalar_of(claim), a, b);
+  note_early_onsets(claim, {a, b}, verdict);
+  return verdict;
+}
+
+FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> given) {
+  std::vector<FigureRun> computed;  // with the values of an expression
+  if (is_expression(claim.compare)) computed = with_values(given, {claim.compare});
+  const std::span<const FigureRun> runs = computed.empty() ? given : computed;
+  std::array<std::vector<const FigureRun*>, 2> sides;
+  std::array<std::size_t, 2> counts = {1, 1};
+  std::array<std::string, 2> words;  // as people name the variants
+  const std::size_t compared = claim.published ? 1 : 2;
+  for (std::size_t k = 0; k < compared; ++k) {
+    sides.at(k) = runs_with(claim.between.at(k), runs);
+    counts.at(k) = std::max<std::size_t>(count_variants(sides.at(k)), 1);
+    const bool named = !sides.at(k).empty() && !sides.at(k).front()->name.empty();
+    words.at(k) = named ? sides.at(k).front()->name : words_of(claim.between.at(k));
+    if (claim.between.at(k).empty()) words.at(k).clear();
+    if (claim.optional && sides.at(k).empty()) return {};
+  }
+  const Claim decided = stated(claim, words);
+  const bool same = !sides[0].empty() && !sides[1].empty() &&
+                    sides[0].front()->run_id == sides[1].front()->run_id;
+  const std::vector<std::string> problems = problems_of_sides(claim, counts, same);
+  if (!problems.empty() && !claim.listed) {
+    throw UsageError(fmt::format("claim {}: {}", claim.name, problems.front()));
+  }
+  if (!problems.empty()) sides = {};
+  for (std::size_t k = 0; k < compared; ++k) {
+    if (!sides.at(k).empty() || claim.listed) continue;
+    return {{},
+            {decide(decided, "difference in " + quantity_of(claim), std::nullopt, 0,
+                    fmt::format("no run{} has a checkpoint{}",
+                                words.at(k).empty() ? "" : " with " + words.at(k),
+                                claim.cycles ? " of " + scalar_of(claim).reach : ""))}};
+  }
+  return {{}, {decided_by(claim, decided, sides[0], sides[1])}};
+}
+
+}  // namespace
+
+bool compares_waits(const ClaimSpec& claim) {
+  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+  return claim.reaches || (of_run != nullptr && of_run->waits && !claim.published);
+}
+
+std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
+                                           const std::array<std::size_t, 2>& variants, bool same) {
+  if (!claim.published && claim.between[0] == claim.between[1]) {
+    return {"both sides of `between` are the same. Name two variants."};
+  }
+  std::vector<std::string> problems;
+  for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
+    if (variants[k] == 1) continue;
+    problems.push_back(
+        (claim.between[k].empty()
+             ? fmt::format("there are {} variants; `of` must name one.", variants[k])
+             : fmt::format("{} variants have {}; `{}` must name one{}.", variants[k],
+                           words_of(claim.between[k]), claim.published ? "of" : "between",
+                           claim.published ? "" : " on each side")));
+  }
+  if (same) {
+    problems.emplace_back(
+        "both sides of `between` are the same runs, so their difference is exactly zero. Name two "
+        "variants that differ.");
+  }
+  return problems;
+}
+
+Figure claim_figure(const ClaimSpec& claim) {
+  Figure figure{claim.name, "",
+                [claim](std::span<const FigureRun> runs) { return decide_claim(claim, runs); }};
+  figure.needs = needs_of({claim.compare});
+  figure.within = claim.cycles;
+  figure.uses = [claim](const FigureRun& run) {
+    return has_parameters(run, claim.between[0]) ||
+           (!claim.published && has_parameters(run, claim.between[1]));
+  };
+  return figure;
 }
 
 }  // namespace shearcell

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Claims about runs: one number per run, compared between two groups of runs or with a published
-// number.
+// number; those that a manifest states, and those of the figures that are computed here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
-#include <span>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,46 @@
 #include "analysis/verdict.hpp"
 
 namespace shearcell {
+
+/// Published numbers: one value, or points.
+struct PublishedSpec {
+  std::string label;  ///< in the key of a plot
+  std::string source;
+  std::optional<double> value = {};
+  double error = 0;                              ///< of the value; 0: not stated
+  std::vector<std::vector<double>> points = {};  ///< x, y and perhaps the error of y
+
+  bool operator==(const PublishedSpec&) const = default;
+};
+
+/// A claim that a manifest states.
+struct ClaimSpec {
+  std::string name;
+  std::string figure = {};  ///< as PlotSpec::figure
+  std::string compare;      ///< as PlotSpec::y, but no curve
+  /// What is compared of a measure of checkpoints, one of three: its mean over cycles, first to
+  /// last; its mean over a window of phi; the first cycle at which it has at least this value. None
+  /// of them for a measure of the whole run.
+  std::optional<std::array<std::uint64_t, 2>> cycles = {};
+  std::optional<std::array<double, 2>> phi = {};
+  std::optional<double> reaches = {};
+  /// Two variants, each by parameters and their values. The second is empty if the first is
+  /// compared with a published number.
+  std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
+  std::optional<PublishedSpec> published = {};
+  /// In units of the measure; for onset_size_cycle and `reaches`, of log2 of the ratio. 0: the
+  /// published number is a bound.
+  double margin = 0;
+  bool relative = false;       ///< the margin is of the relative difference
+  std::string statement = {};  ///< what the claim says, for people; "": from its keys
+  Relation is = Relation::same;
+  bool optional = false;  ///< no verdict if a side has no runs
+  /// As PlotSpec::listed. A side that is not one variant then has no runs; otherwise it is an
+  /// error.
+  bool listed = false;
+
+  bool operator==(const ClaimSpec&) const = default;
+};
 
 /// One number per run.
 struct Scalar {
@@ -43,7 +85,7 @@ Scalar onset_phi();
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
 /// The runs of a group by packing_of(), in the order of the group.
-using PackingGroups = std::vector<std::pair<std::string, std::vector<const FigureRun*>>>;
+using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FigureRun*>>;
 PackingGroups by_packing(RunGroup group);
 
 /// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
@@ -67,6 +109,18 @@ std::vector<Waiting> waits_for_onset(RunGroup runs);
 Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
+
+/// Whether the claim compares waiting times: a run may end before the event.
+bool compares_waits(const ClaimSpec& claim);
+
+/// One sentence for each reason why the sides of a claim cannot be compared. `variants`: how many
+/// variants have the values of each side; `same`: whether both sides have the same runs.
+std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
+                                           const std::array<std::size_t, 2>& variants, bool same);
+
+/// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
+/// Its function throws UsageError with the first of problems_of_sides().
+Figure claim_figure(const ClaimSpec& claim);
 
 /// An empty table of what entered a verdict: group (the run's variant), seed, packing, then these
 /// columns.

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include "analysis/error.hpp"
@@ -127,36 +127,26 @@ Structure structure(double phi_local, double q6, double least_phi_local, double 
 Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
                           double least_face) {
   const std::size_t count = crystalline.size();
-  // Disjoint sets of grains; the root of a set is its lowest id.
-  std::vector<std::size_t> parent(count);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root_of = [&](std::size_t i) {
-    while (parent[i] != i) {
-      parent[i] = parent[parent[i]];
-      i = parent[i];
-    }
-    return i;
-  };
+  boost::disjoint_sets_with_storage<> sets(count);
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
     for (const VoronoiFace& face : diagram.faces_of(i)) {
       if (face.kind != NeighbourKind::grain || face.area < least_face) continue;
       const auto j = static_cast<std::size_t>(face.neighbour);
-      if (crystalline[j] == 0) continue;
-      const auto [lower, higher] = std::minmax({root_of(i), root_of(j)});
-      parent[higher] = lower;
+      if (crystalline[j] != 0) sets.union_set(i, j);
     }
   }
   Crystallites result;
   result.label.assign(count, -1);
+  std::vector<std::int32_t> label_of(count, -1);  // of the set that a grain stands for
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
-    const std::size_t root = root_of(i);  // root <= i, so it has its label already
-    if (root == i) {
-      result.label[i] = static_cast<std::int32_t>(result.size.size());
+    std::int32_t& label = label_of[sets.find_set(i)];
+    if (label < 0) {
+      label = static_cast<std::int32_t>(result.size.size());
       result.size.push_back(0);
     }
-    result.label[i] = result.label[root];
+    result.label[i] = label;
     std::int32_t& size = ++result.size[static_cast<std::size_t>(result.label[i])];
     result.largest = std::max(result.largest, size);
   }

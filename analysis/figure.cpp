@@ -10,6 +10,7 @@
 
 #include "analysis/figures/figures.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 
@@ -22,10 +23,7 @@ RunValue measured(double value) {
 }
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
-  for (const nlohmann::json* values : {&run.swept, &run.parameters}) {
-    if (values->is_object() && values->contains(key)) return values->at(key);
-  }
-  return nullptr;
+  return member_of(run.swept.contains(key) ? run.swept : run.parameters, key.c_str());
 }
 
 bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated) {
@@ -40,33 +38,48 @@ bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
   });
 }
 
-bool sweeps_engine(const FigureRun& run) {
-  return run.swept.is_object() && run.swept.contains("engine");
-}
-
 const std::string& packing_of(const FigureRun& run) {
   return run.packing.empty() ? run.run_id : run.packing;
 }
 
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
-  std::map<std::string_view, std::size_t> places;
-  std::vector<std::pair<double, double>> sums;  // with their counts
+  nlohmann::ordered_map<std::string, std::vector<double>> packings;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    if (!std::isfinite(values[k])) continue;
-    const auto [place, fresh] = places.try_emplace(packing_of(*runs[k]), sums.size());
-    if (fresh) sums.emplace_back();
-    auto& [sum, count] = sums[place->second];
-    sum += values[k];
-    ++count;
+    if (std::isfinite(values[k])) packings[packing_of(*runs[k])].push_back(values[k]);
   }
   std::vector<double> means;
-  for (const auto& [sum, count] : sums) means.push_back(sum / count);
+  for (const auto& [packing, found] : packings) means.push_back(over_runs(found).mean.value());
   return means;
 }
 
 double number_of(const FigureRun& run, const std::string& key) {
   const nlohmann::json value = parameter_of(run, key);
   return value.is_number() ? value.get<double>() : std::nan("");
+}
+
+std::vector<const FigureRun*> pointers(std::span<const FigureRun> runs) {
+  std::vector<const FigureRun*> all;
+  for (const FigureRun& run : runs) all.push_back(&run);
+  return all;
+}
+
+std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
+                                                        const std::string& parameter) {
+  std::map<double, std::vector<const FigureRun*>> groups;
+  for (const FigureRun& run : runs) {
+    const double value = number_of(run, parameter);
+    if (std::isfinite(value)) groups[value].push_back(&run);
+  }
+  return groups;
+}
+
+double at_start(RunGroup runs, const std::string& measure) {
+  std::vector<double> values;
+  for (const FigureRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    values.push_back(run->checkpoints.front().measures.number(measure));
+  }
+  return over_runs(values).mean.value_or(std::nan(""));
 }
 
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -101,15 +102,18 @@ std::vector<double> over_packings(RunGroup runs, std::span<const double> values)
 /// The value of a parameter as a number; NaN if it is not a number.
 double number_of(const FigureRun& run, const std::string& key);
 
+std::vector<const FigureRun*> pointers(std::span<const FigureRun> runs);
+/// Runs by the value of a parameter, ascending. Runs without a number are left out.
+std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRun> runs,
+                                                        const std::string& parameter);
+/// Mean over runs of the measure at their first checkpoint; not a number if there is none.
+double at_start(RunGroup runs, const std::string& measure);
+
 /// Whether a value is as stated. Numbers may differ by a millionth, since a manifest may round
 /// them.
 bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated);
 /// Whether the run has these parameters.
 bool has_parameters(const FigureRun& run, const nlohmann::json& where);
-
-/// Whether the engine is one of the run's swept values: `run --engine` adds such runs to an
-/// experiment.
-bool sweeps_engine(const FigureRun& run);
 
 /// Returns those of `keys` that distinguish the variants: each of them varies, and without it two
 /// variants would be equal. Of keys that advance together only the first is returned. `variants`

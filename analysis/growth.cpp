@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <utility>
 
 namespace shearcell {
 namespace {
 
 using Selection = std::span<const std::size_t>;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
@@ -104,47 +103,41 @@ GrowthCount& GrowthCount::operator+=(const GrowthCount& other) {
 }
 
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts) {
-  struct Outcome {
-    std::int32_t larger = 0;
-    std::int32_t same = 0;
-    std::int32_t smaller = 0;
-  };
-  std::vector<Outcome> fates(now.size.size());
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by both labels
   std::size_t l = 0;  // both lists of grains ascend
   for (std::size_t k = 0; k < now.grain.size(); ++k) {
     while (l < later.grain.size() && later.grain[l] < now.grain[k]) ++l;
     if (l == later.grain.size()) break;
-    if (later.grain[l] != now.grain[k]) continue;
-    const auto label = static_cast<std::size_t>(now.label[k]);
-    ++shared[{now.label[k], later.label[l]}];
-    const std::int32_t before = now.size[label];
-    const std::int32_t after = later.size[static_cast<std::size_t>(later.label[l])];
-    if (after > before) ++fates[label].larger;
-    if (after == before) ++fates[label].same;
-    if (after < before) ++fates[label].smaller;
+    if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  // The crystallite that each later one has most grains of, and the later one of each.
-  struct Most {
-    std::int32_t grains = 0, of = -1;
+  struct Outcome {
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of such sizes
+    std::int32_t most = 0;                           // grains in the crystallite `end`
+    std::size_t end = 0;
   };
-  std::vector<Most> origin(later.size.size()), end(now.size.size());
+  std::vector<Outcome> fates(now.size.size());
+  struct Origin {
+    std::int32_t most = 0, size = 0;  // of the crystallite that a later one has most grains of
+  };
+  std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {
-    const auto [before_label, after_label] = labels;
-    Most &from = origin[static_cast<std::size_t>(after_label)],
-         &to = end[static_cast<std::size_t>(before_label)];
-    if (grains > from.grains) from = {grains, before_label};
-    if (grains > to.grains) to = {grains, after_label};
+    const auto after = static_cast<std::size_t>(labels.second);
+    Outcome& fate = fates[static_cast<std::size_t>(labels.first)];
+    const std::int32_t size = now.size[static_cast<std::size_t>(labels.first)];
+    if (later.size[after] > size) fate.larger += grains;
+    if (later.size[after] == size) fate.same += grains;
+    if (later.size[after] < size) fate.smaller += grains;
+    if (grains > fate.most) fate.most = grains, fate.end = after;
+    if (grains > origins[after].most) origins[after] = {grains, size};
   }
   for (std::size_t c = 0; c < fates.size(); ++c) {
+    const auto& [larger, same, smaller, most, end] = fates[c];
     const std::int32_t size = now.size[c];
-    const std::int32_t smaller_or_none = size - fates[c].larger - fates[c].same;
     GrowthCount& count = counts[size];
-    if (2 * fates[c].larger > size) {
-      const std::int32_t from = origin[static_cast<std::size_t>(end[c].of)].of;
-      ++(now.size[static_cast<std::size_t>(from)] > size ? count.absorbed : count.grew);
-    } else if (2 * smaller_or_none > size) {
-      ++(2 * fates[c].smaller > size ? count.shrank : count.vanished);
+    if (2 * larger > size) {
+      ++(origins[end].size > size ? count.absorbed : count.grew);
+    } else if (2 * (size - larger - same) > size) {  // in smaller ones or in none
+      ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }
 }
@@ -184,10 +177,10 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
     }
     const std::size_t n = bin.count.larger() + bin.count.smaller();
     if (n < least_counted) continue;
-    const auto error = bootstrap_error(runs.size(), [&](std::span<const std::size_t> selection) {
+    const auto error = bootstrap_error(runs.size(), [&](Selection selection) {
       GrowthCount sum;
       for (const std::size_t k : selection) sum += of_run[k];
-      return std::optional<double>(delta_rho_of(sum));
+      return delta_rho_of(sum);
     });
     bin.size = std::exp(log_sizes / static_cast<double>(n));
     bin.delta = delta_rho_of(bin.count);
@@ -224,35 +217,29 @@ GrowthCurve::Sums GrowthCurve::over(Selection selection) const {
 }
 
 double GrowthCurve::delta_rho(std::int32_t size) const {
-  Sums sums = Sums::Zero();
-  for (const Sums& run : runs_) sums += run;
-  return smooth(sums)[size - 1];
+  return smooth(std::accumulate(runs_.begin(), runs_.end(), Sums(Sums::Zero())))[size - 1];
 }
 
 std::optional<double> GrowthCurve::delta_rho_error(std::int32_t size) const {
   return bootstrap_error(runs_.size(), [&](Selection selection) {
     Eigen::Array<double, 1, 6> sums = Eigen::Array<double, 1, 6>::Zero();
     for (const std::size_t run : selection) sums += runs_[run].row(size - 1);
-    return std::optional<double>(smooth(sums)[0]);
+    return smooth(sums)[0];
   });
 }
 
 std::optional<Estimate> GrowthCurve::critical_size() const {
-  return bootstrapped(runs_.size(), [&](Selection selection) {
-    return std::optional<double>(rise(over(selection)));
-  });
+  return bootstrapped(runs_.size(), [&](Selection selection) { return rise(over(selection)); });
 }
 
 std::optional<Estimate> GrowthCurve::monotone_critical_size() const {
-  return bootstrapped(runs_.size(), [&](Selection selection) {
-    return std::optional<double>(best_division(over(selection)));
-  });
+  return bootstrapped(runs_.size(),
+                      [&](Selection selection) { return best_division(over(selection)); });
 }
 
 Interval GrowthCurve::repeated_critical_size(std::size_t runs) const {
-  return repetitions(runs_.size(), runs, [&](Selection selection) {
-    return std::optional<double>(rise(over(selection)));
-  });
+  return repetitions(runs_.size(), runs,
+                     [&](Selection selection) { return rise(over(selection)); });
 }
 
 }  // namespace shearcell

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"

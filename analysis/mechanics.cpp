@@ -25,28 +25,21 @@ struct Touch {
 // A grain with fewer than four contacts is a rattler. Contacts with rattlers do not count, so
 // grains are removed until each of the others has at least four.
 std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touch> touches) {
-  std::vector<int> held(grains, 0);
-  std::vector<std::vector<std::int32_t>> neighbours(grains);
-  for (const Touch& touch : touches) {
-    ++held[static_cast<std::size_t>(touch.grain)];
-    if (touch.other < 0) continue;
-    ++held[static_cast<std::size_t>(touch.other)];
-    neighbours[static_cast<std::size_t>(touch.grain)].push_back(touch.other);
-    neighbours[static_cast<std::size_t>(touch.other)].push_back(touch.grain);
-  }
   std::vector<std::uint8_t> rattler(grains, 0);
-  std::vector<std::size_t> loose;
-  for (std::size_t i = 0; i < grains; ++i) {
-    if (held[i] < kHeld) loose.push_back(i);
-  }
-  while (!loose.empty()) {
-    const std::size_t i = loose.back();
-    loose.pop_back();
-    if (rattler[i] != 0) continue;
-    rattler[i] = 1;
-    for (const std::int32_t j : neighbours[i]) {
-      const auto n = static_cast<std::size_t>(j);
-      if (--held[n] < kHeld && rattler[n] == 0) loose.push_back(n);
+  for (bool any_more = true; any_more;) {
+    std::vector<int> held(grains, 0);
+    for (const Touch& touch : touches) {
+      const auto a = static_cast<std::size_t>(touch.grain);
+      const auto b = touch.other < 0 ? a : static_cast<std::size_t>(touch.other);
+      if (rattler[a] != 0 || rattler[b] != 0) continue;
+      ++held[a];
+      held[b] += a == b ? 0 : 1;
+    }
+    any_more = false;
+    for (std::size_t i = 0; i < grains; ++i) {
+      if (rattler[i] != 0 || held[i] >= kHeld) continue;
+      rattler[i] = 1;
+      any_more = true;
     }
   }
   return rattler;
@@ -119,17 +112,6 @@ double fluctuation(const State& state, Selected interior) {
   return sum;
 }
 
-void set_stress(const Eigen::Matrix3d& stress, Mechanics& m) {
-  m.stress_xx = stress(0, 0);
-  m.stress_yy = stress(1, 1);
-  m.stress_zz = stress(2, 2);
-  m.stress_xy = stress(0, 1);
-  m.stress_xz = stress(0, 2);
-  m.stress_yz = stress(1, 2);
-  m.pressure = stress.trace() / 3;
-  m.deviator = std::sqrt(0.5 * (stress - m.pressure * Eigen::Matrix3d::Identity()).squaredNorm());
-}
-
 void set_coordination(std::size_t grains, std::span<const Touch> touches, Selected interior,
                       Mechanics& m) {
   const std::vector<std::uint8_t> rattler = find_rattlers(grains, touches);
@@ -167,17 +149,12 @@ PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double>
   ContactSums sums = sums_of(checkpoint, interior);
   for (std::size_t i = 0; i < grains; ++i) sums.trace[i] /= 3 * cell_volume[i];
   Mechanics m;
-  set_stress(sums.virial / volume, m);
+  m.stress = sums.virial / volume;
+  m.pressure = m.stress.trace() / 3;
+  m.deviator = std::sqrt(0.5 * (m.stress - m.pressure * Eigen::Matrix3d::Identity()).squaredNorm());
   m.kinetic_pressure = fluctuation(state, interior) / (3 * volume);
   set_coordination(grains, sums.touches, interior, m);
-  const auto set_force = [&](WallSide side, double& x, double& y) {
-    x = sums.force(0, static_cast<Eigen::Index>(side));
-    y = sums.force(1, static_cast<Eigen::Index>(side));
-  };
-  set_force(WallSide::bottom, m.force_bottom_x, m.force_bottom_y);
-  set_force(WallSide::top, m.force_top_x, m.force_top_y);
-  set_force(WallSide::left, m.force_left_x, m.force_left_y);
-  set_force(WallSide::right, m.force_right_x, m.force_right_y);
+  m.wall_force = sums.force.topRows<2>();
   const auto count = static_cast<double>(grains);
   m.elastic_energy = 0.5 * sums.squares / count;
   m.kinetic_energy = 0.5 * state.velocity.squaredNorm() / count;
@@ -185,30 +162,29 @@ PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double>
   return {m, std::move(sums.trace)};
 }
 
-MechanicalUnits mechanical_units(double stiffness_N_per_m, double mass_kg, double diameter_m,
-                                 double gravity_m_per_s2) {
-  const double k = stiffness_N_per_m, m = mass_kg, d = diameter_m;
-  return {k / d, m / d, k * d, k * d * d, m * d * d, m * gravity_m_per_s2 * d};
-}
-
 MechanicalUnits mechanical_units(const MeasureInput& input) {
   const RunFacts none, &run = input.run == nullptr ? none : *input.run;
-  double stiffness = run.number("stiffness_N_per_m");
+  double k = run.number("stiffness_N_per_m");
   if (input.checkpoint != nullptr) {
     const auto& recorded = input.checkpoint->observables;
     const auto raised = recorded.find("stiffness_N_per_m");
-    if (raised != recorded.end()) stiffness = raised->second;
+    if (raised != recorded.end()) k = raised->second;
   }
-  return mechanical_units(stiffness, run.number("mass_kg"), run.number("diameter_m"),
-                          run.number("gravity_m_per_s2"));
+  const double m = run.number("mass_kg"), d = run.number("diameter_m");
+  return {k / d, m / d, k * d, k * d * d, m * d * d, m * run.number("gravity_m_per_s2") * d};
 }
 
 namespace {
 
+template <int axis, WallSide side>
+double force_on(const Mechanics& m) {
+  return m.wall_force(axis, static_cast<Eigen::Index>(side));
+}
+
 /// A measure, and the unit of the member that it is made from; null for a pure number.
 struct MechanicalMeasure {
   Measure measure;
-  double Mechanics::*value;
+  double (*value)(const Mechanics& m);
   double MechanicalUnits::*unit = nullptr;
 };
 
@@ -217,70 +193,79 @@ const std::vector<MechanicalMeasure>& mechanical_measures() {
   using U = MechanicalUnits;
   static const std::vector<MechanicalMeasure> all = {
       {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
-       &M::pressure,
+       [](const M& m) { return m.pressure; },
        &U::stress_Pa},
       {{"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
-       &M::deviator,
+       [](const M& m) { return m.deviator; },
        &U::stress_Pa},
       {{"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       &M::stress_xx,
+       [](const M& m) { return m.stress(0, 0); },
        &U::stress_Pa},
       {{"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       &M::stress_yy,
+       [](const M& m) { return m.stress(1, 1); },
        &U::stress_Pa},
       {{"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       &M::stress_zz,
+       [](const M& m) { return m.stress(2, 2); },
        &U::stress_Pa},
       {{"stress_xy_Pa", "Pa",
         "shear stress of interior grains, with the sign of the others: a growing shear_strain "
         "makes it negative"},
-       &M::stress_xy,
+       [](const M& m) { return m.stress(0, 1); },
        &U::stress_Pa},
-      {{"stress_xz_Pa", "Pa", "shear stress of interior grains"}, &M::stress_xz, &U::stress_Pa},
-      {{"stress_yz_Pa", "Pa", "shear stress of interior grains"}, &M::stress_yz, &U::stress_Pa},
+      {{"stress_xz_Pa", "Pa", "shear stress of interior grains"},
+       [](const M& m) { return m.stress(0, 2); },
+       &U::stress_Pa},
+      {{"stress_yz_Pa", "Pa", "shear stress of interior grains"},
+       [](const M& m) { return m.stress(1, 2); },
+       &U::stress_Pa},
       {{"kinetic_pressure_Pa", "Pa",
         "kinetic part of the pressure, of velocities less the mean flow"},
-       &M::kinetic_pressure,
+       [](const M& m) { return m.kinetic_pressure; },
        &U::kinetic_stress_Pa},
-      {{"coordination", "1", "contacts per interior grain"}, &M::coordination},
+      {{"coordination", "1", "contacts per interior grain"},
+       [](const M& m) { return m.coordination; }},
       {{"rattlers_percent", "%",
         "interior grains with fewer than four contacts with walls and grains that are not "
         "rattlers"},
-       &M::rattlers},
+       [](const M& m) { return m.rattlers; }},
       {{"coordination_without_rattlers", "1",
         "contacts of interior grains that are not rattlers with walls and such grains, per such "
         "grain"},
-       &M::coordination_without_rattlers},
+       [](const M& m) { return m.coordination_without_rattlers; }},
       {{"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
-       &M::force_bottom_x,
+       &force_on<0, WallSide::bottom>,
        &U::force_N},
       {{"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
-       &M::force_bottom_y,
+       &force_on<1, WallSide::bottom>,
        &U::force_N},
-      {{"force_top_x_N", "N", "force of the grains on the top wall"}, &M::force_top_x, &U::force_N},
-      {{"force_top_y_N", "N", "force of the grains on the top wall"}, &M::force_top_y, &U::force_N},
+      {{"force_top_x_N", "N", "force of the grains on the top wall"},
+       &force_on<0, WallSide::top>,
+       &U::force_N},
+      {{"force_top_y_N", "N", "force of the grains on the top wall"},
+       &force_on<1, WallSide::top>,
+       &U::force_N},
       {{"force_left_x_N", "N", "force of the grains on the left wall"},
-       &M::force_left_x,
+       &force_on<0, WallSide::left>,
        &U::force_N},
       {{"force_left_y_N", "N", "force of the grains on the left wall"},
-       &M::force_left_y,
+       &force_on<1, WallSide::left>,
        &U::force_N},
       {{"force_right_x_N", "N", "force of the grains on the right wall"},
-       &M::force_right_x,
+       &force_on<0, WallSide::right>,
        &U::force_N},
       {{"force_right_y_N", "N", "force of the grains on the right wall"},
-       &M::force_right_y,
+       &force_on<1, WallSide::right>,
        &U::force_N},
       {{"elastic_energy_per_grain_J", "J",
         "elastic energy of all contacts over the number of grains"},
-       &M::elastic_energy,
+       [](const M& m) { return m.elastic_energy; },
        &U::elastic_J},
       {{"kinetic_energy_per_grain_J", "J",
         "kinetic energy over the number of grains, half a time step earlier"},
-       &M::kinetic_energy,
+       [](const M& m) { return m.kinetic_energy; },
        &U::kinetic_J},
       {{"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall"},
-       &M::height,
+       [](const M& m) { return m.height; },
        &U::weight_J}};
   return all;
 }
@@ -295,7 +280,7 @@ Provider mechanics_provider() {
     const MechanicalUnits units = mechanical_units(input);
     nlohmann::json found;
     for (const auto& [measure, value, unit] : mechanical_measures()) {
-      const double number = (*input.analysis->mechanics).*value;
+      const double number = value(*input.analysis->mechanics);
       found[std::string(measure.name)] = unit == nullptr ? number : number * (units.*unit);
     }
     return found;

@@ -72,14 +72,6 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
-Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now) {
-  if (earlier) return motion(*earlier, now);
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Index grains = now.state.position.cols();
-  return {Eigen::Matrix3Xd::Constant(3, grains, unknown),
-          std::vector<double>(static_cast<std::size_t>(grains), unknown)};
-}
-
 std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                                            std::span<const std::uint8_t> crystalline) {
   std::vector<std::uint8_t> boundary(crystalline.size(), 0);
@@ -94,22 +86,6 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
 
 namespace {
 
-constexpr auto any_grain = [](std::size_t) { return true; };
-
-/// Mean of the finite values of the interior grains for which `selected` holds.
-template <class Value, class Selected>
-double mean_over(const GrainMeasures& grains, const Value& value, const Selected& selected) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    if (grains.interior[i] == 0 || !selected(i)) continue;
-    const double one = value(i);
-    if (!std::isfinite(one)) continue;
-    sum += one;
-    ++count;
-  }
-  return sum / count;
-}
-
 nlohmann::json motion_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis->grains;
   nlohmann::json values = nlohmann::json::object();
@@ -123,8 +99,8 @@ nlohmann::json motion_of(const MeasureInput& input) {
       return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
     };
     const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
-    values[std::string("msd_") + lag] = mean_over(grains, square, any_grain);
-    values[std::string("d2min_") + lag] = mean_over(grains, nonaffine, any_grain);
+    values[std::string("msd_") + lag] = interior_mean(grains, square);
+    values[std::string("d2min_") + lag] = interior_mean(grains, nonaffine);
     if (cycles != 1) continue;
     // Motion over one cycle by the structure of the grains.
     std::vector<std::uint8_t> crystalline;
@@ -133,13 +109,17 @@ nlohmann::json motion_of(const MeasureInput& input) {
     }
     const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
     const auto returned = [&](std::size_t i) { return square(i) <= reversible_d * reversible_d; };
-    const auto inside = [&](std::size_t i) { return crystalline[i] != 0 && boundary[i] == 0; };
-    const auto at_boundary = [&](std::size_t i) { return boundary[i] != 0; };
-    const auto disordered = [&](std::size_t i) { return crystalline[i] == 0; };
+    const auto square_of = [&](bool is_crystalline, bool at_boundary) {
+      return interior_mean(grains, [&](std::size_t i) {
+        const bool counts =
+            (crystalline[i] != 0) == is_crystalline && (boundary[i] != 0) == at_boundary;
+        return counts ? square(i) : std::nan("");
+      });
+    };
     values["reversible_percent"] = percent_of_interior(grains, returned);
-    values["msd_inside_crystal_d2"] = mean_over(grains, square, inside);
-    values["msd_crystal_boundary_d2"] = mean_over(grains, square, at_boundary);
-    values["msd_disordered_d2"] = mean_over(grains, square, disordered);
+    values["msd_inside_crystal_d2"] = square_of(true, false);
+    values["msd_crystal_boundary_d2"] = square_of(true, true);
+    values["msd_disordered_d2"] = square_of(false, false);
   }
   return values;
 }

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,8 +30,6 @@ struct Motion {
 
 /// Throws AnalysisError if the checkpoints do not have the same grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later);
-/// motion(), with values that are not a number if there is no earlier checkpoint.
-Motion motion_since(const std::optional<Checkpoint>& earlier, const Checkpoint& now);
 
 /// One entry per grain: 1 for a crystalline grain with a neighbour, at most motion_neighbour_d
 /// away, that is not crystalline; else 0. `crystalline` has 1 or 0 for each grain.

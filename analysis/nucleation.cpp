@@ -7,10 +7,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "analysis/binning.hpp"
 #include "analysis/published.hpp"
@@ -22,28 +20,6 @@ double place(const CrystalliteMap& map, const Eigen::Vector3d& centre, CellAxis 
   if (axis == CellAxis::x) return (centre.x() + 1) / (map.width + 2);
   const double height = axis == CellAxis::y ? map.top - map.bottom : nominal_height * map.width;
   return (centre.y() - map.bottom) / height;
-}
-
-std::vector<double> histogram(std::span<const double> places, std::size_t bins) {
-  std::vector<double> counts(bins);
-  for (const double p : places) {
-    const double k = std::clamp(p * static_cast<double>(bins), 0.0, static_cast<double>(bins - 1));
-    ++counts[static_cast<std::size_t>(k)];
-  }
-  return counts;
-}
-
-/// Density of bin k over the selected groups.
-std::optional<double> pooled(std::span<const std::vector<double>> histograms,
-                             std::span<const std::size_t> selection, std::size_t k) {
-  double inside = 0;
-  double all = 0;
-  for (const std::size_t group : selection) {
-    inside += histograms[group][k];
-    for (const double count : histograms[group]) all += count;
-  }
-  if (all <= 0) return std::nullopt;
-  return inside / all * static_cast<double>(histograms.front().size());
 }
 
 Interval poisson_interval(std::size_t events) {
@@ -87,7 +63,7 @@ void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihoo
   const auto log_rate = [&](const Share& share) {
     return share.log_cycles + exponent * share.log_size + c.dot(share.terms);
   };
-  double events = 0, expected_events = 0, most = -std::numeric_limits<double>::infinity();
+  double events = 0, expected_events = 0, most = -infinite;
   for (const Share& share : shares) most = std::max(most, log_rate(share));
   for (const Share& share : shares) {
     events += share.events;
@@ -203,19 +179,28 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
   std::vector<std::size_t> every;
   for (const std::vector<double>& places : groups) {
     every.push_back(histograms.size());
-    histograms.push_back(histogram(places, bins));
+    std::vector<double>& counts = histograms.emplace_back(bins);
+    for (const double p : places) {
+      const double k = p * static_cast<double>(bins);
+      ++counts[static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(bins - 1)))];
+    }
   }
   std::vector<DensityBin> result;
   const double width = 1 / static_cast<double>(bins);
   for (std::size_t k = 0; k < bins; ++k) {
-    const std::optional<double> value = pooled(histograms, every, k);
-    if (!value) return {};
+    const auto density_of = [&](std::span<const std::size_t> selection) {
+      double inside = 0, all = 0;
+      for (const std::size_t group : selection) {
+        inside += histograms[group][k];
+        for (const double count : histograms[group]) all += count;
+      }
+      return inside / all * static_cast<double>(bins);
+    };
     const auto low = static_cast<double>(k) * width;
-    result.push_back({low, low + width, *value,
-                      bootstrap_error(groups.size(), [&](std::span<const std::size_t> selection) {
-                        return pooled(histograms, selection, k);
-                      })});
+    result.push_back(
+        {low, low + width, density_of(every), bootstrap_error(groups.size(), density_of)});
   }
+  if (std::isnan(result.front().density)) result.clear();  // no places
   return result;
 }
 
@@ -303,12 +288,11 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
   const auto unlikely = [&](double exponent) {
     return likelihood(amplitudes, exponent).logarithm < least;
   };
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Interval interval = {
       unlikely(-widest)
           ? bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); })
-          : -infinity,
-      unlikely(widest) ? bisected(value, widest, unlikely) : infinity};
+          : -infinite,
+      unlikely(widest) ? bisected(value, widest, unlikely) : infinite};
   return estimate_with(value, interval, normal_quantile((1 + confidence_level) / 2), counted);
 }
 

@@ -29,31 +29,11 @@ std::vector<Point> points_of(const FigureRun& run) {
   return points;
 }
 
-/// Least-squares slope of log_size against phi and the mean cycle, in the window around `phi`.
-struct Slope {
-  double slope;
-  double cycle;
-};
-std::optional<Slope> slope_at(std::span<const Point> points, double phi) {
-  constexpr std::size_t least_points = 4;
-  std::vector<std::pair<double, double>> within;
-  double cycle = 0, low = phi, high = phi;
-  for (const Point& p : points) {
-    if (std::abs(p.phi - phi) > slope_window / 2) continue;
-    within.emplace_back(p.phi, p.log_size);
-    cycle += p.cycle;
-    low = std::min(low, p.phi);
-    high = std::max(high, p.phi);
-  }
-  if (within.size() < least_points || high - low < slope_window / 2) return std::nullopt;
-  return Slope{least_squares_slope(within), cycle / static_cast<double>(within.size())};
-}
-
-}  // namespace
-
 double critical_size_for(const FigureRun& run) {
   return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
+
+}  // namespace
 
 RunOnset onset_by_size(const FigureRun& run) {
   const double critical_size = critical_size_for(run);
@@ -84,10 +64,20 @@ RunOnset onset_by_slope(const FigureRun& run) {
   const auto steps = static_cast<int>((highest.phi - lowest.phi) / step);
   for (int k = 0; k <= steps; ++k) {
     const double phi = lowest.phi + k * step;
-    const std::optional<Slope> here = slope_at(points, phi);
-    if (!here || here->slope <= steepest) continue;
-    steepest = here->slope;
-    found = {Observed::yes, phi, here->cycle};
+    std::vector<std::pair<double, double>> within;
+    double cycle = 0, low = phi, high = phi;
+    for (const Point& p : points) {
+      if (std::abs(p.phi - phi) > slope_window / 2) continue;
+      within.emplace_back(p.phi, p.log_size);
+      cycle += p.cycle;
+      low = std::min(low, p.phi);
+      high = std::max(high, p.phi);
+    }
+    if (within.size() < 4 || high - low < slope_window / 2) continue;
+    const double slope = least_squares_slope(within);
+    if (slope <= steepest) continue;
+    steepest = slope;
+    found = {Observed::yes, phi, cycle / static_cast<double>(within.size())};
   }
   return found;
 }
@@ -158,7 +148,7 @@ Onset onset(RunGroup runs, OnsetMethod method) {
   result.phi_error = bootstrap_error(phi.size(), [&](std::span<const std::size_t> selection) {
     std::vector<double> selected;
     for (const std::size_t run : selection) selected.push_back(phi[run]);
-    return over_runs(selected).mean;
+    return over_runs(selected).mean.value();
   });
   return result;
 }

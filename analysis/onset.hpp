@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <string_view>
 
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"
@@ -26,9 +24,6 @@ struct RunOnset {
   double phi = 0;    ///< only when observed
   double cycle = 0;  ///< likewise; between checkpoints
 };
-
-/// The supplement's critical size [grains] for the amplitude of the run.
-double critical_size_for(const FigureRun& run);
 
 /// Method 1: the first time that the largest crystallite has the critical size. phi and cycle are
 /// interpolated linearly in the size between this checkpoint and the checkpoint before. A run that

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -34,29 +33,29 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   return {std::move(name), std::move(unit), std::string(measure)};
 }
 
-/// A number of checkpoints or of a whole run; null if the text is neither.
-const Measure* find_scalar(std::string_view text) {
-  const Measure* measure = find_measure(text);
-  return measure != nullptr ? measure : find_measure(text, MeasureKind::run);
+const Measure* find_curve(std::string_view name) {
+  return find_measure(name, MeasureKind::curve);
 }
 
-/// The column of a number of checkpoints or runs, or of an expression. `name` replaces its name.
-MeasureColumn scalar_column(const std::string& text, const std::string& name = {}) {
+/// A number of checkpoints or of a whole run, or a curve; null if the text is none of them.
+const Measure* find_plotted(std::string_view text) {
+  const Measure* measure = find_measure(text);
+  if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
+  return measure != nullptr ? measure : find_curve(text);
+}
+
+/// The column of such a measure, or of an expression. `name` replaces its name.
+MeasureColumn column_for(const std::string& text, const std::string& name = {}) {
   MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, "", text};
-  if (const Measure* measure = find_scalar(text)) column = column_of(text, measure->unit);
+  if (const Measure* measure = find_plotted(text)) column = column_of(text, measure->unit);
   if (!name.empty()) column.name = name;
   return column;
 }
 
 MeasureColumn y_column(const PlotSpec& plot) {
-  const Measure* curve = find_measure(plot.y, MeasureKind::curve);
-  MeasureColumn column = curve != nullptr ? column_of(plot.y, curve->unit) : scalar_column(plot.y);
+  MeasureColumn column = column_for(plot.y);
   column.rms = plot.show == Show::rms;
   return column;
-}
-
-const Measure* find_curve(std::string_view name) {
-  return find_measure(name, MeasureKind::curve);
 }
 
 /// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
@@ -74,8 +73,7 @@ Axis axis_of(const std::string& key) {
   if (key == "phi") return phi_axis();
   if (key == "crystalline_percent") return crystalline_axis();
   if (key == "mean_overlap_d") return overlap_axis();
-  if (const Measure* measure = find_scalar(key)) return named_axis(key, measure->unit);
-  if (const Measure* measure = find_curve(key)) return named_axis(key, measure->unit);
+  if (const Measure* measure = find_plotted(key)) return named_axis(key, measure->unit);
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
 
@@ -121,7 +119,7 @@ double cycle_of(const PlotSpec& plot, std::span<const FigureRun> runs) {
   }
   const auto last = std::find_if(count.rbegin(), count.rend(),
                                  [&](const auto& cycle) { return cycle.second == begun; });
-  return last == count.rend() ? std::numeric_limits<double>::infinity() : last->first;
+  return last == count.rend() ? infinite : last->first;
 }
 
 /// The checkpoint at a cycle; null if there is none.
@@ -130,21 +128,22 @@ const Measures* measures_at(const FigureRun& run, double cycle) {
   return found == run.checkpoints.end() ? nullptr : &found->measures;
 }
 
+/// The y of a run, which is no curve: a number of the whole run, or of its checkpoint at the cycle.
+/// Not a number if it has none.
+double y_of(const PlotSpec& plot, const FigureRun& run, double cycle) {
+  if (is_parameter(plot.y)) return number_of(run, plot.y);
+  const Measures* measures = measures_at(run, cycle);
+  return measures == nullptr ? std::nan("") : measures->number(plot.y);
+}
+
 /// Sets each run's x, a measure of the whole run, to its mean over those runs of the variant that
 /// have a y, so that these share a point.
 void average_x(const PlotSpec& plot, std::vector<FigureRun>& runs) {
   const double cycle = cycle_of(plot, runs);
-  const auto has_y = [&](const FigureRun& run) {
-    if (find_curve(plot.y) == nullptr && is_parameter(plot.y)) {
-      return std::isfinite(number_of(run, plot.y));
-    }
-    const Measures* measures = measures_at(run, cycle);
-    return measures != nullptr && std::isfinite(measures->number(plot.y));
-  };
   std::map<std::string, std::vector<double>> found;  // of each variant
   for (const FigureRun& run : runs) {
     std::vector<double>& of_variant = found[run.variant];
-    if (has_y(run)) of_variant.push_back(number_of(run, plot.x));
+    if (std::isfinite(y_of(plot, run, cycle))) of_variant.push_back(number_of(run, plot.x));
   }
   for (FigureRun& run : runs) {
     const std::optional<double> mean = over_runs(found.at(run.variant)).mean;
@@ -167,27 +166,21 @@ std::string subtract(const PlotSpec& plot, std::vector<FigureRun>& runs) {
   }
   const PackingGroups packings = by_packing(others);
   for (const FigureRun& run : all) {
-    const auto same =
-        std::ranges::find(packings, packing_of(run), &PackingGroups::value_type::first);
+    const auto same = packings.find(packing_of(run));
     if (same == packings.end() || std::ranges::count(others, &run) > 0) continue;
     // The mean over its partners: several where the runs of a packing differ by noise.
-    const auto of_partners = [&partners = same->second](const auto& number) {
+    const auto of_partners = [&, &partners = same->second](double cycle) {
       std::vector<double> values;
-      for (const FigureRun* partner : partners) values.push_back(number(*partner));
+      for (const FigureRun* partner : partners) values.push_back(y_of(plot, *partner, cycle));
       return over_runs(values).mean.value_or(std::nan(""));
     };
     FigureRun& one = runs.emplace_back(run);
     if (is_parameter(plot.y)) {
-      one.parameters[plot.y] = number_of(run, plot.y) - of_partners([&](const FigureRun& partner) {
-                                 return number_of(partner, plot.y);
-                               });
+      one.parameters[plot.y] = number_of(run, plot.y) - of_partners(0);
       continue;
     }
     std::erase_if(one.checkpoints, [&](CheckpointMeasures& checkpoint) {
-      const double other = of_partners([&](const FigureRun& partner) {
-        const Measures* measures = measures_at(partner, checkpoint.cycle);
-        return measures == nullptr ? std::nan("") : measures->number(plot.y);
-      });
+      const double other = of_partners(checkpoint.cycle);
       const double own = checkpoint.measures.number(plot.y);
       checkpoint.measures.numbers[plot.y] = own - other;
       return std::isnan(other);
@@ -301,16 +294,12 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
   Points points;
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
-    if (of_curve == nullptr && is_parameter(plot.y)) {
-      points.add(run.seed, run, number_of(run, plot.x), number_of(run, plot.y));
+    if (of_curve == nullptr) {
+      points.add(run.seed, run, number_of(run, plot.x), y_of(plot, run, cycle));
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
     if (measures == nullptr) continue;
-    if (of_curve == nullptr) {
-      points.add(run.seed, run, number_of(run, plot.x), measures->number(plot.y));
-      continue;
-    }
     const auto measured = measures->curves.find(plot.y);
     if (measured == measures->curves.end()) continue;
     const auto& [x, y] = measured->second;
@@ -383,7 +372,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
 
 /// Means of both measures at each cycle, over the runs that have both.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
-  std::array<MeasureColumn, 2> both = {scalar_column(plot.y), scalar_column(plot.x)};
+  std::array<MeasureColumn, 2> both = {column_for(plot.y), column_for(plot.x)};
   both[0].known = plot.x, both[1].known = plot.y;
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));
@@ -439,7 +428,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
 /// Of y, and of further measures.
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   std::vector<MeasureColumn> columns = {y_column(plot)};
-  for (const ColumnSpec& one : plot.also) columns.push_back(scalar_column(one.measure, one.name));
+  for (const ColumnSpec& one : plot.also) columns.push_back(column_for(one.measure, one.name));
   return columns;
 }
 
@@ -459,21 +448,9 @@ FigureTable draw(const PlotSpec& plot, std::vector<FigureRun> given, const NameV
   return against_measure(plot, curves);
 }
 
-/// The runs of each value of the panels' parameter, in ascending order; all runs without one.
-std::map<nlohmann::json, std::vector<FigureRun>> runs_of_panels(const PlotSpec& plot,
-                                                                std::vector<FigureRun> runs) {
-  std::map<nlohmann::json, std::vector<FigureRun>> panels;
-  for (FigureRun& run : runs) {
-    const nlohmann::json value = plot.panel.empty() ? nullptr : parameter_of(run, plot.panel);
-    panels[value].push_back(std::move(run));
-  }
-  return panels;
-}
-
 /// Gives all panels the ranges of all their data.
 void share_ranges(std::vector<FigureTable>& tables) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::array<double, 2> low = {infinity, infinity}, high = {-infinity, -infinity};
+  std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const FigureTable& table : tables) {
     for (const Series& series : table.chart.series) {
       for (const ChartPoint& p : points_of(table, series)) {
@@ -509,7 +486,11 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
   const std::string less = plot.minus.empty() ? "" : subtract(plot, runs);
   FigureResult result;
   std::vector<nlohmann::json> wheres;
-  auto panels = runs_of_panels(plot, std::move(runs));
+  std::map<nlohmann::json, std::vector<FigureRun>> panels;  // by the value of their parameter
+  for (FigureRun& run : runs) {
+    const nlohmann::json value = plot.panel.empty() ? nullptr : parameter_of(run, plot.panel);
+    panels[value].push_back(std::move(run));
+  }
   if (panels.empty() && !less.empty()) panels[nullptr] = {};  // says so
   for (const auto& [value, members] : panels) {
     FigureTable& table = result.tables.emplace_back(draw(plot, members, names));
@@ -627,7 +608,7 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
     if (has_parameters(run, where)) found.push_back(&run);
   }
   std::vector<const FigureRun*> as_stated = found;
-  std::erase_if(as_stated, [](const FigureRun* run) { return sweeps_engine(*run); });
+  std::erase_if(as_stated, [](const FigureRun* run) { return run->swept.contains("engine"); });
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
 }
 
@@ -666,7 +647,7 @@ std::vector<std::string> needs_of(const std::vector<std::string>& texts) {
   std::vector<std::string> needs;
   for (const std::string& text : texts) {
     for (const std::string& name : names_in(text)) {
-      if (const Measure* one = find_scalar(name)) needs.push_back(provider_of(*one).name);
+      if (const Measure* one = find_plotted(name)) needs.push_back(provider_of(*one).name);
     }
   }
   return needs;
@@ -682,14 +663,13 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   Figure figure{
       plot.name, plot.y + " against " + x,
       [plot, names](std::span<const FigureRun> runs) { return plot_runs(plot, runs, names); }};
-  if (measured != nullptr) figure.needs.push_back(provider_of(*measured).name);
   for (const SeriesSpec& one : plot.series) {
     for (const auto& [key, value] : one.where.items()) figure.keys.push_back(key);
   }
   std::vector<std::string> texts;
   for (const ColumnSpec& one : plot.also) texts.push_back(one.measure);
   texts.insert(texts.end(), {plot.x, plot.y});
-  for (const std::string& need : needs_of(texts)) figure.needs.push_back(need);
+  figure.needs = needs_of(texts);
   figure.within = plot.cycles;
   if (plot.cycle && !draws_every_cycle(plot) && !(measured == nullptr && is_parameter(plot.y))) {
     figure.within = {{*plot.cycle, *plot.cycle}};
@@ -699,23 +679,15 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question) {
-  std::vector<Figure> parts;
-  std::vector<std::string> figures;  // of each part
+  nlohmann::ordered_map<std::string, std::vector<Figure>> figures;  // their parts
   for (const PlotSpec& plot : plots) {
-    parts.push_back(plot_figure(plot, names));
-    figures.push_back(plot.figure.empty() ? plot.name : plot.figure);
+    figures[plot.figure.empty() ? plot.name : plot.figure].push_back(plot_figure(plot, names));
   }
   for (const ClaimSpec& claim : claims) {
-    parts.push_back(claim_figure(claim));
-    figures.push_back(claim.figure.empty() ? claim.name : claim.figure);
+    figures[claim.figure.empty() ? claim.name : claim.figure].push_back(claim_figure(claim));
   }
-  std::map<std::string, std::vector<Figure>> parts_of;
-  for (std::size_t k = 0; k < parts.size(); ++k) parts_of[figures[k]].push_back(parts[k]);
   std::vector<Figure> found;
-  for (const std::string& figure : figures) {
-    std::vector<Figure> together = std::exchange(parts_of.at(figure), {});
-    if (!together.empty()) found.push_back(joined(figure, question, std::move(together)));
-  }
+  for (auto& [name, parts] : figures) found.push_back(joined(name, question, std::move(parts)));
   return found;
 }
 

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/figure.hpp"
+#include "analysis/claims.hpp"
 #include "core/named.hpp"
 
 namespace shearcell {
@@ -28,11 +28,6 @@ inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "rms", "traces
 enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
-
-/// What a claim says of the first variant: it has the same value, a higher or a lower one.
-enum class Relation : std::uint8_t { same, higher, lower };
-template <>
-inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
 
 /// The symbol at the points of a curve.
 enum class Marker : std::uint8_t {
@@ -64,17 +59,6 @@ struct SeriesSpec {
   std::optional<Marker> marker = {};
 
   bool operator==(const SeriesSpec&) const = default;
-};
-
-/// Published numbers: one value, or points.
-struct PublishedSpec {
-  std::string label;  ///< in the key of a plot
-  std::string source;
-  std::optional<double> value = {};
-  double error = 0;                              ///< of the value; 0: not stated
-  std::vector<std::vector<double>> points = {};  ///< x, y and perhaps the error of y
-
-  bool operator==(const PublishedSpec&) const = default;
 };
 
 /// A further column of a plot's CSV.
@@ -117,34 +101,6 @@ struct PlotSpec {
   bool listed = false;
 
   bool operator==(const PlotSpec&) const = default;
-};
-
-struct ClaimSpec {
-  std::string name;
-  std::string figure = {};  ///< as PlotSpec::figure
-  std::string compare;      ///< as PlotSpec::y, but no curve
-  /// What is compared of a measure of checkpoints, one of three: its mean over cycles, first to
-  /// last; its mean over a window of phi; the first cycle at which it has at least this value. None
-  /// of them for a measure of the whole run.
-  std::optional<std::array<std::uint64_t, 2>> cycles = {};
-  std::optional<std::array<double, 2>> phi = {};
-  std::optional<double> reaches = {};
-  /// Two variants, each by parameters and their values. The second is empty if the first is
-  /// compared with a published number.
-  std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
-  std::optional<PublishedSpec> published = {};
-  /// In units of the measure; for onset_size_cycle and `reaches`, of log2 of the ratio. 0: the
-  /// published number is a bound.
-  double margin = 0;
-  bool relative = false;       ///< the margin is of the relative difference
-  std::string statement = {};  ///< what the claim says, for people; "": from its keys
-  Relation is = Relation::same;
-  bool optional = false;  ///< no verdict if a side has no runs
-  /// As PlotSpec::listed. A side that is not one variant then has no runs; otherwise it is an
-  /// error.
-  bool listed = false;
-
-  bool operator==(const ClaimSpec&) const = default;
 };
 
 /// "fluid=still, walls=rough" of parameters and their values.
@@ -193,18 +149,6 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 /// A sentence on why `minus` does not name exactly one variant; "" if it does. `variants`: how many
 /// variants have its values.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
-
-/// Whether the claim compares waiting times: a run may end before the event.
-bool compares_waits(const ClaimSpec& claim);
-
-/// One sentence for each reason why the sides of a claim cannot be compared. `variants`: how many
-/// variants have the values of each side; `same`: whether both sides have the same runs.
-std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
-                                           const std::array<std::size_t, 2>& variants, bool same);
-
-/// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
-/// Its function throws UsageError with the first of problems_of_sides().
-Figure claim_figure(const ClaimSpec& claim);
 
 /// The figures of a manifest, in the order of their first plots and claims. `question` is the title
 /// of figures with several parts.

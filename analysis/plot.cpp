@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <string>
+#include <boost/algorithm/string/replace.hpp>
 #include <string_view>
-#include <utility>
 
 #include "analysis/error.hpp"
 #include "provenance/io/child_process.hpp"
@@ -49,13 +48,6 @@ std::string fault_of(const char* program, const ProgramOutcome& outcome,
                      outcome.messages.empty() ? "" : ":\n", outcome.messages);
 }
 
-void replace_all(std::string& text, std::string_view old, std::string_view replacement) {
-  for (std::size_t at = text.find(old); at != std::string::npos;
-       at = text.find(old, at + replacement.size())) {
-    text.replace(at, old.size(), replacement);
-  }
-}
-
 }  // namespace
 
 void require_own_files(const FigureTable& table, const std::filesystem::path& folder) {
@@ -97,8 +89,9 @@ std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::
   std::string drawn = outcome->output;
   // librsvg drops spaces next to a change of style unless xml:space says "preserve", which gnuplot
   // sets only for two spaces in a row.
-  replace_all(drawn, "<text>", "<text xml:space=\"preserve\">");
-  replace_all(drawn, "]]>", "]]&gt;");  // XML does not allow it in a text; gnuplot leaves it there
+  boost::replace_all(drawn, "<text>", "<text xml:space=\"preserve\">");
+  boost::replace_all(drawn, "]]>",
+                     "]]&gt;");  // XML does not allow it in a text; gnuplot leaves it there
   write_output(svg, drawn);
   return svg;
 }

@@ -88,8 +88,8 @@ Core core(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const std::vector<double> distance =
       distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
   const auto count = std::ranges::count_if(distance, [](double d) { return d >= core_distance; });
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  return {static_cast<double>(count), phi_between(grains, distance, core_distance, infinite)};
+  return {static_cast<double>(count),
+          phi_between(grains, distance, core_distance, std::numeric_limits<double>::infinity())};
 }
 
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {

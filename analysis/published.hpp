@@ -51,8 +51,8 @@ inline constexpr double experiment_onset_phi = 0.645;
 
 /// Section C: grains at least 1.5 d from the walls.
 struct PublishedSize {
-  std::int64_t grains;
-  std::int64_t interior_grains;
+  double grains;
+  double interior_grains;
 };
 inline constexpr std::array published_sizes = {PublishedSize{5200, 3335}, PublishedSize{7900, 5345},
                                                PublishedSize{11400, 8055},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures that need the run of a checkpoint: its drive, what the engine recorded, simulations that
 // begin at the checkpoint, and what the run took to compute.
-#include <cmath>
 #include <numbers>
 
 #include "analysis/error.hpp"

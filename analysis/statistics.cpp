@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <set>
 
@@ -34,8 +33,8 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
       const double u = uniform_pair({s, static_cast<std::uint32_t>(k), 0, 0}, 0)[0];
       selection[k] = static_cast<std::size_t>(u * static_cast<double>(runs));
     }
-    const std::optional<double> value = statistic(selection);
-    if (value && !std::isnan(*value)) values.push_back(*value);
+    const double value = statistic(selection);
+    if (!std::isnan(value)) values.push_back(value);
   }
   return values;
 }
@@ -43,7 +42,6 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
 /// Without a share `tail` of the selections at each end. Selections without a value widen the
 /// interval at both ends.
 Interval percentiles(std::vector<double> values, double tail) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   const std::size_t missing = bootstrap_selections - values.size();
   values.insert(values.end(), missing, infinite);
   std::sort(values.begin(), values.end());
@@ -72,17 +70,6 @@ std::set<double> event_cycles(std::span<const Waiting> runs) {
     if (run.observed) cycles.insert(run.cycle);
   }
   return cycles;
-}
-
-/// log2 of the factors at which the order of the two groups changes, ascending.
-std::vector<double> factors(std::span<const Waiting> a, std::span<const Waiting> b) {
-  std::set<double> found;
-  for (const Waiting& x : a) {
-    for (const Waiting& y : b) {
-      if (x.cycle > 0 && y.cycle > 0) found.insert(std::log2(x.cycle / y.cycle));
-    }
-  }
-  return {found.begin(), found.end()};
 }
 
 }  // namespace
@@ -188,16 +175,15 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
   if (runs < least_bootstrap_runs) return std::nullopt;
   std::vector<std::size_t> every(runs);
   std::iota(every.begin(), every.end(), std::size_t{0});
-  const std::optional<double> value = statistic(every);
-  if (!value || !std::isfinite(*value)) return std::nullopt;
+  const double value = statistic(every);
+  if (!std::isfinite(value)) return std::nullopt;
   const auto n = static_cast<double>(runs);
   const double t = student_quantile(upper, n - 1);
   const double tail = boost::math::cdf(boost::math::normal(), -t * std::sqrt(n / (n - 1)));
-  return estimate_with(*value, percentiles(bootstrap_values(runs, runs, statistic), tail), t, runs);
+  return estimate_with(value, percentiles(bootstrap_values(runs, runs, statistic), tail), t, runs);
 }
 
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   if (runs < least_bootstrap_runs) return {-infinite, infinite};
   return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper);
 }
@@ -279,9 +265,14 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
-  const std::vector<double> edges = factors(a, b);
-  if (edges.empty()) return std::nullopt;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::set<double> factors;  // log2 of those at which the order of the two groups changes
+  for (const Waiting& x : a) {
+    for (const Waiting& y : b) {
+      if (x.cycle > 0 && y.cycle > 0) factors.insert(std::log2(x.cycle / y.cycle));
+    }
+  }
+  if (factors.empty()) return std::nullopt;
+  const std::vector<double> edges(factors.begin(), factors.end());
   const double limit = student_quantile(upper, static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
   double negative = edges.front();  // the statistic is negative below this factor

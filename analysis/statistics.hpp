@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -27,10 +28,10 @@ RunStatistics rms_over_runs(std::span<const double> values);
 /// Slope of the straight line of y against x, by least squares; not a number if all x are equal.
 double least_squares_slope(std::span<const std::pair<double, double>> points);
 
-/// A number computed from a selection of runs, in which a run may occur several times. The
-/// bootstrap takes 1000 selections, drawn with replacement by a counter-based generator, so the
-/// same input gives the same values.
-using RunStatistic = std::function<std::optional<double>(std::span<const std::size_t>)>;
+/// A number computed from a selection of runs, in which a run may occur several times; not a number
+/// if a selection has none. The bootstrap takes 1000 selections, drawn with replacement by a
+/// counter-based generator, so the same input gives the same values.
+using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
 /// Standard error of a statistic: standard deviation over the selections times
 /// sqrt(runs / (runs - 1)), so that the error of a mean is that of over_runs(). None for fewer than
@@ -47,6 +48,9 @@ inline constexpr std::size_t least_runs = 3;
 /// largest run, which enclose the median with a probability of 1 - 2^(1 - runs): 75 % for 3 runs,
 /// 94 % for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
+
+/// An end of an interval without a bound.
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Interval {
   double low = 0;

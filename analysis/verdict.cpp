@@ -19,20 +19,20 @@ using nlohmann::json;
 
 constexpr int significant = 6;  // digits
 
-Ruling ruling_of(const Interval& interval, double margin, Claimed claimed) {
+Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
   const bool is_above = interval.low > margin;
   const bool is_below = interval.high < margin;
-  if (claimed == Claimed::within) {
+  if (claimed == Relation::same) {
     if (interval.low >= -margin && interval.high <= margin) return Ruling::agrees;
     return is_above || interval.high < -margin ? Ruling::differs : Ruling::undecided;
   }
-  if (is_above) return claimed == Claimed::above ? Ruling::supported : Ruling::refuted;
-  if (is_below) return claimed == Claimed::below ? Ruling::supported : Ruling::refuted;
+  if (is_above) return claimed == Relation::higher ? Ruling::supported : Ruling::refuted;
+  if (is_below) return claimed == Relation::lower ? Ruling::supported : Ruling::refuted;
   return Ruling::undecided;
 }
 
-std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, Claimed claimed) {
-  const bool within = claimed == Claimed::within;
+std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, Relation claimed) {
+  const bool within = claimed == Relation::same;
   const bool may_be_zero = estimate.interval.low <= 0 && estimate.interval.high >= 0;
   const std::optional<std::size_t> planned = runs_to_resolve(estimate, std::abs(margin), within);
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;

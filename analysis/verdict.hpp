@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,13 +23,16 @@ template <>
 inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "supported", "differs",
                                                               "refuted", "undecided");
 
-/// Where a claim puts its quantity: from -margin to margin, above the margin, or below it.
-enum class Claimed { within, above, below };
+/// Where a claim puts its quantity: from -margin to margin, above the margin, or below it. What it
+/// says of the first of two variants: it has the same value, a higher or a lower one.
+enum class Relation : std::uint8_t { same, higher, lower };
+template <>
+inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
 
 struct Claim {
   std::string text;  ///< in the supplement's sense, with its section
   double margin = 0;
-  Claimed claimed = Claimed::within;
+  Relation claimed = Relation::same;
 };
 
 /// What the runs of a verdict are counted in.

@@ -6,11 +6,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
-#include <CGAL/Spatial_sort_traits_adapter_3.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
-#include <CGAL/property_map.h>
-#include <CGAL/spatial_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,9 +15,8 @@
 #include <cmath>
 #include <compare>
 #include <limits>
-#include <numeric>
+#include <map>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -175,25 +171,20 @@ class Tessellation {
   }
 
   void insert_points() {
-    std::vector<Kernel::Point_3> points;
-    points.reserve(point_.size());
-    for (const Eigen::Vector3d& p : point_) points.emplace_back(p.x(), p.y(), p.z());
-    std::vector<std::size_t> order(point_.size() - inserted_);
-    std::iota(order.begin(), order.end(), inserted_);
-    const auto position = CGAL::make_property_map(points);
-    CGAL::spatial_sort(
-        order.begin(), order.end(),
-        CGAL::Spatial_sort_traits_adapter_3<Kernel, std::decay_t<decltype(position)>>(position));
-
-    Triangulation::Cell_handle hint;
-    for (const std::size_t k : order) {
-      const Triangulation::Vertex_handle vertex = triangulation_.insert(points[k], hint);
-      std::int32_t& number = vertex->info().value;
-      if (number >= 0) throw_same_place(number, static_cast<std::int32_t>(k));
-      number = static_cast<std::int32_t>(k);
-      hint = vertex->cell();
+    std::vector<std::pair<Kernel::Point_3, Number>> points;
+    for (std::size_t k = inserted_; k < point_.size(); ++k) {
+      const Eigen::Vector3d& p = point_[k];
+      points.push_back({{p.x(), p.y(), p.z()}, {static_cast<std::int32_t>(k)}});
     }
+    triangulation_.insert(points.begin(), points.end());
     inserted_ = point_.size();
+    if (triangulation_.number_of_vertices() == inserted_) return;
+    std::map<std::array<double, 3>, std::int32_t> known;
+    for (std::int32_t k = 0; k < static_cast<std::int32_t>(inserted_); ++k) {
+      const Eigen::Vector3d& p = point(k);
+      const auto [same, fresh] = known.try_emplace({p.x(), p.y(), p.z()}, k);
+      if (!fresh) throw_same_place(same->second, k);
+    }
   }
 
   [[noreturn]] void throw_same_place(std::int32_t a, std::int32_t b) const {
@@ -396,11 +387,8 @@ class Tessellation {
 
   VoronoiDiagram collect() {
     VoronoiDiagram diagram;
-    const auto count = static_cast<std::size_t>(grains_);
-    diagram.volume.reserve(count);
-    diagram.surface.reserve(count);
-    diagram.first.reserve(count + 1);
-    diagram.faces.reserve(16 * count);  // a little more than a dense packing has
+    diagram.faces.reserve(
+        16 * static_cast<std::size_t>(grains_));  // a little more than a dense packing has
     diagram.first.push_back(0);
     for (std::int32_t i = 0; i < grains_; ++i) {
       const std::size_t first = diagram.faces.size();

@@ -4,19 +4,17 @@
 // and 4(b) of the main text.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
-#include "analysis/statistics.hpp"
 
 namespace shearcell {
 namespace {
@@ -57,10 +55,10 @@ std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
   return GrowthCurve(runs).critical_size();
 }
 
-/// What crystallites that are followed over so many cycles give.
-struct SizeAfter {
-  std::size_t packings = 0;
-  std::optional<Estimate> critical = {};
+/// Crystallites that are followed over so many cycles.
+struct GrowthAfter {
+  std::vector<GrowthBySize> runs;  ///< of each packing
+  std::optional<Estimate> critical;
 };
 
 struct AmplitudeGrowth {
@@ -68,9 +66,9 @@ struct AmplitudeGrowth {
   double amplitude;
   const PublishedAmplitude* published;
   std::vector<const FigureRun*> all_runs;
-  std::map<std::int64_t, SizeAfter> after;  ///< by cycles_to_follow()
-  std::vector<GrowthBySize> runs;           ///< followed over n_bin cycles
-  std::optional<double> onset_cycle;        ///< median over runs
+  std::map<std::int64_t, GrowthAfter> after;  ///< by cycles_to_follow()
+  std::vector<GrowthBySize> runs;             ///< followed over n_bin cycles
+  std::optional<double> onset_cycle;          ///< median over runs
   GrowthCurve curve;
   std::optional<Estimate> critical;
   std::optional<Estimate> without_absorbed;
@@ -85,13 +83,12 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const PublishedAmplitude& published = published_nearest(amplitude);
-    std::map<std::int64_t, SizeAfter> after;
-    std::vector<GrowthBySize> counts;
+    std::map<std::int64_t, GrowthAfter> after;
     for (const std::int64_t cycles : cycles_to_follow()) {
-      std::vector<GrowthBySize> packings = followed(members, cycles);
-      after[cycles] = {packings.size(), GrowthCurve(packings).critical_size()};
-      if (cycles == published.n_bin) counts = std::move(packings);
+      const std::vector<GrowthBySize> counts = followed(members, cycles);
+      after[cycles] = {counts, GrowthCurve(counts).critical_size()};
     }
+    const auto& [counts, critical] = after.at(published.n_bin);
     const GrowthCurve curve(counts);
     const std::size_t k = all.size();
     all.push_back({.style = {{{"amplitude_rad", amplitude}},
@@ -105,7 +102,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
                    .runs = counts,
                    .onset_cycle = median_wait(waits_for_onset(members)),
                    .curve = curve,
-                   .critical = after.at(published.n_bin).critical,
+                   .critical = critical,
                    .without_absorbed = critical_size_without(&GrowthCount::absorbed, counts),
                    .without_vanished = critical_size_without(&GrowthCount::vanished, counts),
                    .repeated = curve.repeated_critical_size(published_runs)});
@@ -155,24 +152,15 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
   return chart;
 }
 
-constexpr std::array<const char*, 4> fate_columns = {"grew", "absorbed", "shrank", "vanished"};
-
-TableRow fates(const GrowthCount& count) {
-  return {count.grew, count.absorbed, count.shrank, count.vanished};
-}
-
 FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table{.name = "C", .columns = {"amplitude_rad", "size_grains"}};
-  table.columns.insert(table.columns.end(), fate_columns.begin(), fate_columns.end());
-  for (const char* name : {"delta_rho", "delta_rho_standard_error", "runs"}) {
-    table.columns.emplace_back(name);
-  }
+  FigureTable table{.name = "C",
+                    .columns = {"amplitude_rad", "size_grains", "grew", "absorbed", "shrank",
+                                "vanished", "delta_rho", "delta_rho_standard_error", "runs"}};
   for (const AmplitudeGrowth& one : all) {
     for (const GrowthRate& rate : growth_rates(one.runs)) {
-      TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, rate.size});
-      const TableRow counts = fates(rate.count);
-      row.insert(row.end(), counts.begin(), counts.end());
-      row.insert(row.end(), {rate.delta, rate.delta_error, one.runs.size()});
+      const GrowthCount& count = rate.count;
+      table.rows.push_back({one.amplitude, rate.size, count.grew, count.absorbed, count.shrank,
+                            count.vanished, rate.delta, rate.delta_error, one.runs.size()});
     }
   }
   table.chart = chart_of(all);
@@ -226,11 +214,11 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
   for (const AmplitudeGrowth& one : all) {
     for (const auto& [cycles, after] : one.after) {
       const bool is_published = cycles == one.published->n_bin;
-      if (after.packings == 0 && !is_published) continue;
+      if (after.runs.empty() && !is_published) continue;
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles});
       add_size(after.critical, row);
       row.emplace_back(is_published ? TableValue(one.published->critical_size) : TableValue());
-      row.emplace_back(after.packings);
+      row.emplace_back(after.runs.size());
     }
     const RowFilter rows = {"amplitude_rad", one.amplitude};
     table.chart.series.push_back({.title = one.style.title,
@@ -265,22 +253,21 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
 }
 
 /// The counts that give a critical size, of each run.
-void enter_growth(RunGroup runs, std::int64_t cycles, Entered& entered) {
-  for (const FigureRun* run : runs) {
-    for (const auto& [size, count] : growth_of(*run, cycles)) {
-      if (size > GrowthCurve::largest) break;
-      TableRow row = {cycles, std::int64_t{size}};
-      const TableRow counts = fates(count);
-      row.insert(row.end(), counts.begin(), counts.end());
-      enter(*run, row, entered);
+Entered growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
+  Entered entered =
+      entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
+  for (const AmplitudeGrowth* one : amplitudes) {
+    for (const FigureRun* run : one->all_runs) {
+      for (const auto& [size, count] : growth_of(*run, cycles)) {
+        if (size > GrowthCurve::largest) break;
+        enter(
+            *run,
+            {cycles, std::int64_t{size}, count.grew, count.absorbed, count.shrank, count.vanished},
+            entered);
+      }
     }
   }
-}
-
-Entered growth_entered() {
-  std::vector<std::string> columns = {"cycles_followed", "size"};
-  columns.insert(columns.end(), fate_columns.begin(), fate_columns.end());
-  return entered_with(columns);
+  return entered;
 }
 
 std::string in_grains(double size) {
@@ -333,41 +320,35 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   if (one.critical && high / low > 1 + 2 * margin_critical_size) {
     verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
   }
-  verdict.entered = growth_entered();
-  enter_growth(one.all_runs, one.published->n_bin, verdict.entered);
+  const AmplitudeGrowth* const alone = &one;
+  verdict.entered = growth_entered({&alone, 1}, one.published->n_bin);
   return verdict;
 }
 
 /// That of the largest amplitude over that of the smallest, among those with a critical size for
 /// the same number of cycles. Runs of both amplitudes are taken as independent.
 Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
-  struct Sized {
-    const AmplitudeGrowth* growth;
-    Estimate size;
-  };
-  std::vector<Sized> sized;
+  std::vector<const AmplitudeGrowth*> sized;
   std::string note = fmt::format("crystallites followed over {} cycles", cycles_compared);
   for (const AmplitudeGrowth& one : all) {
     const std::optional<Estimate>& size = one.after.at(cycles_compared).critical;
     note += fmt::format("; A = {} rad: {} grains", one.amplitude, in_grains(size));
-    if (size) sized.push_back({&one, *size});
+    if (size) sized.push_back(&one);
   }
   std::optional<Estimate> growth;
   if (sized.size() > 1) {
-    growth = mapped(ratio(sized.back().size, sized.front().size), [](double r) { return r - 1; });
+    sized = {sized.front(), sized.back()};
+    const auto size = [&](std::size_t k) { return *sized[k]->after.at(cycles_compared).critical; };
+    growth = mapped(ratio(size(1), size(0)), [](double r) { return r - 1; });
   }
   Verdict verdict =
-      decide({.text = "C: the critical size grows with A", .claimed = Claimed::above},
+      decide({.text = "C: the critical size grows with A", .claimed = Relation::higher},
              "critical size at the largest amplitude relative to that at the smallest, "
              "less 1",
              growth, growth ? growth->runs : 0, note);
   verdict.counted = Counted::runs_per_variant;
-  verdict.entered = growth_entered();
-  if (growth) {
-    for (const Sized* one : {&sized.front(), &sized.back()}) {
-      enter_growth(one->growth->all_runs, cycles_compared, verdict.entered);
-    }
-  }
+  if (!growth) sized.clear();
+  verdict.entered = growth_entered(sized, cycles_compared);
   return verdict;
 }
 

@@ -6,18 +6,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <iterator>
 #include <map>
 #include <utility>
 
+#include "analysis/claims.hpp"
 #include "analysis/committor.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
-#include "analysis/statistics.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -154,21 +151,19 @@ std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }
 
-/// How a clone counts that ends before the fate is decided.
-enum class Undecided { left_out, grown, gone };
-
 /// The crystallites that grew and that were gone in clones, of each packing. Merged ones are left
-/// out.
+/// out. Clones that end before the fate is decided count as `undecided`, which leaves them out, as
+/// grown or as gone.
 std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
-                                              Undecided undecided = Undecided::left_out) {
+                                              Fate undecided = Fate::undecided) {
   std::map<std::string_view, GrowthBySize> packings;
   for (const Subject& subject : one.crystallites) {
     const Fates& fates = subject.fates[rule];
     GrowthCount& count = packings[packing_of(*subject.run)][subject.size];
     count.grew += fates.of(Fate::grown);
     count.vanished += fates.of(Fate::gone);
-    if (undecided == Undecided::grown) count.grew += fates.of(Fate::undecided);
-    if (undecided == Undecided::gone) count.vanished += fates.of(Fate::undecided);
+    if (undecided == Fate::grown) count.grew += fates.of(Fate::undecided);
+    if (undecided == Fate::gone) count.vanished += fates.of(Fate::undecided);
   }
   std::vector<GrowthBySize> all;
   for (auto& [id, growth] : packings) all.push_back(std::move(growth));
@@ -256,7 +251,7 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});
       add_size(half_size(one, rule), row);
-      for (const Undecided undecided : {Undecided::left_out, Undecided::grown, Undecided::gone}) {
+      for (const Fate undecided : {Fate::undecided, Fate::grown, Fate::gone}) {
         const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
         row.push_back(size ? TableValue(size->value) : TableValue());
       }
@@ -336,7 +331,7 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   Verdict verdict =
       decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
                                   high.amplitude, low.amplitude),
-              .claimed = Claimed::above},
+              .claimed = Relation::higher},
              "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
              note_on(low, before) + "; " + note_on(high, after));
   verdict.counted = Counted::runs_per_variant;

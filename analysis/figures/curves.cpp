@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -81,15 +80,14 @@ class StylesOfOthers {
 std::vector<CurvePoint> points_of(RunGroup runs) {
   std::map<std::int64_t, CurvePoint> found;
   for (const FigureRun* run : runs) {
-    std::set<std::int64_t> seen;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       if (std::floor(checkpoint.cycle) != checkpoint.cycle) continue;
       const auto cycle = static_cast<std::int64_t>(checkpoint.cycle);
-      if (!seen.insert(cycle).second) {
+      CurvePoint& point = found[cycle];
+      if (!point.runs.empty() && point.runs.back() == run) {
         throw AnalysisError("run " + run->run_id + " has two checkpoints of cycle " +
                             std::to_string(cycle));
       }
-      CurvePoint& point = found[cycle];
       point.cycle = cycle;
       point.runs.push_back(run);
       point.measures.push_back(&checkpoint.measures);
@@ -111,7 +109,7 @@ RunStatistics over(const CurvePoint& point, const MeasureColumn& measure) {
 /// different cycles.
 bool follow_runs(const Curve& curve, const MeasureColumn& measure, Series& mean,
                  std::vector<Series>& single) {
-  double first_end = std::numeric_limits<double>::infinity();
+  double first_end = infinite;
   for (const FigureRun* run : curve.runs) {
     if (!run->checkpoints.empty()) first_end = std::min(first_end, run->checkpoints.back().cycle);
   }
@@ -245,10 +243,14 @@ Axis onset_axis() {
   return {.name = "onset", .symbol = italic("ϕ")};
 }
 
-std::vector<ReferenceLine> onset_lines() {
-  const Text title = "the supplement's onset, 0.646 ± 0.001";
-  return {{.at = published_onset_phi - published_onset_error, .title = title},
-          {.at = published_onset_phi + published_onset_error, .title = title}};
+std::vector<ReferenceLine> onset_lines(bool vertical) {
+  std::vector<ReferenceLine> lines;
+  for (const double error : {-published_onset_error, published_onset_error}) {
+    lines.push_back({.at = published_onset_phi + error,
+                     .vertical = vertical,
+                     .title = "the supplement's onset, 0.646 ± 0.001"});
+  }
+  return lines;
 }
 
 ReferenceLine critical_line(double size, const std::string& colour) {

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -59,7 +57,7 @@ Axis amplitude_axis();  ///< 0 to 0.12 rad
 Axis onset_axis();      ///< phi at the onset
 
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
-std::vector<ReferenceLine> onset_lines();
+std::vector<ReferenceLine> onset_lines(bool vertical = false);
 /// The supplement's critical size [grains] of one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 
@@ -94,9 +92,9 @@ struct MeasureColumn {
   std::string name;
   std::string unit;  ///< as part of a column's name: "d", "percent" or ""
   std::string measure;
-  double least = -std::numeric_limits<double>::infinity();  ///< lower values count as this
-  std::string known = {};  ///< left out where this measure is unknown; "" for none
-  bool rms = false;        ///< the root mean square over runs in place of the mean
+  double least = -infinite;  ///< lower values count as this
+  std::string known = {};    ///< left out where this measure is unknown; "" for none
+  bool rms = false;          ///< the root mean square over runs in place of the mean
 
   double of(const Measures& measures) const;
   RunStatistics over(std::span<const double> values) const;  ///< one value of each run
@@ -109,6 +107,9 @@ void add_columns(const MeasureColumn& measure, std::vector<std::string>& columns
 void add_values(const RunStatistics& statistics, TableRow& row);
 /// The columns to draw: x, the measure's mean with its error, and the number of runs.
 SeriesColumns columns_against(std::string x, const MeasureColumn& y);
+
+/// Of phi at the onset.
+inline const MeasureColumn onset_column = {"onset_phi", "", "onset_size_phi"};
 
 /// A row for each variant and cycle. The first measure is drawn.
 FigureTable against_cycle(const std::string& name, std::span<const Curve> curves,

@@ -10,7 +10,6 @@
 
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/statistics.hpp"
 

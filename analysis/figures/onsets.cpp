@@ -10,9 +10,9 @@
 #include <set>
 #include <utility>
 
+#include "analysis/claims.hpp"
 #include "analysis/figures/curves.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/onset.hpp"
 #include "analysis/published.hpp"
 #include "provenance/words.hpp"
@@ -20,12 +20,33 @@
 namespace shearcell {
 namespace {
 
-constexpr double smallest_size = 5200;  // of the supplement; always claimed
+/// The claim that the onset by method 1 is at phi = 0.646.
+Verdict onset_is_published(RunGroup runs, std::string claim) {
+  return compare_with({std::move(claim), margin_onset_phi}, onset_phi(), runs, published_onset_phi);
+}
+
+/// The supplement's N_inves for N = `grains`; none if the supplement has no such N.
+std::optional<double> published_interior(double grains) {
+  const auto size = std::ranges::find(published_sizes, grains, &PublishedSize::grains);
+  if (size == published_sizes.end()) return std::nullopt;
+  return size->interior_grains;
+}
+
+/// The claim that runs of `grains` grains, a size of the supplement, have the supplement's N_inves.
+Verdict interior_is_published(double grains, RunGroup runs) {
+  const double published = published_interior(grains).value();
+  Scalar interior = over_cycles("N_inves", "interior_grains", 0, 0);
+  interior.relative = true;
+  return compare_with(
+      {fmt::format("C: N = {} has {} grains at least 1.5 d from the walls", grains, published),
+       margin_interior},
+      interior, runs, published);
+}
 
 /// `columns`, then those of an onset.
 std::vector<std::string> onset_columns(std::vector<std::string> columns) {
-  columns.insert(columns.end(), {"onset_phi_mean", "onset_phi_standard_error", "runs",
-                                 "runs_ended_before", "runs_began_after", "runs_unclear"});
+  add_columns(onset_column, columns);
+  columns.insert(columns.end(), {"runs", "runs_ended_before", "runs_began_after", "runs_unclear"});
   return columns;
 }
 
@@ -42,10 +63,7 @@ Series onset_points(Text title, const char* colour, int point, const char* x,
   return {.title = std::move(title),
           .colour = colour,
           .point = point,
-          .columns = {.x = x,
-                      .y = "onset_phi_mean",
-                      .y_error = "onset_phi_standard_error",
-                      .runs = "runs"},
+          .columns = columns_against(x, onset_column),
           .filter = std::move(filter)};
 }
 
@@ -196,28 +214,8 @@ std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
       against_phi("S6_contacts", curves, {"contacts_per_grain", "", "contacts_per_grain"},
                   {.name = "contacts per grain"}),
       against_phi("S6_overlap", curves, {"overlap", "d", "mean_overlap_d"}, overlap_axis())};
-  for (FigureTable& panel : panels) {
-    for (ReferenceLine line : onset_lines()) {
-      line.vertical = true;
-      panel.chart.lines.push_back(line);
-    }
-  }
+  for (FigureTable& panel : panels) panel.chart.lines = onset_lines(true);
   return panels;
-}
-
-/// The claims at one amplitude.
-std::vector<Verdict> same_without_gravity(double amplitude, RunGroup without, RunGroup with) {
-  return {
-      compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
-                           amplitude),
-               margin_onset_phi},
-              onset_phi(), without, with),
-      compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
-                           "and without gravity",
-                           amplitude),
-               margin_percentage},
-              over_phi("percentage crystalline", "crystalline_percent", window_low, window_high),
-              without, with)};
 }
 
 /// The slope of phi at the onset against ln N_inves, by least squares over the runs that have one.
@@ -234,7 +232,7 @@ Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
     sizes.insert(number_of(run, "grains"));
     enter(run, {interior, onset.phi}, entered);
   }
-  const auto slope = [&](std::span<const std::size_t> selection) -> std::optional<double> {
+  const auto slope = [&](std::span<const std::size_t> selection) {
     std::vector<std::pair<double, double>> chosen;
     for (const std::size_t k : selection) chosen.push_back(points[k]);
     return least_squares_slope(chosen);
@@ -295,8 +293,9 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
     result.verdicts.push_back(
         onset_is_published({}, "C: the onset for N_inves >= 6000 is phi = 0.646"));
   }
-  if (!groups.contains(smallest_size)) {
-    result.verdicts.push_back(interior_is_published(smallest_size, {}));
+  const double always_claimed = published_sizes.front().grains;
+  if (!groups.contains(always_claimed)) {
+    result.verdicts.push_back(interior_is_published(always_claimed, {}));
   }
   if (groups.size() > 1) result.verdicts.push_back(onset_is_of_any_size(runs));
   constexpr double most_grains = 20000;
@@ -337,9 +336,19 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
     const auto with = std::ranges::find_if(onsets, [&](const CurveOnset& other) {
       return other.gravity && other.amplitude == o.amplitude;
     });
-    std::ranges::move(same_without_gravity(o.amplitude, o.curve->runs,
-                                           with == onsets.end() ? RunGroup() : with->curve->runs),
-                      std::back_inserter(result.verdicts));
+    const RunGroup others = with == onsets.end() ? RunGroup() : with->curve->runs;
+    result.verdicts.push_back(
+        compare({fmt::format("D: the onset at A = {} rad is the same with and without gravity",
+                             o.amplitude),
+                 margin_onset_phi},
+                onset_phi(), o.curve->runs, others));
+    result.verdicts.push_back(
+        compare({fmt::format("D: percentage crystalline against phi at A = {} rad is the same with "
+                             "and without gravity",
+                             o.amplitude),
+                 margin_percentage},
+                over_phi("percentage crystalline", "crystalline_percent", window_low, window_high),
+                o.curve->runs, others));
   }
   if (!small) {
     result.verdicts.push_back(onset_is_published(

@@ -14,33 +14,17 @@
 namespace shearcell {
 namespace {
 
-/// The packings of all runs at one stiffness.
-struct Stiffness {
-  std::vector<double> phi;
-  std::vector<double> phi_u;
-  std::vector<double> overlap;
-};
-
-/// By log10(k/k0), rounded to hundredths, so that equal steps have equal keys; k0 is the stiffness
-/// at which the packing settled. Of two checkpoints at one stiffness the later one counts: at k0
-/// the minimum, not the packing as it settled.
-std::map<int, Stiffness> by_stiffness(RunGroup runs) {
-  std::map<int, Stiffness> found;
-  for (const FigureRun* run : runs) {
-    const double settled = number_of(*run, "stiffness_N_per_m");
-    std::map<int, const Measures*> own;
-    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      const double ratio =
-          std::log10(checkpoint.measures.number("raised_stiffness_N_per_m") / settled);
-      if (!std::isfinite(ratio)) continue;
-      own[static_cast<int>(std::lround(100 * ratio))] = &checkpoint.measures;
-    }
-    for (const auto& [hundredths, measures] : own) {
-      Stiffness& at = found[hundredths];
-      at.phi.push_back(measures->number("phi"));
-      at.phi_u.push_back(measures->number("phi_uncorrected"));
-      at.overlap.push_back(measures->number("mean_overlap_d"));
-    }
+/// The measures of a run by log10(k/k0), rounded to hundredths, so that equal steps have equal
+/// keys; k0 is the stiffness at which the packing settled. Of two checkpoints at one stiffness the
+/// later one counts: at k0 the minimum, not the packing as it settled.
+std::map<int, const Measures*> by_stiffness(const FigureRun& run) {
+  const double settled = number_of(run, "stiffness_N_per_m");
+  std::map<int, const Measures*> found;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    const double ratio =
+        std::log10(checkpoint.measures.number("raised_stiffness_N_per_m") / settled);
+    if (!std::isfinite(ratio)) continue;
+    found[static_cast<int>(std::lround(100 * ratio))] = &checkpoint.measures;
   }
   return found;
 }
@@ -92,26 +76,37 @@ FigureTable table_of(std::span<const Load> loads) {
   overlap.log = true;
   table.chart = {.x = std::move(overlap), .y = phi_axis()};
   for (const Load& load : loads) {
-    for (const auto& [hundredths, at] : by_stiffness(load.runs)) {
+    std::map<int, std::vector<const Measures*>> packings;
+    for (const FigureRun* run : load.runs) {
+      for (const auto& [hundredths, measures] : by_stiffness(*run)) {
+        packings[hundredths].push_back(measures);
+      }
+    }
+    for (const auto& [hundredths, at] : packings) {
       TableRow& row = table.rows.emplace_back(TableRow{load.at, hundredths / 100.0});
-      for (const auto& values : {at.overlap, at.phi_u, at.phi}) add_values(over_runs(values), row);
-      row.emplace_back(over_runs(at.phi).runs);
+      RunStatistics over;
+      for (const char* measure : {"mean_overlap_d", "phi_uncorrected", "phi"}) {
+        std::vector<double> values;
+        for (const Measures* measures : at) values.push_back(measures->number(measure));
+        over = over_runs(values);
+        add_values(over, row);
+      }
+      row.emplace_back(over.runs);  // of phi
     }
     for (Series& series : series_under(load)) table.chart.series.push_back(std::move(series));
   }
   return table;
 }
 
-/// `change` of the packings of one run at k0 and at 100 k0.
-Scalar over_the_hundredfold(std::string name,
-                            double (*change)(const Stiffness& soft, const Stiffness& hard)) {
-  const auto of = [change](const FigureRun& run) -> RunValue {
-    const FigureRun* alone = &run;
-    const std::map<int, Stiffness> own = by_stiffness(RunGroup(&alone, 1));
+/// `change` of a measure of the packing of a run from k0 to 100 k0.
+Scalar over_the_hundredfold(std::string name, const char* measure,
+                            double (*change)(double soft, double hard)) {
+  const auto of = [measure, change](const FigureRun& run) -> RunValue {
+    const std::map<int, const Measures*> own = by_stiffness(run);
     constexpr int hundredfold = 200;
     if (own.empty() || own.rbegin()->first < hundredfold) return {0, Missing::too_short};
     if (!own.contains(0) || !own.contains(hundredfold)) return {0, Missing::checkpoint};
-    return measured(change(own.at(0), own.at(hundredfold)));
+    return measured(change(own.at(0)->number(measure), own.at(hundredfold)->number(measure)));
   };
   return {std::move(name), "k/k0 from 1 to 100", of};
 }
@@ -119,14 +114,11 @@ Scalar over_the_hundredfold(std::string name,
 }  // namespace
 
 FigureResult figure_s1(std::span<const FigureRun> runs) {
-  const Scalar fall = over_the_hundredfold("relative fall of phi_u",
-                                           [](const Stiffness& soft, const Stiffness& hard) {
-                                             return 1 - hard.phi_u.front() / soft.phi_u.front();
-                                           });
-  const Scalar change =
-      over_the_hundredfold("change of phi", [](const Stiffness& soft, const Stiffness& hard) {
-        return hard.phi.front() - soft.phi.front();
-      });
+  const Scalar fall =
+      over_the_hundredfold("relative fall of phi_u", "phi_uncorrected",
+                           [](double soft, double hard) { return 1 - hard / soft; });
+  const Scalar change = over_the_hundredfold("change of phi", "phi",
+                                             [](double soft, double hard) { return hard - soft; });
   const std::vector<Load> loads = loads_of(runs);
   FigureResult result{{table_of(loads)}, {}};
   for (const Load& load : loads) {

@@ -7,11 +7,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
@@ -48,7 +46,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
 
 /// The smallest cell among the runs, for which the inaccessible layer is the largest share.
 double smallest_width(RunGroup runs) {
-  double width = std::numeric_limits<double>::infinity();
+  double width = infinite;
   for (const FigureRun* run : runs) {
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       if (checkpoint.measures.crystallite_map)
@@ -104,8 +102,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
   const auto difference = [&](std::span<const std::size_t> selection) {
-    double sum = 0;
-    double all = 0;
+    double sum = 0, all = 0;
     for (const std::size_t packing : selection) {
       for (const double place : places.packings[packing]) {
         const std::optional<int> counted = side(place);
@@ -114,7 +111,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
         ++all;
       }
     }
-    return std::optional<double>(sum / all);
+    return sum / all;
   };
   const std::size_t packings = places.packings.size();
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
@@ -181,7 +178,7 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
       upper_less_lower(softest, {fmt::format("E: crystallites are more probable near the top wall "
                                              "than near the bottom wall, by more than {} of all",
                                              margin_share),
-                                 margin_share, Claimed::above})};
+                                 margin_share, Relation::higher})};
   if (by_stiffness.size() > 1) {
     const auto& [k, members] = *by_stiffness.rbegin();
     verdicts.push_back(upper_less_lower(

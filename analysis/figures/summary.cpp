@@ -92,10 +92,7 @@ FigureTable onset_against_size(Parts parts) {
     table.chart.series.push_back({.title = experiment,
                                   .colour = safe_colours[k % safe_colours.size()],
                                   .point = curve_symbol(k),
-                                  .columns = {.x = "interior_grains",
-                                              .y = "onset_phi_mean",
-                                              .y_error = "onset_phi_standard_error",
-                                              .runs = "runs"},
+                                  .columns = columns_against("interior_grains", onset_column),
                                   .filter = {"experiment", experiment}});
   }
   return table;
@@ -104,25 +101,20 @@ FigureTable onset_against_size(Parts parts) {
 /// That of figure C, with the committor's sizes as lines where a part has them.
 FigureTable size_against_cycles(Parts parts) {
   FigureTable table = stacked(parts, "summary_c", "C_followed");
-  for (const FigurePart& part : parts) {
-    for (const FigureTable& sizes : part.result.tables) {
-      if (sizes.name != "committor_sizes") continue;
-      const auto amplitude = column_of(sizes, "amplitude_rad");
-      const auto rule = column_of(sizes, "cycles_without");
-      const auto size = column_of(sizes, "half_size_grains");
-      for (const TableRow& row : sizes.rows) {
-        const auto* at = size ? std::get_if<double>(&row.at(*size)) : nullptr;
-        const auto* of = amplitude ? std::get_if<double>(&row.at(*amplitude)) : nullptr;
-        if (at == nullptr || of == nullptr || row.at(*rule) != TableValue(cycles_gone)) continue;
-        const auto drawn = std::ranges::find_if(table.chart.series, [&](const Series& series) {
-          return series.filter.value == TableValue(*of);
-        });
-        const bool has_colour = drawn != table.chart.series.end();
-        table.chart.lines.push_back({.at = *at,
-                                     .colour = has_colour ? drawn->colour : "#888888",
-                                     .title = "sizes of which half grow (committor)"});
-      }
-    }
+  const FigureTable sizes = stacked(parts, "", "committor_sizes");
+  const auto amplitude = column_of(sizes, "amplitude_rad");
+  const auto rule = column_of(sizes, "cycles_without");
+  const auto size = column_of(sizes, "half_size_grains");
+  for (const TableRow& row : sizes.rows) {
+    const auto* at = std::get_if<double>(&row.at(size.value()));
+    if (at == nullptr || row.at(rule.value()) != TableValue(cycles_gone)) continue;
+    const auto drawn = std::ranges::find_if(table.chart.series, [&](const Series& series) {
+      return series.filter.value == row.at(amplitude.value());
+    });
+    const bool has_colour = drawn != table.chart.series.end();
+    table.chart.lines.push_back({.at = *at,
+                                 .colour = has_colour ? drawn->colour : "#888888",
+                                 .title = "sizes of which half grow (committor)"});
   }
   return table;
 }
@@ -135,29 +127,24 @@ FigureTable percentage_against_phi(Parts parts) {
     return listed && column_of(table, "phi_low") && column_of(table, "crystalline_mean_percent");
   };
   FigureTable table = stacked(parts, "summary_d", is_compared);
-  table.chart = {.x = phi_axis(), .y = crystalline_axis()};
-  std::set<std::pair<std::string, std::string>> known;  // figure and curve
+  table.chart = {.x = phi_axis(), .y = crystalline_axis(), .lines = onset_lines(true)};
   for (std::size_t k = 0; k < compared_figures.size(); ++k) {
-    bool titled = false;
+    std::set<std::string> known;  // curves of the figure
     for (const FigurePart& part : parts) {
       if (part.figure != compared_figures[k].figure) continue;
       const FigureTable own = stacked(std::span(&part, 1), "", is_compared);
       for (const TableRow& row : own.rows) {
         const auto& curve = std::get<std::string>(row.at(1));
-        if (!known.emplace(part.figure, curve).second) continue;
-        table.chart.series.push_back({.title = titled ? Text() : Text(compared_figures[k].what),
-                                      .colour = safe_colours[k],
-                                      .point = 0,
-                                      .join = Join::line,
-                                      .columns = {.x = "phi_mean", .y = "crystalline_mean_percent"},
-                                      .filter = {"curve", curve}});
-        titled = true;
+        if (!known.insert(curve).second) continue;
+        table.chart.series.push_back(
+            {.title = known.size() > 1 ? Text() : Text(compared_figures[k].what),
+             .colour = safe_colours[k],
+             .point = 0,
+             .join = Join::line,
+             .columns = {.x = "phi_mean", .y = "crystalline_mean_percent"},
+             .filter = {"curve", curve}});
       }
     }
-  }
-  for (ReferenceLine line : onset_lines()) {
-    line.vertical = true;
-    table.chart.lines.push_back(line);
   }
   return table;
 }
@@ -167,14 +154,10 @@ FigureTable percentage_against_phi(Parts parts) {
 /// that it may be of, so that all hold at once with 90 %. The largest difference then lies between
 /// the largest of the least sizes that they allow and the largest of the greatest.
 Verdict largest_difference(Parts parts, const std::string& quantity, const Claim& claim) {
-  struct Difference {
-    const FigurePart* part;
-    const Verdict* verdict;
-  };
-  std::vector<Difference> all;
+  std::vector<std::pair<const FigurePart*, const Verdict*>> all;
   for (const FigurePart& part : parts) {
     for (const Verdict& verdict : part.result.verdicts) {
-      if (verdict.quantity == quantity && verdict.estimate) all.push_back({&part, &verdict});
+      if (verdict.quantity == quantity && verdict.estimate) all.emplace_back(&part, &verdict);
     }
   }
   std::optional<Estimate> largest;

@@ -92,7 +92,7 @@ Found found_in(const RunList& runs, const Parameter& parameter) {
     ++found.runs;
     found.take(value);
     for (const std::string& key : parameter.keys) {
-      found.varied = found.varied || (run->swept.is_object() && run->swept.contains(key));
+      found.varied = found.varied || run->swept.contains(key);
     }
     // A stiffening records the stiffness at each checkpoint.
     const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");

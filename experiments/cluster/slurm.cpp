@@ -104,25 +104,20 @@ fs::path scratch_here(const std::string& text) {
 }
 
 std::optional<double> slurm_seconds(const std::string& time) {
-  // After days the first number is hours; else a lone number is minutes, and two are minutes and
-  // seconds.
-  static const std::regex forms[] = {std::regex(R"((\d+)-(\d+)(?::(\d+))?(?::(\d+))?)"),
-                                     std::regex(R"(()(\d+):(\d+):(\d+))"),
-                                     std::regex(R"(()()(\d+)(?::(\d+))?)")};
+  static const std::regex form(R"((?:(\d+)-)?(\d+)(?::(\d+))?(?::(\d+))?)");
   std::smatch found;
-  for (const std::regex& form : forms) {
-    if (!std::regex_match(time, found, form)) continue;
-    double sum = 0;
-    for (const auto& [part, seconds] :
-         {std::pair<std::size_t, double>(1, 86400), {2, 3600}, {3, 60}, {4, 1}}) {
-      if (found.length(part) == 0) continue;
-      const auto number = read_number<unsigned>(found.str(part));
-      if (!number) return std::nullopt;
-      sum += seconds * *number;
-    }
-    return sum;
+  if (!std::regex_match(time, found, form)) return std::nullopt;
+  // A lone number is minutes, and two are minutes and seconds; three, or those after days, begin
+  // with hours.
+  double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
+  for (std::size_t part = 1; part <= 4; ++part) {
+    if (!found[part].matched) continue;
+    const auto number = read_number<unsigned>(found.str(part));
+    if (!number) return std::nullopt;
+    sum += *number * (part == 1 ? 86400 : unit);
+    if (part > 1) unit /= 60;
   }
-  return std::nullopt;
+  return sum;
 }
 
 std::string output_pattern(const fs::path& folder, std::string_view file) {

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -81,9 +80,11 @@ Job complete(Job job, const JobOptions& options, const fs::path& folder, const s
   };
   words = {"sbatch", "--parsable", "--export=ALL"};
   append(options.sbatch);
-  if (!options.partition.empty()) words.push_back("--partition=" + options.partition);
-  if (!options.account.empty()) words.push_back("--account=" + options.account);
-  if (!options.time.empty()) words.push_back("--time=" + options.time);
+  for (const auto& [option, value] : {std::pair("--partition=", &options.partition),
+                                      {"--account=", &options.account},
+                                      {"--time=", &options.time}}) {
+    if (!value->empty()) words.push_back(option + *value);
+  }
   append(std::vector<std::string>{"--nodes=1", "--ntasks=1", "--requeue", "--open-mode=append",
                                   "--job-name=" + job.name,
                                   "--output=" + output_pattern(folder, log)});
@@ -155,31 +156,24 @@ void Share::add(const Share& other) {
 
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
-  const std::vector<PlannedStage> stages = look_at(joined(plans), store);
-  const auto share = [&](const PlannedStage& one) {
-    const double steps = one.look.particle_steps;
-    return Share{{}, {}, steps, steps / rates.of(one.stage).particle_steps_per_second};
-  };
-  std::map<std::string, const PlannedStage*> packings;
-  std::map<std::string, std::string> first;  // that each stage of the plans descends from
+  std::map<std::string, std::string> packing_of;  // that each stage descends from
+  std::map<std::string, Share> packings;          // the cost of settling
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // of each packing in shares
-  for (const PlannedStage& one : stages) {
-    const std::string& parent = one.stage.parent;
-    const auto before = first.find(parent);
-    const std::string& packing = first[one.stage.id] = parent.empty()          ? one.stage.id
-                                                       : before == first.end() ? parent
-                                                                               : before->second;
-    if (parent.empty()) packings[packing] = &one;
+  for (const PlannedStage& one : look_at(joined(plans), store)) {
+    const std::string &id = one.stage.id, &parent = one.stage.parent;
+    const std::string packing =
+        parent.empty() ? id : packing_of.try_emplace(parent, parent).first->second;
+    packing_of[id] = packing;
+    const double steps = one.look.particle_steps;
+    Share left{{}, {id}, steps, steps / rates.of(one.stage).particle_steps_per_second};
+    if (parent.empty()) packings[id] = {{}, {}, left.particle_steps, left.core_seconds};
     if (parent.empty() || one.look.done) continue;
     const auto [place, fresh] = places.try_emplace(packing, shares.size());
     if (fresh) {
-      // A recorded state of a run that is not planned is there.
-      shares.push_back(packings.contains(packing) ? share(*packings.at(packing)) : Share{});
+      shares.push_back(packings[packing]);  // nothing if only a recorded state of it is planned
       shares.back().packings = {packing};
     }
-    Share left = share(one);
-    left.runs = {one.stage.id};
     shares[place->second].add(left);
   }
   return shares;

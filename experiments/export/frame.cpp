@@ -24,13 +24,7 @@ void add_columns(const Measures& measures, Frame& frame) {
     std::vector<double> values(frame.grains, std::nan(""));
     if (found != measures.of_grains.end()) values = found->second;
     values.resize(frame.particles(), measure->scale.of_wall_grains);
-    FrameColumn& column = frame.columns.emplace_back();
-    column.name = measure->name;
-    if (measure->scale.whole) {
-      column.values = std::vector<std::int32_t>(values.begin(), values.end());
-    } else {
-      column.values = std::move(values);
-    }
+    frame.columns.push_back({std::string(measure->name), measure->scale.whole, std::move(values)});
   }
 }
 

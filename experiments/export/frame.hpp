@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "experiments/figures/run_table.hpp"
@@ -19,7 +18,8 @@ namespace shearcell {
 /// A measure of each particle.
 struct FrameColumn {
   std::string name;
-  std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+  bool whole = false;  ///< whole numbers
+  std::vector<double> values;
 };
 
 /// A contact of two particles, once, or of a grain with a plane.

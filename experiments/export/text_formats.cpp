@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <memory>
 #include <string_view>
 
 #include "experiments/export/formats.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell {
@@ -18,10 +18,7 @@ namespace {
 /// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both ignore
 /// the quotes; ASE takes lists apart at spaces and commas, so the first item decides.
 bool looks_like_a_value(std::string_view text) {
-  std::string word;
-  for (const char c : text.substr(0, text.find_first_of(" ,"))) {
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
   const bool number = std::ranges::none_of(word, of_a_name);  // "1e3", also Fortran's "1d3"
   word.erase(0, word.find_first_not_of("+-"));
@@ -49,7 +46,7 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
       fmt::join(e.reshaped(), " "), fmt::join(o, " "), f.time_s, f.step, f.cycle, f.theta);
   for (const FrameColumn& column : f.columns) {
-    line += fmt::format(":{}:{}:1", column.name, column.values.index() == 0 ? 'R' : 'I');
+    line += fmt::format(":{}:{}:1", column.name, column.whole ? 'I' : 'R');
   }
   line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
                       si ? "m/s" : "d/s", d, quoted(f.checkpoint));
@@ -89,11 +86,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
       fmt::format_to(line, "{} {:.17g} {:.17g} {} {:.17g} {}", f.type[i] == 0 ? "H" : "He",
                      fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / unit, f.type[i]);
       for (const FrameColumn& column : f.columns) {
-        if (const auto* real = std::get_if<0>(&column.values)) {
-          fmt::format_to(line, " {:.17g}", (*real)[i]);
-        } else {
-          fmt::format_to(line, " {}", std::get<1>(column.values)[i]);
-        }
+        fmt::format_to(line, " {:.17g}", column.values[i]);
       }
       text += '\n';
     }

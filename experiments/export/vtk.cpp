@@ -72,9 +72,9 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
            out.array("radius", "Float64", 1, std::vector<double>(f.particles(), f.radius));
   piece += out.array("type", "Int32", 1, f.type);
   for (const FrameColumn& column : f.columns) {
-    const char* type = column.values.index() == 0 ? "Float64" : "Int32";
-    std::visit([&](const auto& values) { piece += out.array(column.name, type, 1, values); },
-               column.values);
+    const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
+    piece += column.whole ? out.array(column.name, "Int32", 1, whole)
+                          : out.array(column.name, "Float64", 1, column.values);
   }
   piece += "</PointData>\n<Verts>\n" +
            out.array("connectivity", "Int64", 1, count_from(0, f.particles())) +

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "analysis/expression.hpp"
@@ -44,19 +45,13 @@ bool has_interior(const Parameters& p) {
 /// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
 /// "Use more grains." if N is beyond the range of `grains`.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
-  const auto fits = [&](std::uint64_t grains) {
-    p.grains = grains;
-    return enough(p);
-  };
-  const Range& range = find_field("grains")->range;
-  std::uint64_t few = p.grains, many = 2 * few;
-  for (; !fits(many) && range.contains(static_cast<double>(many)); many *= 2) few = many;
+  const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
+  std::uint64_t few = p.grains, many = most + 1;
   while (many - few > 1) {
-    const std::uint64_t middle = few + (many - few) / 2;
-    (fits(middle) ? many : few) = middle;
+    p.grains = few + (many - few) / 2;
+    (enough(p) ? many : few) = p.grains;
   }
-  return range.contains(static_cast<double>(many)) ? format("Use at least {} grains.", many)
-                                                   : "Use more grains.";
+  return many > most ? "Use more grains." : format("Use at least {} grains.", many);
 }
 
 // Checks one variant at one scale.
@@ -84,8 +79,8 @@ struct VariantCheck {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
       return found == scale.settle.end() ? nullptr : &found->second;
     }
-    for (const auto& [name, setting] : variant.swept) {
-      if (name == key) return setting;
+    if (const SweepAxis* axis = find_axis(scale.sweep, key); axis != nullptr && !is_length(key)) {
+      return &*std::ranges::find(axis->values, variant.swept.at(axis->key), &Setting::value);
     }
     for (const Settings* settings : {&scale.settings, &scale.start.settings}) {
       const auto found = settings->find(key);
@@ -102,6 +97,10 @@ struct VariantCheck {
     const Setting* blamed = stated == nullptr ? find(cause) : stated;
     problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), std::move(problem),
                  stated != nullptr ? text : "the default " + text, std::move(remedy));
+  }
+
+  void refuse(const Position& at, const char* key, string problem, string remedy) {
+    problems.add(at, key, std::move(problem), "", std::move(remedy));
   }
 
   // The last of the keys that is stated; "" if none is.
@@ -194,9 +193,6 @@ struct VariantCheck {
 
   void check_start() {
     const Start& start = scale.start;
-    const auto refuse = [&](const Position& at, const char* key, string problem, string remedy) {
-      problems.add(at, key, std::move(problem), "", std::move(remedy));
-    };
     if (!start.is_recorded()) {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
@@ -223,18 +219,16 @@ struct VariantCheck {
   }
 
   void check_phases() {
-    const auto refuse = [&](string problem, string remedy) {
-      problems.add(scale.checkpoints.at, "checkpoints.phases", std::move(problem), "",
-                   std::move(remedy));
-    };
     const Drive motion = drive(p);
-    const std::vector<double>& phases = scale.checkpoints.phases;
+    const auto& [every, phases, at] = scale.checkpoints;
+    constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse("protocol stiffen has no phases of a cycle", "Leave them out.");
+      refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
     } else if (string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(std::move(why), "Leave them out, or the engine.");
+      refuse(at, key, std::move(why), "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
-      refuse(format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
+      refuse(at, key,
+             format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
                     cycle_steps(motion)),
              "Use fewer of them, or more steps_per_cycle.");
     }
@@ -256,7 +250,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     std::vector<json> variants;
-    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept_values());
+    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept);
     const auto names = variant_names(variants, manifest.labels);
     // By what a reader sees: the name, and its label or null.
     std::map<string, std::pair<string, const VariantLabel*>> named;
@@ -336,6 +330,9 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
+  const auto when = [](double seconds) {
+    return seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late";
+  };
   if (!pressure_lifts_column(p)) {
     advice.push_back(
         format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
@@ -361,28 +358,23 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
                "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
                p.settle_time_limit_s));
   } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(format(
-        "with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-        "settle_time_limit_s ({:g} s). Raise one of them.",
-        packing.drag_kg_per_s, time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
-        p.settle_time_limit_s));
+    advice.push_back(
+        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
+               "settle_time_limit_s ({:g} s). Raise one of them.",
+               packing.drag_kg_per_s, when(time), p.settle_time_limit_s));
   }
   if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
     advice.push_back(format(
         "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses the "
         "grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower the drag, or "
         "raise pressure_Pa or that limit.",
-        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s,
-        time < 1e6 ? format("only after about {:.2g} s", time) : "too late",
+        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
         p.settle_time_limit_s));
   }
-  if (p.protocol != ProtocolKind::stiffen) {
-    if (auto step = time_step_advice(shear_time_step(p), "steps_per_cycle"))
-      advice.push_back(*step);
-  }
-  if (auto step = time_step_advice(settle_time_step(packing), "settle_time_step_s");
-      settles && step) {
-    advice.push_back(*step);
+  for (const auto& [step, key, is_used] :
+       {std::tuple(shear_time_step(p), "steps_per_cycle", p.protocol != ProtocolKind::stiffen),
+        {settle_time_step(packing), "settle_time_step_s", settles}}) {
+    if (const auto one = time_step_advice(step, key); one && is_used) advice.push_back(*one);
   }
   return advice;
 }
@@ -397,7 +389,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
     for (const string& one : advice_on(variant, settles)) {
       auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
       if (known == advice.end()) known = advice.insert(known, {one, {}});
-      known->second.push_back(variant.name());
+      known->second.push_back(variant.name);
     }
   }
   for (const auto& [one, of] : advice) {
@@ -461,7 +453,7 @@ string averaged_over(const std::vector<string>& keys, std::span<const Variant> v
     for (const string& key : keys) {
       if (const Field* field = find_field(key)) curve.push_back(field->get(variant.parameters));
     }
-    values.emplace_back(std::move(curve), variant.swept_values());
+    values.emplace_back(std::move(curve), variant.swept);
   }
   return averaged_key(values);
 }
@@ -525,7 +517,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
   std::set<json> curves;
   for (const Variant& variant : variants) {
     if (!has_values(variant, series.where)) continue;
-    json curve = variant.swept_values();
+    json curve = variant.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
     curve.erase(plot.panel);
     if (!plot.by.empty()) curve = find_field(plot.by)->get(variant.parameters);

@@ -8,6 +8,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <cctype>
 #include <map>
 #include <set>
@@ -29,22 +30,13 @@ struct Character {
   char32_t code_point = 0;
 };
 
-// Decodes the first character of `text`. Overlong forms, surrogates and code points beyond U+10FFFF
-// are not UTF-8.
+// Decodes the first character of `text`.
 Character decode(string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  if (first < 0x80) return {1, first};
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < length) return {};
-  char32_t c = first & (0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return {};
-    c = c << 6 | (byte(i) & 0x3FU);
-  }
-  constexpr char32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = c >= 0xD800 && c < 0xE000;
-  return c < smallest[length] || surrogate || c > 0x10FFFF ? Character{} : Character{length, c};
+  namespace utf = boost::locale::utf;
+  const char* end = text.data();
+  const auto c = utf::utf_traits<char>::decode(end, text.data() + text.size());
+  if (c == utf::illegal || c == utf::incomplete) return {};
+  return {static_cast<std::size_t>(end - text.data()), c};
 }
 
 // Control characters, line ends, and characters that change the direction of text (Bidi_Control in
@@ -135,14 +127,12 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    check_tag(mark, tag);
-    open({.kind = Node::Kind::list, .at = position(mark)}, anchor);
+    open(Node::Kind::list, mark, tag, anchor);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    check_tag(mark, tag);
-    open({.kind = Node::Kind::map, .at = position(mark)}, anchor);
+    open(Node::Kind::map, mark, tag, anchor);
   }
   void OnMapEnd() override { close(); }
 
@@ -166,24 +156,29 @@ class TreeBuilder : public YAML::EventHandler {
   void check_text(const YAML::Mark& mark, string_view text) {
     for (string_view rest = text; !rest.empty();) {
       const auto [length, c] = decode(rest);
-      const char* remedy = "Remove it.";
-      std::string problem;
+      const auto reject = [&](const std::string& problem, const char* remedy = "Remove it.") {
+        refuse(file_, position(mark), "", problem, printable(text), remedy);
+      };
       if (length == 0) {
-        problem = "the escapes \\_ and \\N are not read";
-        remedy = "Write _ without the backslash, or the text in single quotes.";
-      } else if (is_control(c) && c != '\n') {
-        problem = fmt::format("holds the control character U+{:04X}", static_cast<unsigned>(c));
-      } else if (is_noncharacter(c)) {
-        problem = fmt::format("holds U+{:04X}, which is not a character", static_cast<unsigned>(c));
+        reject("the escapes \\_ and \\N are not read",
+               "Write _ without the backslash, or the text in single quotes.");
       }
-      if (!problem.empty()) refuse(file_, position(mark), "", problem, printable(text), remedy);
+      const auto number = static_cast<unsigned>(c);
+      if (is_control(c) && c != '\n') {
+        reject(fmt::format("holds the control character U+{:04X}", number));
+      }
+      if (is_noncharacter(c)) {
+        reject(fmt::format("holds U+{:04X}, which is not a character", number));
+      }
       rest.remove_prefix(length);
     }
   }
 
-  void open(Node node, YAML::anchor_t anchor) {
-    check_depth(node.at, open_.size());
-    open_.push_back({add(std::move(node)), anchor});
+  void open(Node::Kind kind, const YAML::Mark& mark, const std::string& tag,
+            YAML::anchor_t anchor) {
+    check_tag(mark, tag);
+    check_depth(position(mark), open_.size());
+    open_.push_back({add({.kind = kind, .at = position(mark)}), anchor});
   }
   void close() {
     keep(open_.back().anchor, open_.back().node);

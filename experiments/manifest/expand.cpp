@@ -53,19 +53,17 @@ void check_option(const Manifest& manifest, const char* key, const nlohmann::jso
 
 std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& stated,
                                         const std::optional<std::uint64_t>& wanted) {
-  if (!wanted) return stated.values;
+  std::vector<std::uint64_t> seeds = stated.values;
+  if (!wanted) return seeds;
   check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
-  if (stated.counted) {
-    std::vector<std::uint64_t> seeds(*wanted);
-    std::iota(seeds.begin(), seeds.end(), 1);
-    return seeds;
-  }
-  if (*wanted > stated.values.size()) {
+  if (!stated.counted && *wanted > seeds.size()) {
     refuse(manifest.file, {}, "seeds",
-           fmt::format("the manifest lists {} seeds only", stated.values.size()),
-           std::to_string(*wanted), "List more, or state a count.");
+           fmt::format("the manifest lists {} seeds only", seeds.size()), std::to_string(*wanted),
+           "List more, or state a count.");
   }
-  return {stated.values.begin(), stated.values.begin() + static_cast<std::ptrdiff_t>(*wanted)};
+  seeds.resize(*wanted);
+  if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);
+  return seeds;
 }
 
 // Adds the engine as a swept key, so that figures never average runs of two engines.
@@ -87,8 +85,8 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
                        const std::optional<PackingText>& file) {
   PlannedRun run;
   run.ask = common;
-  run.ask.variant = variant.name();
-  run.ask.swept = variant.swept_values();
+  run.ask.variant = variant.name;
+  run.ask.swept = variant.swept;
   run.ask.seed = seed;
   run.parameters = variant.parameters;
   run.ask.target_cycles = target_cycles(run.parameters);
@@ -116,15 +114,8 @@ void take_declared_lengths(const Place& place, std::span<const Stage> known,
     }
   }
   for (Variant& variant : variants) {
-    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name()]);
+    variant.parameters.cycles = std::max(variant.parameters.cycles, longest[variant.name]);
   }
-}
-
-void name_variants(const Manifest& manifest, Plan& plan) {
-  std::vector<nlohmann::json> variants;
-  for (const PlannedRun& run : plan.runs) variants.push_back(run.ask.swept);
-  const auto names = variant_names(variants, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
 }
 
 }  // namespace
@@ -157,17 +148,16 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   std::set<std::string> fitted;                   // packings into which the file fits
   Filter wanted(options.variants), seed_filter(options.only_seeds);
-  std::vector<std::uint64_t> chosen_seeds;
-  std::ranges::copy_if(seeds, std::back_inserter(chosen_seeds), [&](std::uint64_t seed) {
-    return seed_filter.passes(std::to_string(seed));
-  });
+  std::vector<std::uint64_t> chosen_seeds = seeds;
+  std::erase_if(chosen_seeds,
+                [&](std::uint64_t seed) { return !seed_filter.passes(std::to_string(seed)); });
   if (const std::string* missing = seed_filter.unfound()) {
     refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
            fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
   }
   std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
-    if (!wanted.passes(variant.name())) continue;
+    if (!wanted.passes(variant.name)) continue;
     chosen.push_back(variant);
     if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {
@@ -178,11 +168,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (scale.start.is_recorded()) {
       recorded = &recorded_run(manifest, scale, variant, options.known);
     }
-    const auto first = seeds.begin();
-    const auto last =
-        first + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(variant.seeds, seeds.size()));
+    const auto own = std::span(seeds).first(std::min<std::size_t>(variant.seeds, seeds.size()));
     for (const std::uint64_t seed : chosen_seeds) {
-      if (std::find(first, last, seed) == last) continue;
+      if (std::ranges::count(own, seed) == 0) continue;
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
@@ -204,7 +192,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            printable(fmt::format("{}", fmt::join(options.variants, " and "))),
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
-  name_variants(manifest, plan);
+  std::vector<nlohmann::json> swept;
+  for (const PlannedRun& run : plan.runs) swept.push_back(run.ask.swept);
+  const auto names = variant_names(swept, manifest.labels);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
   take_declared_lengths(common, options.known, variants);
   std::ranges::move(warnings_of(manifest, scale, variants, chosen, seeds.size()),
                     std::back_inserter(plan.warnings));

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/start.hpp"

@@ -21,18 +21,14 @@ using nlohmann::json;
 // Must change if the meaning of a key changes, so that keys of different meanings never collide.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
-// Gives a parameter without effect one fixed value, so that equal runs have equal records.
-Parameters without_ineffective(Parameters parameters) {
-  if (!depends_on_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
-  return parameters;
-}
-
 json as_json(const Field& field, std::string_view text) {
   return std::get<json>(read_value(field, text, false));
 }
 
 json record_of(const StageInputs& stage) {
-  const Parameters parameters = without_ineffective(stage.parameters);
+  Parameters parameters = stage.parameters;
+  // A parameter without effect has one fixed value, so that equal runs have equal records.
+  if (!depends_on_pressure_at(parameters)) parameters.pressure_at = PressureAt::moving_wall;
   json values = json::object();
   for (const Field& field : schema()) {
     json value = field.identity.recorded_as.empty() ? field.get(parameters)

@@ -92,15 +92,10 @@ nlohmann::json overrides(std::string_view text, const Ask& ask) {
     found[key] = {{"run", run}, {"manifest", stated}};
   };
   const Scale& stated = scale_of(*manifest, ask.scale);
-  const auto selected = [&](const auto& swept) {
-    const auto value = ask.swept.find(swept.first);
-    return value != ask.swept.end() && *value == swept.second->value;
-  };
   for (const Variant& variant : variants_of(stated)) {
     const std::uint64_t cycles = target_cycles(variant.parameters);
-    if (cycles == ask.target_cycles || !std::ranges::all_of(variant.swept, selected)) {
-      continue;
-    }
+    const bool is_it = variant.swept.empty() || selects({variant.swept, "", {}}, ask.swept);
+    if (cycles == ask.target_cycles || !is_it) continue;
     add("cycles", ask.target_cycles, cycles);
     break;
   }

@@ -166,11 +166,11 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};       ///< "" for that of the shear
-  std::string variant = {};     ///< swept values; "" if the experiment has one variant
-  std::string checkpoint = {};  ///< RUN@CYCLE, instead of experiment, scale and variant
-  std::string run = {};         ///< the beginning of the id in `checkpoint`
-  Settings settings = {};       ///< start_seed, start_cycle, start_noise_d
+  std::string scale = {};    ///< "" for that of the shear
+  std::string variant = {};  ///< swept values; "" if the experiment has one variant
+  /// Instead of experiment, scale and variant: the beginning of the id in `checkpoint`.
+  std::string run = {};
+  Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
 
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,35 +72,28 @@ struct Layout {
 
   Layout() { column.fill(-1); }
   bool has(Quantity q) const { return column[static_cast<std::size_t>(q)] >= 0; }
-  void set(int quantity, std::size_t at) {
-    column[static_cast<std::size_t>(quantity)] = static_cast<int>(at);
+  /// `count` quantities are in columns from `at` on.
+  void set(Quantity first, std::size_t at, int count = 1) {
+    std::iota(&column[first], &column[first] + count, static_cast<int>(at));
   }
 };
 
+/// The trimmed fields of a line.
 std::vector<string_view> split(string_view text, char separator) {
+  const bool blank = separator == ' ';
   std::vector<string_view> fields;
-  while (separator != ' ') {
-    const std::size_t end = std::min(text.find(separator), text.size());
-    fields.push_back(trimmed(text.substr(0, end)));
-    if (end == text.size()) return fields;
-    text.remove_prefix(end + 1);
-  }
   for (;;) {
-    const std::size_t start = std::min(text.find_first_not_of(" \t"), text.size());
-    text.remove_prefix(start);
-    if (text.empty()) return fields;
-    fields.push_back(text.substr(0, text.find_first_of(" \t")));
-    text.remove_prefix(fields.back().size());
+    const std::size_t end = text.find_first_of(blank ? " \t" : string_view(&separator, 1));
+    const string_view field = trimmed(text.substr(0, end));
+    if (!blank || !field.empty()) fields.push_back(field);
+    if (end == text.npos) return fields;
+    text.remove_prefix(end + 1);
   }
 }
 
 string_view unquoted(string_view text) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   return quoted ? text.substr(1, text.size() - 2) : text;
-}
-
-bool begins_with_letter(string_view text) {
-  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
 }
 
 class PackingReader {
@@ -186,31 +180,37 @@ class PackingReader {
     refuse_part(part, name, "is not a number", "Write it in decimal digits, as 1.5e-3.");
   }
 
+  /// Three of the words, each `step` after the one before.
+  Eigen::Vector3d vector(const std::vector<string_view>& words, std::size_t first, std::size_t step,
+                         const char* name) const {
+    return {number(words[first], name), number(words[first + step], name),
+            number(words[first + 2 * step], name)};
+  }
+
   // --- Columns and rows ---
 
   /// Enters the columns of that name from place `at` on; ignores names that are not known.
-  void enter(Layout& layout, string_view name, std::size_t at, string_view part) const {
+  void enter(string_view name, std::size_t at, string_view part) {
     const ColumnName* known = find_named(kColumnNames, name);
     if (known == nullptr) return;
     for (int k = 0; k < known->count; ++k) {
-      if (layout.has(static_cast<Quantity>(known->first + k))) {
-        refuse_part(part, "", "names a column that stands there twice", "Keep one of them.");
-      }
-      layout.set(known->first + k, at + static_cast<std::size_t>(k));
+      if (!layout_.has(static_cast<Quantity>(known->first + k))) continue;
+      refuse_part(part, "", "names a column that stands there twice", "Keep one of them.");
     }
-    if (name == "radius") layout.per_diameter = 2;
+    layout_.set(known->first, at, known->count);
+    if (name == "radius") layout_.per_diameter = 2;
   }
 
-  void require_columns(const Layout& layout, const char* remedy) const {
-    const bool moves = layout.has(kVx) || layout.has(kVy) || layout.has(kVz);
+  void require_columns(const char* remedy) const {
+    const bool moves = layout_.has(kVx) || layout_.has(kVy) || layout_.has(kVz);
     for (const Quantity q : {kX, kY, kZ, kVx, kVy, kVz}) {
-      if (layout.has(q) || (q >= kVx && !moves)) continue;
+      if (layout_.has(q) || (q >= kVx && !moves)) continue;
       refuse_line(fmt::format("the column {} is missing", kNamesInMessages[q]), remedy);
     }
   }
 
   /// Reads the present line as one grain.
-  void add_row(const Layout& layout, std::vector<GrainRow>& rows) const {
+  void add_row(const Layout& layout, std::vector<GrainRow>& rows) {
     const std::vector<string_view> fields = split(line_, layout.separator);
     if (fields.size() < layout.fields || (fields.size() > layout.fields && !layout.more_allowed)) {
       refuse_line(fmt::format("has {} fields instead of {}", fields.size(), layout.fields),
@@ -233,14 +233,14 @@ class PackingReader {
   }
 
   /// Reads `count` lines, and requires that nothing follows.
-  void read_rows(const Layout& layout, std::uint64_t count, int stated_in) {
+  void read_rows(std::uint64_t count, int stated_in) {
     for (std::uint64_t k = 0; k < count; ++k) {
       if (!next_line()) {
         refuse_line(fmt::format("the file ends after {} of the {} grains that line {} states", k,
                                 count, stated_in),
                     "Write the whole file, or correct the number.");
       }
-      add_row(layout, rows_);
+      add_row(layout_, rows_);
     }
     while (next_line()) {
       if (trimmed(line_).empty()) continue;
@@ -248,7 +248,6 @@ class PackingReader {
           fmt::format("the file goes on after the {} grains that line {} states", count, stated_in),
           "Keep one frame, or correct the number.");
     }
-    layout_ = layout;
   }
 
   void set_unit(LengthUnit unit) {
@@ -293,19 +292,18 @@ class PackingReader {
       const auto origin = keys.find("Origin");
       read_lattice(lattice->second, origin == keys.end() ? string_view() : origin->second);
     }
-    Layout layout;
     if (const auto properties = keys.find("Properties"); properties != keys.end()) {
-      read_properties(properties->second, layout);
+      read_properties(properties->second);
     } else {
-      for (int k = 0; k < 3; ++k) layout.set(kX + k, static_cast<std::size_t>(k) + 1);
-      layout.fields = 4;
-      layout.more_allowed = true;
+      layout_.set(kX, 1, 3);
+      layout_.fields = 4;
+      layout_.more_allowed = true;
     }
-    require_columns(layout, "Properties holds pos:R:3, and vel:R:3 if there are velocities.");
-    read_rows(layout, count, 1);
+    require_columns("Properties holds pos:R:3, and vel:R:3 if there are velocities.");
+    read_rows(count, 1);
   }
 
-  void read_properties(string_view text, Layout& layout) const {
+  void read_properties(string_view text) {
     const std::vector<string_view> parts = split(text, ':');
     for (std::size_t k = 0; k < parts.size(); k += 3) {
       const auto count =
@@ -321,8 +319,8 @@ class PackingReader {
                     fmt::format("is not the number of columns of {}", printable(name)),
                     fmt::format("It takes {}.", known->count));
       }
-      enter(layout, name, layout.fields, parts[k]);
-      layout.fields += *count;
+      enter(name, layout_.fields, parts[k]);
+      layout_.fields += *count;
     }
   }
 
@@ -332,20 +330,16 @@ class PackingReader {
       refuse_line("Lattice or Origin is not complete",
                   "They take 9 and 3 numbers: the edges of the box and its corner.");
     }
-    PackingBox box;
-    double lean = 0;
-    for (int k = 0; k < 9; ++k) {
-      const double value = number(parts[static_cast<std::size_t>(k)], "Lattice");
-      const bool along = k % 4 == 0;
-      if (along) box.high[k / 4] = value;
-      if (!along) lean = std::max(lean, std::fabs(value));
-    }
-    require_upright(lean, box.high.cwiseAbs().maxCoeff());
+    Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k) {
-      box.low[k] = corner.empty() ? 0 : number(corner[static_cast<std::size_t>(k)], "Origin");
+      edges.row(k) = vector(parts, 3 * static_cast<std::size_t>(k), 1, "Lattice");
     }
-    box.high += box.low;
-    set_box(box);
+    const Eigen::Vector3d size = edges.diagonal();
+    edges.diagonal().setZero();
+    require_upright(edges.cwiseAbs().maxCoeff(), size.cwiseAbs().maxCoeff());
+    const Eigen::Vector3d low =
+        corner.empty() ? Eigen::Vector3d(0, 0, 0) : vector(corner, 0, 1, "Origin");
+    set_box({low, low + size});
   }
 
   // --- Boxes ---
@@ -356,11 +350,11 @@ class PackingReader {
                 "A start is upright. Of a sheared cell, write the state at the end of a cycle.");
   }
 
-  void set_box(const PackingBox& box) {
+  void set_box(const Eigen::AlignedBox3d& box) {
     for (const int k : {0, 1, 2}) {
-      if (box.low[k] < box.high[k]) continue;
-      refuse_line(fmt::format("the box is {:.6g} long in {}", box.high[k] - box.low[k],
-                              kNamesInMessages[k]),
+      const double size = box.sizes()[k];
+      if (size > 0) continue;
+      refuse_line(fmt::format("the box is {:.6g} long in {}", size, kNamesInMessages[k]),
                   "Its edges are positive.");
     }
     box_ = box;
@@ -386,7 +380,7 @@ class PackingReader {
     std::vector<GrainRow> velocities;
     Layout moving;
     moving.set(kId, 0);
-    for (std::size_t k = 0; k < 3; ++k) moving.set(kVx + static_cast<int>(k), k + 1);
+    moving.set(kVx, 1, 3);
     moving.fields = 4;
     moving.more_allowed = true;
     string section, style;
@@ -394,7 +388,7 @@ class PackingReader {
       const std::size_t comment = std::min(line_.find('#'), line_.size());
       const string_view body = trimmed(line_.substr(0, comment));
       if (body.empty()) continue;
-      if (begins_with_letter(body)) {
+      if (std::isalpha(static_cast<unsigned char>(body.front())) != 0) {
         section = body;
         style = trimmed(line_.substr(std::min(comment + 1, line_.size())));
       } else if (section.empty()) {
@@ -405,7 +399,7 @@ class PackingReader {
         }
         read_bounds(words);
       } else if (section == "Atoms") {
-        if (layout_.fields == 0) layout_ = layout_of(style, split(line_, ' ').size());
+        if (layout_.fields == 0) take_style(style, split(line_, ' ').size());
         add_row(layout_, rows_);
       } else if (section == "Velocities") {
         add_row(moving, velocities);
@@ -429,82 +423,68 @@ class PackingReader {
     if (!ours_ || at == line_.npos) return;
     const std::vector<string_view> words = split(line_.substr(at + 5), ' ');
     if (words.size() != 8) refuse_line("the cell is not complete", "Export the run again.");
-    PackingBox cell;
-    for (int k = 0; k < 3; ++k) {
-      const auto word = static_cast<std::size_t>(2 * k);
-      cell.low[k] = number(words[word], "cell");
-      cell.high[k] = number(words[word + 1], "cell");
-    }
-    require_upright(std::fabs(number(words[7], "tilt")), cell.high.y() - cell.low.y());
+    const Eigen::AlignedBox3d cell(vector(words, 0, 2, "cell"), vector(words, 1, 2, "cell"));
+    require_upright(std::fabs(number(words[7], "tilt")), cell.sizes().y());
     set_box(cell);
   }
 
   void read_bounds(const std::vector<string_view>& words) {
+    if (ours_) return;
     if (words.size() == 6 && words[3] == "xy") {
-      double lean = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        lean = std::max(lean, std::fabs(number(words[k], "tilt")));
-      const double size = (bounds_.high - bounds_.low).cwiseAbs().maxCoeff();
-      if (!ours_) require_upright(lean, size);
+      require_upright(vector(words, 0, 1, "tilt").cwiseAbs().maxCoeff(),
+                      bounds_.isEmpty() ? 0 : bounds_.sizes().maxCoeff());
     }
-    if (words.size() != 4 || !words[2].ends_with("lo") || ours_) return;
+    if (words.size() != 4 || !words[2].ends_with("lo")) return;
     const auto axis = string_view("xyz").find(words[2].front());
     if (axis == string_view::npos) return;
     const auto k = static_cast<Eigen::Index>(axis);
-    bounds_.low[k] = number(words[0], "box");
-    bounds_.high[k] = number(words[1], "box");
-    bounds_known_ |= 1U << axis;
-    if (bounds_known_ == 7) set_box(bounds_);
+    bounds_.min()[k] = number(words[0], "box");
+    bounds_.max()[k] = number(words[1], "box");
+    if ((bounds_.max().array() >= -kLargest).all()) set_box(bounds_);
   }
 
   /// `style` as LAMMPS writes it after "Atoms #", or "": then the number of fields decides.
-  Layout layout_of(string_view style, std::size_t fields) const {
+  void take_style(string_view style, std::size_t fields) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
     if (style.empty()) style = five ? "atomic" : seven ? "sphere" : style;
     if (style == "hybrid" && seven) style = "hybrid sphere";  // write_data names no substyles
-    Layout layout;
-    layout.set(kId, 0);
-    layout.more_allowed = true;  // image flags
+    layout_.set(kId, 0);
+    layout_.more_allowed = true;  // image flags
     std::size_t x = 2;
     if (style == "atomic") {
-      layout.fields = 5;
+      layout_.fields = 5;
     } else if (style == "sphere" || style.starts_with("hybrid sphere")) {
       const bool hybrid = style != "sphere";
       x = hybrid ? 2 : 4;
-      layout.fields = 7;
-      layout.set(kDiameter, hybrid ? 5 : 2);
+      layout_.fields = 7;
+      layout_.set(kDiameter, hybrid ? 5 : 2);
     } else {
       refuse_line(style.empty() ? fmt::format("an atom of {} fields is not read", fields)
                                 : fmt::format("the atom style {} is not read", printable(style)),
                   "Write the data file with atom_style sphere or atomic.");
     }
-    for (std::size_t k = 0; k < 3; ++k) layout.set(kX + static_cast<int>(k), x + k);
-    layout.set(kWall, 1);  // the type
-    layout.first_wall = ours_ ? 2 : std::numeric_limits<double>::infinity();
-    return layout;
+    layout_.set(kX, x, 3);
+    layout_.set(kWall, 1);  // the type
+    layout_.first_wall = ours_ ? 2 : std::numeric_limits<double>::infinity();
   }
 
   void take_velocities(std::vector<GrainRow> velocities) {
     if (velocities.empty()) return;
-    std::map<double, std::size_t> place;
-    for (std::size_t k = 0; k < rows_.size(); ++k) place[rows_[k].value[kId]] = k;
+    std::map<double, GrainRow*> waiting;
+    for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
     for (const GrainRow& row : velocities) {
-      const auto found = place.find(row.value[kId]);
-      if (found == place.end() && ours_) continue;  // of a wall grain
-      if (found == place.end()) {
+      const auto found = waiting.extract(row.value[kId]);
+      if (!found && ours_) continue;  // of a wall grain
+      if (!found) {
         refuse_at(row.line,
                   fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
                   "Write the whole file.");
       }
-      for (const int q : {kVx, kVy, kVz}) {
-        const auto at = static_cast<std::size_t>(q);
-        rows_[found->second].value[at] = row.value[at];
-      }
-      place.erase(found);
+      std::copy_n(&row.value[kVx], 3, &found.mapped()->value[kVx]);
     }
-    if (!place.empty()) {
+    if (!waiting.empty()) {
       refuse_at(velocities.back().line,
-                fmt::format("atom {:.0f} has no velocity", place.begin()->first),
+                fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
                 "Write a velocity for each atom, each once, or leave the section out.");
     }
     layout_.set(kVx, 0);  // known
@@ -519,14 +499,11 @@ class PackingReader {
       const string_view item = trimmed(line_);
       if (item.starts_with("ITEM: ATOMS")) {
         if (!count) refuse_line("the number of atoms is missing", "Write the whole dump.");
-        Layout layout;
         const std::vector<string_view> names = split(line_, ' ');
-        layout.fields = names.size() - 2;
-        for (std::size_t k = 2; k < names.size(); ++k) {
-          enter(layout, lower(names[k]), k - 2, names[k]);
-        }
-        require_columns(layout, "Write them: dump ... custom ... id x y z vx vy vz.");
-        return read_rows(layout, *count, stated_in);
+        layout_.fields = names.size() - 2;
+        for (std::size_t k = 2; k < names.size(); ++k) enter(lower(names[k]), k - 2, names[k]);
+        require_columns("Write them: dump ... custom ... id x y z vx vy vz.");
+        return read_rows(*count, stated_in);
       }
       const bool bounds = item.starts_with("ITEM: BOX BOUNDS");
       const bool leans = bounds && item.find("xy") != item.npos;
@@ -538,18 +515,18 @@ class PackingReader {
         stated_in = number_;
       }
       if (!bounds) continue;
-      PackingBox box;
+      Eigen::AlignedBox3d box;
       for (int k = 0; k < 3; ++k) {
         if (k > 0) require_line("the rest of the box");
         const std::vector<string_view> words = split(line_, ' ');
         if (words.size() != (leans ? 3U : 2U)) {
           refuse_line("is not a lower and an upper bound", "Write the whole dump.");
         }
-        box.low[k] = number(words[0], "box");
-        box.high[k] = number(words[1], "box");
+        box.min()[k] = number(words[0], "box");
+        box.max()[k] = number(words[1], "box");
         const string_view kind = kinds[kinds.size() - 3 + static_cast<std::size_t>(k)];
         follows_[static_cast<std::size_t>(k)] = kind.find_first_of("sm") != kind.npos;
-        if (leans) require_upright(std::fabs(number(words[2], "tilt")), box.high[k] - box.low[k]);
+        if (leans) require_upright(std::fabs(number(words[2], "tilt")), box.sizes()[k]);
       }
       set_box(box);
     }
@@ -593,17 +570,16 @@ class PackingReader {
   void read_csv() {
     next_line();
     const string_view header = header_of(line_);
-    Layout layout;
-    layout.separator = separator_of(header);
-    const std::vector<string_view> parts = split(header, layout.separator);
-    layout.fields = parts.size();
+    layout_.separator = separator_of(header);
+    const std::vector<string_view> parts = split(header, layout_.separator);
+    layout_.fields = parts.size();
     std::optional<LengthUnit> unit;
     bool any = false;
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const auto [name, stated] = name_and_unit(parts[k]);
       const ColumnName* known = find_named(kColumnNames, name);
       if (known == nullptr || known->count != 1) continue;
-      enter(layout, name, k, parts[k]);
+      enter(name, k, parts[k]);
       if (known->first > kDiameter) continue;  // not a length
       if (any && stated != unit) {
         refuse_part(parts[k], "", "is in another unit than the columns before",
@@ -612,12 +588,11 @@ class PackingReader {
       any = true;
       unit = stated;
     }
-    require_columns(layout, "The first line names the columns, as x_m,y_m,z_m.");
+    require_columns("The first line names the columns, as x_m,y_m,z_m.");
     if (unit) set_unit(*unit);
     while (next_line()) {
-      if (!trimmed(line_).empty()) add_row(layout, rows_);
+      if (!trimmed(line_).empty()) add_row(layout_, rows_);
     }
-    layout_ = layout;
   }
 
   // --- The packing ---
@@ -690,17 +665,17 @@ class PackingReader {
     if (layout_.has(kVx)) packing.velocity = columns(kVx, scale_to_d);
     const Eigen::Vector3d least = packing.position.rowwise().minCoeff();
     const Eigen::Vector3d most = packing.position.rowwise().maxCoeff();
-    PackingBox space{least.array() - 1, most.array() + 1};
+    Eigen::AlignedBox3d space(least.array() - 1, most.array() + 1);
     if (box_) {
-      space = {box_->low * scale_to_d, box_->high * scale_to_d};
+      space = {box_->min() * scale_to_d, box_->max() * scale_to_d};
       for (const int k : {0, 1}) {
         if (!follows_[static_cast<std::size_t>(k)]) continue;
-        space.low[k] = least[k];
-        space.high[k] = most[k];
+        space.min()[k] = least[k];
+        space.max()[k] = most[k];
       }
       packing.box = space;
     }
-    const double longest = (space.high - space.low).maxCoeff();
+    const double longest = space.sizes().maxCoeff();
     if (longest > kLongestCell) {
       refuse_file(fmt::format("the packing is {:.3g} d long", longest),
                   fmt::format("At most {:g} d: is the unit of its lengths right?", kLongestCell));
@@ -711,8 +686,8 @@ class PackingReader {
   }
 
   /// In x and y; z is periodic and gets wrapped.
-  void require_inside(const PackingBox& box, Eigen::Matrix3Xd& position) const {
-    const double depth = box.high.z() - box.low.z();
+  void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
+    const double depth = box.sizes().z();
     if (depth < kShallowestCell) {
       refuse_at(box_line_, fmt::format("the box is {:.3g} d deep in z", depth),
                 fmt::format("At least {:g} d: is the unit of its lengths right?", kShallowestCell));
@@ -721,29 +696,29 @@ class PackingReader {
       const auto& row = rows_[static_cast<std::size_t>(i)];
       for (const int k : {0, 1, 2}) {
         const double at = position(k, i), further = k == 2 ? kLongestCell : 0;
-        if (at >= box.low[k] - further && at <= box.high[k] + further) continue;
+        if (at >= box.min()[k] - further && at <= box.max()[k] + further) continue;
         refuse_at(
             row.line,
             fmt::format("the grain is outside of the box: {} = {:.6g} d is not from {:.6g} to "
                         "{:.6g} d",
-                        kNamesInMessages[k], at, box.low[k], box.high[k]),
+                        kNamesInMessages[k], at, box.min()[k], box.max()[k]),
             "Only z is periodic: wrap x and y into the box, or write a larger box.");
       }
       double& z = position(2, i);
-      if (z < box.low.z() || z >= box.high.z()) {
-        z -= depth * std::floor((z - box.low.z()) / depth);
+      if (z < box.min().z() || z >= box.max().z()) {
+        z -= depth * std::floor((z - box.min().z()) / depth);
       }
     }
   }
 
   /// Stops at the first pair, so that many grains at one place do not take long.
-  void check_overlaps(const PackingBox& space, const Eigen::Matrix3Xd& position) const {
-    const Eigen::Vector3d size = space.high - space.low;
+  void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
+    const Eigen::Vector3d size = space.sizes();
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
     cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images without a box
-    const Eigen::Matrix3Xd sites = position.colwise() - space.low;
+    const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
                     const int first = rows_[static_cast<std::size_t>(i)].line;
@@ -775,13 +750,12 @@ class PackingReader {
   std::optional<LengthUnit> unit_;
   Layout layout_;
   std::vector<GrainRow> rows_;
-  mutable std::uint64_t wall_grains_ = 0;
-  std::optional<PackingBox> box_;
+  std::uint64_t wall_grains_ = 0;
+  std::optional<Eigen::AlignedBox3d> box_;
   int box_line_ = 0;
   /// Axes along which LAMMPS shrinks the box to the grains; a dump has the box of an earlier step.
   std::array<bool, 3> follows_{};
-  PackingBox bounds_;  ///< of LAMMPS data, while they are read
-  unsigned bounds_known_ = 0;
+  Eigen::AlignedBox3d bounds_;  ///< of LAMMPS data; empty along axes that are not read yet
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -18,17 +19,12 @@ enum class LengthUnit : std::uint8_t { m, d };
 template <>
 inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
 
-/// An upright box [d].
-struct PackingBox {
-  Eigen::Vector3d low, high;
-};
-
 /// The grains, by id if the file has ids, else in its order. Wall grains that an export of this
 /// program holds are left out.
 struct PackingFile {
   Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z within the box if there is one
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
-  std::optional<PackingBox> box;             ///< of an export, the planes of its cell
+  std::optional<Eigen::AlignedBox3d> box;    ///< [d]; of an export, the planes of its cell
 };
 
 /// What a file may leave to the manifest and to the parameters of the run.

@@ -69,6 +69,13 @@ void fields(Checkpoints& checkpoints, const auto& visit) {
   visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
 }
 
+void fields(Until& until, const auto& visit) {
+  visit(until.value, {.name = "crystalline_percent", .unit = "%", .range = {0, 100, true}});
+  visit(until.value, {.name = "largest_crystallite", .range = {1, 1e8}, .whole = true});
+  visit(until.value, {.name = "phi", .range = {0, 1, true}});
+  visit(until.extra_cycles, {.name = "extra_cycles", .range = kCycles});
+}
+
 void fields(Sweep& sweep, const auto& visit) {
   visit(sweep.grid, {.name = "grid"});
   visit(sweep.zip, {.name = "zip"});
@@ -83,11 +90,11 @@ void fields(Start& start, const auto& visit) {
                 "those of the keys that both sweep",
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
-  visit(start.checkpoint, {.name = "checkpoint",
-                           .doc = "instead of experiment, seed and cycle: the beginning of the "
-                                  "run's id and a whole cycle",
-                           .example = "0123abcd@10",
-                           .longest = kLongestLabel});
+  visit(start.run, {.name = "checkpoint",
+                    .doc = "instead of experiment, seed and cycle: the beginning of the "
+                           "run's id and a whole cycle",
+                    .example = "0123abcd@10",
+                    .longest = kLongestLabel});
   visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
   visit(start.settings, {.name = "cycle", .doc = "parameter start_cycle, default 0"});
   visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
@@ -129,7 +136,9 @@ void fields(Scale& scale, const auto& visit) {
         {.name = "until",
          .doc = "ends a run `extra_cycles` after the measure reaches the value; default: at "
                 "`cycles`",
-         .example = "{crystalline_percent: 10, extra_cycles: 15}"});
+         .besides = ", or `none`",
+         .example = "{crystalline_percent: 10, extra_cycles: 15}",
+         .wanted = "a measure with its value"});
   visit(scale.primary, {.name = "primary",
                         .doc = "statements of the claims that these runs are made to decide; all "
                                "others are exploratory",
@@ -361,7 +370,7 @@ string shown(const Node& node) {
 // "It takes [1, 15].", or what the key takes if it has no example.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
-                               : fmt::format("It takes `{}`.", about.example);
+                               : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
 // Whether the node is a colour such as "#0072b2".
@@ -434,11 +443,11 @@ struct Reader {
     if (find_named(sections, in.key) != nullptr) {
       return reject_key(in, "does not belong here", "Move it to the top level.");
     }
-    const Suggestion near = suggest_name(in.key, allowed);
-    if (near.missing_unit) {
-      reject_key(in, "is written without its unit", fmt::format("Write {}.", near.name));
-    } else if (!near.name.empty()) {
-      reject_key(in, "is an unknown key", fmt::format("Did you mean {}?", near.name));
+    const string near = suggest_name(in.key, allowed);
+    if (lower(near).starts_with(lower(in.key) + "_")) {
+      reject_key(in, "is written without its unit", fmt::format("Write {}.", near));
+    } else if (!near.empty()) {
+      reject_key(in, "is an unknown key", fmt::format("Did you mean {}?", near));
     } else if (allowed.size() <= sections.size()) {
       reject_key(in, "is an unknown key", fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
     } else {
@@ -612,39 +621,27 @@ struct Reader {
     }
   }
 
-  // A first and a last cycle.
-  void read(const Node& in, const Field& about, std::array<std::uint64_t, 2>& value) {
-    const Field cycle = {.range = about.range, .whole = true};
-    const std::size_t problems_before = problems.size();
-    value = {1, 1};
-    if (about.example.empty()) {  // one cycle
-      read(in, cycle, value[0]);
-      value[1] = value[0];
+  // A first and a last cycle, of a key without example the same one, or the ends of a window.
+  template <class T>
+  requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
+                                              std::array<T, 2>& ends) {
+    const Field end = with_type<T>({.range = about.range});
+    if (about.example.empty()) {
+      read(in, end, ends[0]);
+      ends[1] = ends[0];
       return;
     }
-    const auto ends = items_of(in, about.example);
-    if (ends.size() == 2) {
-      read(ends[0], cycle, value[0]);
-      value[1] = value[0];
-      read(ends[1], cycle, value[1]);
-    }
-    const bool in_order = ends.size() == 2 && value[0] <= value[1];
-    if (!in_order && problems.size() == problems_before) {
-      reject(in, "is not a first and a last cycle", fmt::format("It takes `{}`.", about.example));
-    }
-  }
-
-  // The ends of a window.
-  void read(const Node& in, const Field& about, std::array<double, 2>& window) {
     const std::size_t problems_before = problems.size();
-    const std::span<const Node> ends = items_of(in, about.example);
-    for (std::size_t k = 0; k < std::min(ends.size(), window.size()); ++k) {
-      read(ends[k], {.range = about.range}, window[k]);
+    const std::span<const Node> parts = items_of(in, about.example);
+    for (std::size_t k = 0; k < std::min(parts.size(), ends.size()); ++k) {
+      read(parts[k], end, ends[k]);
     }
-    const bool in_order = ends.size() == 2 && window[0] < window[1];
-    if (!in_order && problems.size() == problems_before) {
-      reject(in, "is not a window from a low to a high value",
-             fmt::format("It takes `{}`.", about.example));
+    const bool in_order = ends[0] < ends[1] || (end.whole && ends[0] == ends[1]);
+    if ((parts.size() != 2 || !in_order) && problems.size() == problems_before) {
+      reject(in,
+             end.whole ? "is not a first and a last cycle"
+                       : "is not a window from a low to a high value",
+             remedy_of(about));
     }
   }
 
@@ -934,37 +931,9 @@ struct Reader {
     }
   }
 
-  // One of the measures, and `extra_cycles`.
   void read(const Node& in, const Field& about, StatedUntil& stated) {
-    static const std::array<Field, 4> keys = {
-        {{.name = "crystalline_percent", .unit = "%", .range = {0, 100, true}},
-         {.name = "largest_crystallite", .range = {1, 1e8}, .whole = true},
-         {.name = "phi", .range = {0, 1, true}},
-         {.name = "extra_cycles", .range = {0, StoreLimits::cycles}, .whole = true}}};
     stated = {{}, in.at};
-    if (in.is_scalar() && in.text == "none") return;
-    const string remedy = fmt::format("It takes `{}`, or `none`.", about.example);
-    if (!in.is_map()) return reject_type(in, "a measure with its value", remedy);
-    Until until;
-    bool named = false, all_known = true;
-    for (const Node& part : in.parts) {
-      const Field* key = find_named(keys, part.key);
-      const auto measure = value_of<StopMeasure>(part.key);
-      if (key == nullptr) {
-        reject_unknown(part, names_of(keys));
-        all_known = false;
-      } else if (!measure) {
-        read(part, *key, until.extra_cycles);
-      } else if (named) {
-        problems.add(part.key_at, in.path, "names two measures", "", "Keep one of them.");
-      } else {
-        named = true;
-        until.measure = *measure;
-        read(part, *key, until.value);
-      }
-    }
-    if (named) stated.until = until;
-    if (!named && all_known) reject(in, "names no measure", remedy);
+    if (!in.is_scalar() || in.text != "none") read(in, about, stated.until);
   }
 
   // Any other map.
@@ -981,6 +950,20 @@ struct Reader {
       return reject(in, fmt::format("lacks {}", key.name), remedy_of(about));
     }
     check(in, about, value);
+  }
+
+  void check(const Node& in, const Field& about, Until& until) {
+    bool named = false;
+    for (const Node& part : in.parts) {
+      const auto measure = value_of<StopMeasure>(part.key);
+      if (!measure) continue;
+      if (named) problems.add(part.key_at, in.path, "names two measures", "", "Keep one of them.");
+      named = true;
+      until.measure = *measure;
+    }
+    if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
+      reject(in, "names no measure", remedy_of(about));
+    }
   }
 
   void check(const Node& in, const Field&, Checkpoints& checkpoints) {
@@ -1009,13 +992,13 @@ struct Reader {
     }
     const Node* checkpoint = in.find("checkpoint");
     if (checkpoint == nullptr) return;
-    const std::size_t at = start.checkpoint.find('@');
-    start.run = start.checkpoint.substr(0, at);
+    const string_view text = checkpoint->text;
+    const std::size_t at = std::min(text.find('@'), text.size());
+    start.run = text.substr(0, at);
     const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
                        start.run.find_first_not_of("0123456789abcdef") == string::npos;
     auto cycle =
-        read_value(*find_field("start_cycle"),
-                   at == string::npos ? "" : string_view(start.checkpoint).substr(at + 1), false);
+        read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
     if (!is_id || cycle.index() != 0) {
       return reject_value(*checkpoint, "is not a run and a whole cycle",
                           "It takes `0123abcd@10`: at least eight digits of the run's id.");
@@ -1181,25 +1164,25 @@ struct Reader {
         if (own == nullptr || !is_name(own->text)) continue;
         const string& text = own->text;
         const string of = its_figure == nullptr ? "" : its_figure->text;
-        bool restated = false;  // a listed figure that is stated here too
-        const auto is_panel = [&](const Figure& figure) {
-          const bool computed = find_named(computed_figures(), figure.name) != nullptr;
-          const bool also_listed = std::ranges::find(listed, figure.name) != listed.end();
-          if (!computed && !also_listed && of == figure.name) return false;
-          restated = !computed && of == figure.name;
-          if (!text.starts_with(figure.name)) return false;
+        // A figure that another manifest states, and whether it is shown as it stands there.
+        const bool is_stated = find_named(computed_figures(), of) == nullptr;
+        const bool is_listed = std::ranges::count(listed, of) > 0;
+        const auto clash = std::ranges::find_if(supplement, [&](const Figure& figure) {
+          const bool is_part = is_stated && !is_listed && of == figure.name;
+          if (is_part || !text.starts_with(figure.name)) return false;
           const string_view rest = string_view(text).substr(figure.name.size());
           return rest.size() < 2 || rest.front() == '_';
-        };
+        });
         const bool is_taken = key == string_view("name")
                                   ? !taken.emplace(text, of).second
                                   : taken.contains(text) && taken.at(text) != text;
-        if (std::ranges::any_of(supplement, is_panel)) {
+        if (clash != supplement.end()) {
           reject_value(*own, "is the name of a figure of the supplement",
-                       restated ? fmt::format("Leave {} out of `figures`, since this manifest "
-                                              "states it, or choose another name.",
-                                              of)
-                                : "Choose another one.");
+                       is_stated && of == clash->name
+                           ? fmt::format("Leave {} out of `figures`, since this manifest states "
+                                         "it, or choose another name.",
+                                         of)
+                           : "Choose another one.");
         } else if (is_taken || is_panel_of_own(text)) {
           reject_value(*own, "is the name of another plot or claim", "Choose another one.");
         }
@@ -1229,7 +1212,8 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     problems.raise();
   }
   // Scales begin with what is stated for all of them.
-  std::ranges::stable_partition(root.parts, [](const Node& part) { return part.key != "scales"; });
+  std::stable_partition(root.parts.begin(), root.parts.end(),
+                        [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;
   reader.read_keys(root, manifest);
   if (const Node* experiment = root.find("experiment")) {

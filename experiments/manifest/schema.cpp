@@ -28,10 +28,6 @@ constexpr Identity kShear = {.stage = StageKind::shear};
 constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
 
-constexpr Range from(double min, double max) {
-  return {min, max};
-}
-
 // Lower limit of parameters whose quotients are values in units of d, m and s: keeps these finite.
 constexpr double kSmallest = 1e-30;
 
@@ -108,22 +104,22 @@ std::span<const Field> schema() {
   using P = Parameters;
   static const std::array fields = {
       // Grains and what acts on them.
-      row<&P::grains>("grains", "N", "1", from(1, 1e8), kPrepare, "number of grains"),
-      row<&P::mass_kg>("mass_kg", "m", "kg", from(kSmallest, 1e6), kPrepare,
+      row<&P::grains>("grains", "N", "1", {1, 1e8}, kPrepare, "number of grains"),
+      row<&P::mass_kg>("mass_kg", "m", "kg", {kSmallest, 1e6}, kPrepare,
                        "mass of a grain (Table I)"),
-      row<&P::diameter_m>("diameter_m", "d", "m", from(kSmallest, 1e3), kPrepare,
+      row<&P::diameter_m>("diameter_m", "d", "m", {kSmallest, 1e3}, kPrepare,
                           "diameter of a grain (Table I)"),
-      row<&P::stiffness_N_per_m>("stiffness_N_per_m", "k", "N/m", from(kSmallest, 1e15), kPrepare,
+      row<&P::stiffness_N_per_m>("stiffness_N_per_m", "k", "N/m", {kSmallest, 1e15}, kPrepare,
                                  "spring constant of a contact (Table I)"),
-      row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", from(0, 1e9), kPrepare,
+      row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", {0, 1e9}, kPrepare,
                              "Stokes drag constant (Table I)"),
       row<&P::fluid>(
           "fluid", "", "", {}, kShear,
           "velocity of the fluid in the drag under shear: at rest, or that of the walls at the "
           "same height (B.3, Eq. S5)"),
-      row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", from(0, 1e6), kPrepare,
+      row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kPrepare,
                                 "gravitational acceleration (Table I); 0 turns it off (D)"),
-      row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", from(kSmallest, 1e12), kPrepare,
+      row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kPrepare,
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
           "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
@@ -135,35 +131,34 @@ std::span<const Field> schema() {
                      "texture of the walls; rough walls carry fixed wall grains"),
       row<&P::moving_wall>("moving_wall", "", "", {}, kPrepare,
                            "the wall that moves vertically under the pressure (B.6)"),
-      row<&P::height_over_width>("height_over_width", "", "1", from(0.1, 100), kPrepare,
+      row<&P::height_over_width>("height_over_width", "", "1", {0.1, 100}, kPrepare,
                                  "nominal height of the cell over its width L (E)"),
       row<&P::nominal_packing_fraction>(
-          "nominal_packing_fraction", "", "1", from(1e-9, 0.74), kPrepare,
+          "nominal_packing_fraction", "", "1", {1e-9, 0.74}, kPrepare,
           "volume fraction at which N grains fill the nominal cell; fixes L"),
       row<&P::wall_grain_area_fraction>(
-          "wall_grain_area_fraction", "", "1", from(0, 0.53), kPrepare,
+          "wall_grain_area_fraction", "", "1", {0, 0.53}, kPrepare,
           "area fraction of a rough wall covered by wall grains; random sequential addition jams "
           "at 0.547"),
       row<&P::wall_grain_recess_diameters>(
-          "wall_grain_recess_diameters", "", "d", from(0, 0.5), kPrepare,
+          "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
           "wall grain centres lie up to this far behind the wall plane; measures assume 0.25 for "
           "the "
           "walls' surface"),
       row<&P::wall_grain_draw>(
-          "wall_grain_draw", "", "1", from(0, 1e6),
-          {.stage = StageKind::prepare, .omitted_at = "0"},
+          "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
           "other values give other random places of the wall grains for the same seed"),
       row<&P::wall_mass_grains_per_d2>("wall_mass_grains_per_d2", "", "m/d^2", above(0, 1e6),
                                        kPrepare, "mass of the moving wall per area"),
-      row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", from(0, 1e9),
+      row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", {0, 1e9},
                                          kPrepare, "drag constant of the moving wall per area"),
       // Preparation.
       row<&P::fill_packing_fraction>(
-          "fill_packing_fraction", "", "1", from(1e-9, 0.35), kPrepare,
+          "fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
           "volume fraction of the random sequential addition that settling starts from; it jams "
           "at 0.384"),
       row<&P::settle_time_step_s>(
-          "settle_time_step_s", "", "s", from(1e-15, 1), kPrepare,
+          "settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
           "time step while settling; not tied to that of the shear, so that variants of the latter "
           "share their packing; `auto` keeps Table I's fraction of the stability limit"),
       row<&P::settle_force_tolerance>(
@@ -186,12 +181,12 @@ std::span<const Field> schema() {
           "protocol", "", "", {}, kShear,
           "what is done to the settled packing: shear without or with pauses (B.5), or stiffening "
           "(B.2)"),
-      row<&P::amplitude_rad>("amplitude_rad", "A", "rad", from(0, 0.5), kShear,
+      row<&P::amplitude_rad>("amplitude_rad", "A", "rad", {0, 0.5}, kShear,
                              "amplitude of the tilt theta = A sin(omega t)"),
-      row<&P::period_s>("period_s", "T", "s", from(kSmallest, 1e6), kShear,
+      row<&P::period_s>("period_s", "T", "s", {kSmallest, 1e6}, kShear,
                         "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row<&P::steps_per_cycle>(
-          "steps_per_cycle", "", "1", from(4, 1e9), kShear,
+          "steps_per_cycle", "", "1", {4, 1e9}, kShear,
           "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
           "limit, 0.355"),
       row<&P::pause_s>(
@@ -203,30 +198,29 @@ std::span<const Field> schema() {
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
           "the moving wall during a pause: held at its height, or moving under its load"),
-      row<&P::cycles>("cycles", "n", "1", from(0, 1e6), kNoKey,
+      row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "cycles to shear for; a larger value extends a run"),
       row<&P::engine>(
           "engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
           "what computes the shear: this program, or LAMMPS (another run, equal up to rounding; "
           "settling is always ours)"),
       // A shear that begins with a recorded state.
-      row<&P::start_seed>("start_seed", "", "1", from(0, 9007199254740991),
+      row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},
                           "with `start`: the seed of the recorded run"),
-      row<&P::start_cycle>("start_cycle", "", "1", from(0, 1e6),
+      row<&P::start_cycle>("start_cycle", "", "1", {0, 1e6},
                            {.stage = StageKind::shear, .omitted_at = "0"},
                            "with `start`: the whole cycle of the recorded run whose state is cycle "
                            "0 of this one"),
       row<&P::start_noise_d>(
-          "start_noise_d", "", "d", from(0, 0.1), {.stage = StageKind::shear, .omitted_at = "0"},
+          "start_noise_d", "", "d", {0, 0.1}, {.stage = StageKind::shear, .omitted_at = "0"},
           "with `start`: standard deviation of normal noise on the positions, drawn by the seed"),
       // Stiffening.
       row<&P::stiffness_decades>(
-          "stiffness_decades", "", "1", from(0, 6), kNoKey,
+          "stiffness_decades", "", "1", {0, 6}, kNoKey,
           "under protocol stiffen: the spring constant is raised by 10 to this power (B.2); a "
           "larger value extends a run"),
-      row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", from(1, 100),
-                                          kStiffen,
+      row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
                                           "number of equal factors for each power of ten (B.2)"),
       row<&P::minimize_force_tolerance>(
           "minimize_force_tolerance", "", "1", above(0, 1), kStiffen,

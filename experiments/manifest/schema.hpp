@@ -3,7 +3,6 @@
 // identity. Reading, suggestions, identity and experiments/REFERENCE.md use it.
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -55,7 +54,7 @@ struct Field {
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< of a choice: the values
-  std::string_view besides = {};                 ///< what a choice takes besides its names
+  std::string_view besides = {};                 ///< what it takes besides its names or example
   bool whole = false;                            ///< takes whole numbers alone
   std::span<const std::string_view> terms = {};  ///< names for expressions, if it takes expressions
   std::string_view example = {};                 ///< as YAML

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -19,10 +20,6 @@
 
 namespace shearcell {
 namespace {
-
-bool has_swept_values(const std::string& variant, const std::string& wanted) {
-  return wanted.empty() || Filter(std::vector{wanted}).passes(variant);
-}
 
 /// Whether the keys that both sweep have equal values.
 bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
@@ -54,16 +51,13 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
 /// The nominal packing fraction at which the cell is so wide; nothing if there is none.
 std::optional<double> fraction_for_width(Geometry shape, double width) {
   const Range& range = find_field("nominal_packing_fraction")->range;
-  double low = range.min, high = range.max;  // a denser cell is narrower
-  const auto width_at = [&](double fraction) {
+  const auto excess = [&](double fraction) {
     shape.nominal_packing_fraction = fraction;
-    return cell_width(shape);
+    return cell_width(shape) - width;
   };
-  if (width_at(low) < width || width_at(high) > width) return std::nullopt;
-  for (int k = 0; k < 200; ++k) {
-    const double middle = 0.5 * (low + high);
-    (width_at(middle) > width ? low : high) = middle;
-  }
+  if (excess(range.min) < 0 || excess(range.max) > 0) return std::nullopt;  // denser is narrower
+  const auto [low, high] = boost::math::tools::bisect(excess, range.min, range.max,
+                                                      boost::math::tools::eps_tolerance<double>());
   return 0.5 * (low + high);
 }
 
@@ -72,13 +66,10 @@ std::optional<double> fraction_for_width(Geometry shape, double width) {
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p, double limit) {
   constexpr double tolerance = 1e-6;  // of the width
-  const Eigen::Vector3d low = grains.box ? grains.box->low
-                                         : Eigen::Vector3d(grains.position.rowwise().minCoeff()) -
-                                               Eigen::Vector3d::Constant(0.5);
-  const Eigen::Vector3d high = grains.box ? grains.box->high
-                                          : Eigen::Vector3d(grains.position.rowwise().maxCoeff()) +
-                                                Eigen::Vector3d::Constant(0.5);
-  const Eigen::Vector3d size = high - low;
+  const Eigen::AlignedBox3d box =
+      grains.box.value_or(Eigen::AlignedBox3d(grains.position.rowwise().minCoeff().array() - 0.5,
+                                              grains.position.rowwise().maxCoeff().array() + 0.5));
+  const Eigen::Vector3d low = box.min(), high = box.max(), size = box.sizes();
   for (const int axis : {0, 2}) {
     const double room = axis == 0 ? cell.width : cell.depth;
     // Without a box, grains may be pressed into the planes, and z is periodic.
@@ -108,12 +99,6 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
   return state;
 }
 
-/// Limit of the overlaps of a packing that is sheared at once, or of one that settles.
-double overlap_limit(const StartFile& file, const Parameters& p) {
-  return file.settles ? std::max(p.max_overlap_diameters, 0.9 * kLargestOverlapLimit)
-                      : p.max_overlap_diameters;
-}
-
 }  // namespace
 
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
@@ -124,7 +109,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     return ask.newest && ask.experiment == start.experiment &&
            scale_name(ask.scale) == scale_name(at_scale) &&
            ask.seed == variant.parameters.start_seed &&
-           has_swept_values(ask.variant, start.variant);
+           (start.variant.empty() || Filter(std::vector{start.variant}).passes(ask.variant));
   };
   std::vector<const Stage*> found;
   for (const Stage& stage : known) {
@@ -134,9 +119,10 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     if (fits) found.push_back(&stage);
   }
   if (found.size() > 1 && start.run.empty() && start.variant.empty()) {
-    std::erase_if(found, [&, swept = variant.swept_values()](const Stage* stage) {
-      return std::ranges::none_of(
-          stage->asks, [&](const Ask& ask) { return is_it(ask) && agree(swept, ask.swept); });
+    std::erase_if(found, [&](const Stage* stage) {
+      return std::ranges::none_of(stage->asks, [&](const Ask& ask) {
+        return is_it(ask) && agree(variant.swept, ask.swept);
+      });
     });
   }
   const std::string what =
@@ -175,7 +161,8 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
 
 PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64_t seed,
                     const Poll& poll) {
-  const double limit = overlap_limit(packing.file, p);
+  double limit = p.max_overlap_diameters;
+  if (packing.file.settles) limit = std::max(limit, 0.9 * kLargestOverlapLimit);
   const PackingFile grains = read_packing(
       packing.text, packing.path,
       {.unit = packing.file.unit, .diameter_m = p.diameter_m, .largest_overlap = limit});

@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include "experiments/manifest/schema.hpp"
 
@@ -33,17 +33,10 @@ std::size_t edit_distance(string_view a, string_view b) {
   return d[a.size()][b.size()];
 }
 
-bool has_no_unit(string_view name) {
-  const Field* field = find_field(name);
-  return field != nullptr && (field->unit.empty() || field->unit == "1");
-}
-
 }  // namespace
 
 std::string lower(string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
+  return boost::algorithm::to_lower_copy(std::string(text));
 }
 
 string_view trimmed(string_view text) {
@@ -52,29 +45,34 @@ string_view trimmed(string_view text) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-Suggestion suggest_name(string_view unknown, std::span<const string_view> candidates) {
+std::string suggest_name(string_view unknown, std::span<const string_view> candidates) {
   if (unknown.empty() || unknown.size() > kLongestGuess) return {};
   const std::string written = lower(unknown);
   std::vector<string_view> with_unit;
   for (const string_view candidate : candidates) {
     const Field* field = find_field(candidate);
-    if (field != nullptr && field->symbol == unknown) return {std::string(candidate), false};
+    if (field != nullptr && field->symbol == unknown) return std::string(candidate);
     if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
   }
   // `stiffness` begins several names, but only stiffness_N_per_m ends in a unit. `settle` begins
   // several with a unit, so none is suggested.
-  if (with_unit.size() > 1) std::erase_if(with_unit, has_no_unit);
-  if (with_unit.size() == 1) return {std::string(with_unit.front()), true};
+  if (with_unit.size() > 1) {
+    std::erase_if(with_unit, [](string_view name) {
+      const Field* field = find_field(name);
+      return field != nullptr && (field->unit.empty() || field->unit == "1");
+    });
+  }
+  if (with_unit.size() == 1) return std::string(with_unit.front());
 
   const std::size_t allowed = std::max<std::size_t>(2, written.size() / 3);
   std::size_t nearest = allowed + 1;
-  Suggestion best;
+  std::string best;
   for (const string_view candidate : candidates) {
     const std::size_t distance = edit_distance(written, lower(candidate));
     // A name with every letter wrong is not meant.
     if (distance < nearest && distance < candidate.size()) {
       nearest = distance;
-      best.name = candidate;
+      best = candidate;
     }
   }
   return best;
@@ -82,12 +80,12 @@ Suggestion suggest_name(string_view unknown, std::span<const string_view> candid
 
 std::string with_nearest(const std::string& problem, string_view unknown,
                          std::span<const string_view> candidates) {
-  const std::string near = suggest_name(unknown, candidates).name;
+  const std::string near = suggest_name(unknown, candidates);
   return near.empty() ? problem : problem + ", the nearest is " + near;
 }
 
 std::string did_you_mean(string_view unknown, std::span<const string_view> known) {
-  const std::string near = suggest_name(unknown, known).name;
+  const std::string near = suggest_name(unknown, known);
   return near.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
                       : fmt::format("did you mean {}?", near);
 }

@@ -14,14 +14,9 @@
 
 namespace shearcell {
 
-struct Suggestion {
-  std::string name;           ///< empty if no name is near
-  bool missing_unit = false;  ///< the name was written without its unit
-};
-
 /// The nearest of `candidates`: by a parameter's symbol (`N`), by its name without the unit
-/// (`mass`), or by spelling, with up to about a third of the letters wrong.
-Suggestion suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
+/// (`mass`), or by spelling, with up to about a third of the letters wrong. "" if no name is near.
+std::string suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
 
 /// The text with small letters for A to Z.
 std::string lower(std::string_view text);

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
-#include <set>
 #include <sstream>
 
 #include "analysis/figure.hpp"
@@ -118,8 +116,10 @@ std::set<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-void apply(const std::string& key, const Setting& setting, Parameters& parameters) {
-  find_field(key)->set(parameters, setting.value);
+void apply(const Settings& settings, Parameters& parameters) {
+  for (const auto& [key, setting] : settings) {
+    if (!is_auto(setting)) find_field(key)->set(parameters, setting.value);
+  }
 }
 
 }  // namespace
@@ -131,19 +131,6 @@ bool is_auto(const Setting& setting) {
 json value_at(const Scale& scale, std::string_view key) {
   const auto stated = scale.settings.find(key);
   return stated == scale.settings.end() ? find_field(key)->get(Parameters{}) : stated->second.value;
-}
-
-std::string Variant::name() const {
-  if (swept.empty()) return "base";
-  std::vector<std::string> parts;
-  for (const auto& [key, setting] : swept) parts.push_back(key + "=" + value_text(setting->value));
-  return fmt::format("{}", fmt::join(parts, ","));
-}
-
-json Variant::swept_values() const {
-  json values = json::object();
-  for (const auto& [key, setting] : swept) values[key] = setting->value;
-  return values;
 }
 
 Filter::Filter(const std::vector<std::string>& wanted) {
@@ -191,56 +178,46 @@ const SweepAxis* find_axis(const Sweep& sweep, std::string_view key) {
 std::uint64_t variant_count(const Sweep& sweep) {
   std::uint64_t count = sweep.zip.empty() ? 1 : sweep.zip.front().values.size();
   for (const SweepAxis& axis : sweep.grid) {
-    const std::uint64_t size = axis.values.size();
-    if (size != 0 && count > std::numeric_limits<std::uint64_t>::max() / size) {
-      return std::numeric_limits<std::uint64_t>::max();
-    }
-    count *= size;
+    count = std::min(count * axis.values.size(), ManifestLimits::runs + 1);
   }
   return count;
 }
 
 std::vector<Variant> variants_of(const Scale& scale) {
-  Parameters base;
-  std::vector<std::string> autos;
-  for (const auto& [key, setting] : scale.start.settings) apply(key, setting, base);
-  for (const auto& [key, setting] : scale.settings) {
-    if (is_auto(setting)) {
-      autos.push_back(key);
-    } else {
-      apply(key, setting, base);
-    }
-  }
-  const std::vector<SweepAxis>& grid = scale.sweep.grid;
   const std::vector<SweepAxis>& zip = scale.sweep.zip;
   const std::uint64_t rows = zip.empty() ? 1 : zip.front().values.size();
-  std::vector<Variant> variants(variant_count(scale.sweep), Variant{{}, base, {}});
+  std::vector<Variant> variants(variant_count(scale.sweep));
   for (std::uint64_t index = 0; index < variants.size(); ++index) {
-    auto& [swept, parameters, packing, seeds] = variants[index];
+    Variant& made = variants[index];
+    apply(scale.start.settings, made.parameters);
+    apply(scale.settings, made.parameters);
+    const auto take = [&](const SweepAxis& axis, std::uint64_t place) {
+      const json& value = axis.values[place].value;
+      if (axis.key == "seeds") {
+        made.seeds = value.get<std::uint64_t>();
+      } else {
+        find_field(axis.key)->set(made.parameters, value);
+      }
+      if (is_length(axis.key)) return;
+      made.name +=
+          fmt::format("{}{}={}", made.swept.empty() ? "" : ",", axis.key, value_text(value));
+      made.swept[axis.key] = value;
+    };
     // Number of grid points that have equal values on the axes before this one.
     std::uint64_t block = variants.size() / rows;
-    for (const SweepAxis& axis : grid) {
+    for (const SweepAxis& axis : scale.sweep.grid) {
       const std::uint64_t place = index / rows % block;
       block /= axis.values.size();
-      swept.emplace_back(axis.key, &axis.values[place / block]);
+      take(axis, place / block);
     }
-    for (const SweepAxis& axis : zip) {
-      const Setting& setting = axis.values[index % rows];
-      if (axis.key == "seeds") {
-        seeds = setting.value.get<std::uint64_t>();
-      } else if (is_length(axis.key)) {
-        apply(axis.key, setting, parameters);
-      } else {
-        swept.emplace_back(axis.key, &setting);
-      }
-    }
-    for (const auto& [key, setting] : swept) apply(key, *setting, parameters);
-    packing = parameters;
-    for (const auto& [key, setting] : scale.settle) apply(key, setting, packing);
-    for (const std::string& key : autos) {
-      if (find_axis(scale.sweep, key) != nullptr) continue;
-      resolve_auto(key, parameters);
-      resolve_auto(key, packing);
+    for (const SweepAxis& axis : zip) take(axis, index % rows);
+    if (made.swept.empty()) made.name = "base";
+    made.packing = made.parameters;
+    apply(scale.settle, made.packing);
+    for (const auto& [key, setting] : scale.settings) {
+      if (!is_auto(setting) || made.swept.contains(key)) continue;
+      resolve_auto(key, made.parameters);
+      resolve_auto(key, made.packing);
     }
   }
   return variants;

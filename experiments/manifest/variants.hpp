@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
@@ -24,17 +23,14 @@ nlohmann::json value_at(const Scale& scale, std::string_view key);
 /// Whether the setting is `auto`, which variants_of() resolves.
 bool is_auto(const Setting& setting);
 
-/// A combination of swept values. Refers to the scale, which must outlive it.
+/// A combination of swept values.
 struct Variant {
-  /// Swept keys in the order of the manifest, without `cycles`.
-  std::vector<std::pair<std::string, const Setting*>> swept;
-  Parameters parameters;
-  Parameters packing;  ///< `parameters`, with those of `settle` in their place
+  std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
+  nlohmann::json swept = nlohmann::json::object();  ///< swept keys, without `cycles`, and values
+  Parameters parameters = {};
+  Parameters packing = {};  ///< `parameters`, with those of `settle` in their place
   /// How many of the seeds it has, the first ones; default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
-
-  std::string name() const;             ///< "fluid=cell", "base" when nothing is swept
-  nlohmann::json swept_values() const;  ///< swept keys and values
 };
 
 /// Selects variants, experiments or seeds by texts of the command line. A variant such as
@@ -69,7 +65,7 @@ class Filter {
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
 
 /// Returns display names of variants, which are objects of swept keys and values and may be
-/// repeated. (Ids and CSV files use Variant::name().) A label replaces the keys that it states;
+/// repeated. (Ids and CSV files use Variant::name.) A label replaces the keys that it states;
 /// labels with more keys come first. The keys that still distinguish the variants follow: "fluid at
 /// rest, A=0.05 rad". The name is "base" if nothing is swept.
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
@@ -78,12 +74,11 @@ std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::
 /// The swept axis of this key, or nullptr.
 const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 
-/// The number of variants; saturates at 2^64 - 1.
+/// The number of variants; ManifestLimits::runs + 1 for all larger numbers.
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
-/// zip fastest. The scale must be complete, outlive the result, and have at most
-/// ManifestLimits::runs variants.
+/// zip fastest. The scale must be complete and have at most ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell

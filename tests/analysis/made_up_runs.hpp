@@ -36,7 +36,7 @@ inline RunStatistic mean_over(std::vector<double> values) {
   return [values = std::move(values)](std::span<const std::size_t> selection) {
     std::vector<double> selected;
     for (const std::size_t k : selection) selected.push_back(values[k]);
-    return over_runs(selected).mean;
+    return over_runs(selected).mean.value_or(std::nan(""));
   };
 }
 

@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "analysis/figures/groups.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"
 

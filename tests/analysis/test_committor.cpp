@@ -67,8 +67,8 @@ TEST(Committor, TheLargerOfTwoThatMergeSwallowsTheOther) {
   EXPECT_TRUE(follow_first({{small, large}, {both}}).merged);
   EXPECT_FALSE(follow_first({{large, small}, {both}}).merged);
   EXPECT_EQ(follow_first({{large, small}, {both}}).sizes, Sizes{14});
-  const Crystallite equal = grain_ids(20, 5);
-  EXPECT_EQ(follow_first({{small, equal}, {joined(small, equal)}}).sizes, Sizes{10});
+  const Crystallite as_large = grain_ids(20, 5);
+  EXPECT_EQ(follow_first({{small, as_large}, {joined(small, as_large)}}).sizes, Sizes{10});
   EXPECT_EQ(follow_first({{small, large}, {joined({0, 1}, large)}}).sizes, Sizes{0})
       << "two of its five grains";
   EXPECT_FALSE(follow_first({{small, large}, {joined({0, 1}, large)}}).merged);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analysis/figures/figures.hpp"
-#include "analysis/figures/groups.hpp"
 #include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"

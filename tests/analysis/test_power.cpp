@@ -110,7 +110,7 @@ struct Kind {
   double margin;
   const char* spread;
   Simulated simulate;
-  Claimed claimed = Claimed::within;
+  Relation claimed = Relation::same;
   double scale = 1;  ///< the margin in units of the quantity
   std::uint32_t samples = 1000;
 };
@@ -132,21 +132,21 @@ std::vector<Kind> kinds() {
       {"phi, mean over cycles 1 to 15", margin_early_phi, "0.0005 a run, two groups",
        two_groups(0.0005)},
       {"phi gained by pauses at rest, mean over cycles 1 to 15", margin_of("relaxation", "B5_phi"),
-       "0.0005 a pair", one_group(0.0005), Claimed::above},
+       "0.0005 a pair", one_group(0.0005), Relation::higher},
       {"percentage crystalline, mean over phi from 0.646 to 0.67 [points]", margin_percentage,
        "2 points a run, two groups", two_groups(2)},
       {"mean overlap, contacts per grain, relative", margin_of("moving_wall", "S4_overlap"),
        "1.5 % a run, two groups", two_groups(0.015)},
       {"phi at the onset", margin_onset_phi, "0.002 a run", one_group(0.002)},
       {"cycle of the onset, log2 of the ratio", margin_of("drag", "S2_onset"),
-       "a factor of 1.5 a run, two groups", onset_cycles(0.6), Claimed::within, 1, 400},
+       "a factor of 1.5 a run, two groups", onset_cycles(0.6), Relation::same, 1, 400},
       {"N_inves, relative", margin_interior, "1 % a run", one_group(0.01)},
       {"critical size, of the published size", margin_critical_size, "a quarter a run",
-       critical_sizes(16, 0.25), Claimed::within, 16, 100},
+       critical_sizes(16, 0.25), Relation::same, 16, 100},
       {"share of nuclei in one part of the cell less that in another", margin_share,
-       "20 nuclei a run", shares(20), Claimed::within, 1, 200},
+       "20 nuclei a run", shares(20), Relation::same, 1, 200},
       {"share of nuclei in one part of the cell less that in another", margin_share,
-       "the same, claimed above", shares(20), Claimed::above, 1, 200}};
+       "the same, claimed above", shares(20), Relation::higher, 1, 200}};
 }
 
 /// The number that the program would print: from the spread that data sets of 30 runs show.
@@ -185,7 +185,7 @@ TEST(Power, OfEveryKindOfClaimAtItsNumberOfRuns) {
       "| agrees at the margin |\n|---|---|---|---|---|---|---|\n");
   for (const Kind& kind : kinds()) {
     const double margin = kind.margin * kind.scale;
-    const bool within = kind.claimed == Claimed::within;
+    const bool within = kind.claimed == Relation::same;
     const std::size_t predicted =
         std::max(runs_needed(kind, 0, within), runs_needed(kind, 2 * margin, false));
     std::size_t runs = predicted;

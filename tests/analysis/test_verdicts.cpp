@@ -19,7 +19,7 @@ Estimate between(double low, double high, std::size_t runs = 6, double spread = 
   return {(low + high) / 2, {low, high}, runs, 1, spread};
 }
 
-Ruling ruling(double low, double high, Claimed claimed = Claimed::within) {
+Ruling ruling(double low, double high, Relation claimed = Relation::same) {
   return decide({"c", 2, claimed}, "q", between(low, high), 6, "").ruling;
 }
 
@@ -37,11 +37,11 @@ TEST(Verdict, IsDecidedByIntervalAndMargin) {
   EXPECT_EQ(ruling(2.1, 5), differs);
   EXPECT_EQ(ruling(-5, -2.1), differs);
   EXPECT_EQ(ruling(-5, 5), undecided) << "too wide";
-  EXPECT_EQ(ruling(2.1, 5, Claimed::above), supported);
-  EXPECT_EQ(ruling(-5, 1.9, Claimed::above), refuted);
-  EXPECT_EQ(ruling(1, 3, Claimed::above), undecided);
-  EXPECT_EQ(ruling(-5, 1.9, Claimed::below), supported);
-  EXPECT_EQ(ruling(2.1, 5, Claimed::below), refuted);
+  EXPECT_EQ(ruling(2.1, 5, Relation::higher), supported);
+  EXPECT_EQ(ruling(-5, 1.9, Relation::higher), refuted);
+  EXPECT_EQ(ruling(1, 3, Relation::higher), undecided);
+  EXPECT_EQ(ruling(-5, 1.9, Relation::lower), supported);
+  EXPECT_EQ(ruling(2.1, 5, Relation::lower), refuted);
   EXPECT_EQ(decide({"c", 2}, "q", std::nullopt, 0, "").ruling, undecided);
 }
 
@@ -69,7 +69,7 @@ TEST(Verdict, HeadlineCountsTheRulings) {
   const Verdict good = decide({"c", 2}, "q", between(0, 1), 6, "");
   const Verdict bad = decide({"c", 2}, "q", between(3, 4), 6, "");
   const Verdict unknown = decide({"c", 2}, "q", std::nullopt, 0, "");
-  const Verdict false_direction = decide({"c", 2, Claimed::above}, "q", between(0, 1), 6, "");
+  const Verdict false_direction = decide({"c", 2, Relation::higher}, "q", between(0, 1), 6, "");
   const auto headline = [](const std::vector<Verdict>& verdicts) {
     return headline_of(rulings_of(verdicts));
   };
@@ -102,7 +102,6 @@ TEST(Verdict, WordsHaveNoInfinities) {
 }
 
 TEST(Verdict, JsonHasSixDigitsAndNull) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   Estimate half = between(-1, 1, 5);
   half.value = 1.0 / 3;
   half.interval.high = infinite;

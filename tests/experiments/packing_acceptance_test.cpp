@@ -108,11 +108,11 @@ TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
   std::printf(
       "without gravity: stress x %.1f, y %.1f, z %.1f Pa (applied: %.0f), %.3f contacts per grain, "
       "%.1f %% rattlers; mean overlap %.3e d, demanded by the stress %.3e d\n",
-      unit * m.stress_xx, unit * m.stress_yy, unit * m.stress_zz, table_1.pressure_Pa,
+      unit * m.stress(0, 0), unit * m.stress(1, 1), unit * m.stress(2, 2), table_1.pressure_Pa,
       m.coordination, m.rattlers, found.measures.mean_overlap, overlap);
   // The rough side walls bear the rest.
-  EXPECT_LT(unit * m.stress_yy, table_1.pressure_Pa);
-  EXPECT_GT(unit * m.stress_yy, 0.85 * table_1.pressure_Pa);
+  EXPECT_LT(unit * m.stress(1, 1), table_1.pressure_Pa);
+  EXPECT_GT(unit * m.stress(1, 1), 0.85 * table_1.pressure_Pa);
   // Near the walls grains overlap a little less or more than in the interior.
   EXPECT_NEAR(found.measures.mean_overlap, overlap, 0.05 * overlap);
   // S B.4 states less than 1e-3.

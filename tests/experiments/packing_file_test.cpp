@@ -272,8 +272,8 @@ TEST(PackingFile, ScriptsAseAndLammpsAreRead) {
                        name.find("_still.xyz") == name.npos;
     if (boxed) {
       ASSERT_TRUE(packing.box);
-      EXPECT_EQ(packing.box->low, Eigen::Vector3d::Zero());
-      EXPECT_EQ(packing.box->high, Eigen::Vector3d(10, 12, 11));
+      EXPECT_EQ(packing.box->min(), Eigen::Vector3d::Zero());
+      EXPECT_EQ(packing.box->max(), Eigen::Vector3d(10, 12, 11));
     }
     ++files;
   }

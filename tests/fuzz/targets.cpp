@@ -90,7 +90,7 @@ void take_packing(Input input) {
     if (!packing.box) return;
     for (Eigen::Index i = 0; i < packing.position.cols(); ++i) {
       const Eigen::Array3d p = packing.position.col(i).array();
-      require((p >= packing.box->low.array() && p <= packing.box->high.array()).all(),
+      require((p >= packing.box->min().array() && p <= packing.box->max().array()).all(),
               "grains are within the box");
     }
   } catch (const ManifestError& error) {
