@@ -111,16 +111,14 @@ std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
   attempt([&](sqlite::Database& database) {
     found.assign(keys.size(), std::nullopt);
     const sqlite::ReadTransaction snapshot(database);
-    sqlite::Statement query(database,
-                            "SELECT content, sha256 FROM derived WHERE checkpoint = ? AND "
-                            "measure = ? AND version = ?");
     for (std::size_t k = 0; k < keys.size(); ++k) {
-      query.bind_all(keys[k].checkpoint, keys[k].measure, keys[k].version);
-      if (query.step()) {
-        std::vector<std::byte> content = query.blob(0);
-        if (digest(keys[k], content) == query.text(1)) found[k] = std::move(content);
-      }
-      query.reset();
+      sqlite::Statement query(database,
+                              "SELECT content, sha256 FROM derived WHERE checkpoint = ? AND "
+                              "measure = ? AND version = ?",
+                              keys[k].checkpoint, keys[k].measure, keys[k].version);
+      if (!query.step()) continue;
+      std::vector<std::byte> content = query.blob(0);
+      if (digest(keys[k], content) == query.text(1)) found[k] = std::move(content);
     }
   });
   found.resize(keys.size());
@@ -130,13 +128,13 @@ std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
 void DerivedCache::put(std::span<const DerivedObject> objects) {
   attempt([&](sqlite::Database& database) {
     sqlite::WriteTransaction lock(database);
-    sqlite::Statement insert(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)");
     for (const DerivedObject& object : objects) {
       if (object.content.size() > StoreLimits::value_bytes) continue;  // computed again every time
       const DerivedKey& key = object.key;
-      insert.bind_all(key.checkpoint, key.measure, key.version, digest(key, object.content),
-                      object.content);
-      insert.run();
+      sqlite::Statement(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)",
+                        key.checkpoint, key.measure, key.version, digest(key, object.content),
+                        object.content)
+          .run();
     }
     lock.commit();
   });

@@ -94,19 +94,14 @@ json written(const T& value) {
 
 /// Fills `result` when the event is of type E.
 template <class E>
-bool decode_as(const Event& event, json& body, Any& result) {
+bool decode_as(const Event& event, const json& body, Any& result) {
   if (event.type != E::kType) return false;
-  E& decoded = result.emplace<E>();
-  if constexpr (has_fields<E>) {
-    read_fields(body, decoded);
-  } else {
-    decoded.facts = std::move(body);
-  }
+  read_fields(body, result.emplace<E>());
   return true;
 }
 
 template <class... E>
-Any decode_any(const Event& event, json& body, const std::variant<Other, E...>*) {
+Any decode_any(const Event& event, const json& body, const std::variant<Other, E...>*) {
   Any result;
   (decode_as<E>(event, body, result) || ...);
   return result;
@@ -115,7 +110,7 @@ Any decode_any(const Event& event, json& body, const std::variant<Other, E...>*)
 }  // namespace
 
 Any decode(const Event& event) {
-  json body = event.body();
+  const json body = event.body();
   try {
     return decode_any(event, body, static_cast<const Any*>(nullptr));
   } catch (const json::exception& problem) {
@@ -128,10 +123,8 @@ NewEvent encode(const Any& event) {
     using E = std::decay_t<decltype(e)>;
     if constexpr (std::is_same_v<E, Other>) {
       throw std::logic_error("an event of unknown type cannot be written");
-    } else if constexpr (has_fields<E>) {
-      return {std::string(E::kType), written(e)};
     } else {
-      return {std::string(E::kType), e.facts};
+      return {std::string(E::kType), written(e)};
     }
   };
   return std::visit(encoded, event);

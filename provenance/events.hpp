@@ -151,19 +151,13 @@ struct StoreMerged {
   }
 };
 
-/// The payload is kept as given.
-struct FigureGenerated {
-  static constexpr std::string_view kType = "FigureGenerated";
-  nlohmann::json facts;
-};
-
-/// An event that changes no table, or of a type that this program does not know.
+/// Of a type whose payload is kept as given, or that this program does not know.
 struct Other {};
 
 using Any =
     std::variant<Other, ManifestRegistered, PackingRegistered, RunDeclared, RunStarted, RunResumed,
                  CheckpointRecorded, CheckpointRejected, RunInterrupted, RunFailed, RunCompleted,
-                 CheckpointPruned, CheckpointRegenerated, FigureGenerated, StoreMerged>;
+                 CheckpointPruned, CheckpointRegenerated, StoreMerged>;
 
 /// Throws StoreDamaged, naming the event, when its payload lacks what its type requires.
 Any decode(const Event& event);
@@ -171,6 +165,8 @@ NewEvent encode(const Any& event);
 
 /// The layout in which payloads of this type are written: 1 for a type that never changed.
 std::uint64_t newest_schema(std::string_view type);
+
+inline constexpr const char* kFigureGenerated = "FigureGenerated";
 
 inline bool begins_attempt(const Event& event) {
   return event.type == RunStarted::kType || event.type == RunResumed::kType;

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Gathers the events of one run into its lineage. Other events change nothing.
+/// Gathers the attempts of one run from its events. Other events change nothing.
 class LineageBuilder {
  public:
   LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
@@ -31,31 +31,18 @@ class LineageBuilder {
   void operator()(const events::RunFailed& e) { end(AttemptOutcome::failed, e.why); }
 
   void operator()(const events::CheckpointRecorded& e) {
-    CheckpointHistory checkpoint{e.checkpoint, event_.recorded_at, std::nullopt};
-    CheckpointRecord& record = checkpoint.record;
-    if (!is_sha256_hex(record.sha256)) {
-      throw StoreDamaged(fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256", event_.seq,
-                                     event_.type, event_.stream, record.sha256));
+    const std::string& sha256 = e.checkpoint.sha256;
+    const auto known = std::ranges::find(lineage_.checkpoints, sha256, &CheckpointHistory::sha256);
+    if (!is_sha256_hex(sha256) || known == lineage_.checkpoints.end()) {
+      throw StoreDamaged(
+          fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256, or not in the "
+                      "tables; run `verify`",
+                      event_.seq, event_.type, event_.stream, sha256));
     }
-    record.run = lineage_.stage.id;
-    record.file = ObjectStore::file_of(record.sha256);
-    record.seq = event_.seq;
-    if (!lineage_.attempts.empty()) {
-      checkpoint.attempt = lineage_.attempts.size() - 1;
-      lineage_.attempts.back().checkpoints.push_back(record.sha256);
-    }
-    if (CheckpointHistory* known = find(record.sha256)) {
-      *known = std::move(checkpoint);  // recorded again after it was rejected
-    } else {
-      lineage_.checkpoints.push_back(std::move(checkpoint));
-    }
-  }
-  void operator()(const events::CheckpointRejected& e) { set(e.sha256, CheckpointState::rejected); }
-  void operator()(const events::CheckpointPruned& e) {
-    set(e.checkpoint.sha256, CheckpointState::pruned);
-  }
-  void operator()(const events::CheckpointRegenerated& e) {
-    set(e.checkpoint.sha256, CheckpointState::recorded);
+    known->recorded_at = event_.recorded_at;
+    if (lineage_.attempts.empty()) return;
+    known->attempt = lineage_.attempts.size() - 1;
+    lineage_.attempts.back().checkpoints.push_back(sha256);
   }
   void operator()(const auto&) {}
 
@@ -81,33 +68,15 @@ class LineageBuilder {
     attempt.why = why;
   }
 
-  CheckpointHistory* find(const std::string& sha256) {
-    return const_cast<CheckpointHistory*>(lineage_.find(sha256));
-  }
-
-  void set(const std::string& sha256, CheckpointState state) {
-    if (CheckpointHistory* known = find(sha256)) known->record.state = state;
-  }
-
   RunLineage& lineage_;
   const Event& event_;
 };
 
-/// The lineage by the events before number `before`.
-RunLineage build_lineage(const Stage& run, const std::vector<Event>& events,
-                         std::uint64_t before = UINT64_MAX) {
-  RunLineage lineage{run, {}, {}};
-  for (const Event& event : events) {
-    if (event.seq < before) std::visit(LineageBuilder(lineage, event), events::decode(event));
-  }
-  return lineage;
-}
-
-/// The newest checkpoint of the run that had a file; "" without any.
-std::string newest_of(const RunLineage& run) {
+/// The newest checkpoint of the attempts before event `seq`; "" without any.
+std::string newest_before(const RunLineage& run, std::uint64_t seq) {
   const CheckpointHistory* newest = nullptr;
   for (const CheckpointHistory& c : run.checkpoints) {
-    if (!c.kept()) continue;
+    if (!c.attempt || run.attempts[*c.attempt].seq > seq) continue;
     if (newest == nullptr || c.record.step >= newest->record.step) newest = &c;
   }
   return newest == nullptr ? "" : newest->record.sha256;
@@ -146,18 +115,24 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
   }
   std::reverse(chain.begin(), chain.end());
   std::vector<RunLineage> stages;
-  std::vector<Event> before;
-  for (const Stage& run : chain) {
-    std::vector<Event> events = store.events(run_stream(run.id));
-    RunLineage stage = build_lineage(run, events);
+  for (Stage& run : chain) {
+    RunLineage stage{std::move(run), {}, {}};
+    for (CheckpointRecord& record : store.checkpoints(stage.stage.id, Listed::all)) {
+      stage.checkpoints.push_back({std::move(record), "", std::nullopt});
+    }
+    for (const Event& event : store.events(run_stream(stage.stage.id))) {
+      std::visit(LineageBuilder(stage, event), events::decode(event));
+    }
+    std::erase_if(stage.checkpoints, [](const CheckpointHistory& c) {
+      return c.recorded_at.empty();  // of a forged table
+    });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
       // Early events lack it: the attempt began from the newest state of the stage before it.
-      attempt.from_checkpoint = newest_of(build_lineage(stages.back().stage, before, attempt.seq));
-      if (!attempt.from_checkpoint.empty()) attempt.from_run = run.parent;
+      attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
+      if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }
     stages.push_back(std::move(stage));
-    before = std::move(events);
   }
   return stages;
 }
@@ -196,7 +171,8 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
           "`verify`",
           event.seq));
     }
-    return ManifestText{sha256, std::move(found.path), std::move(found.text), event.recorded_at};
+    return ManifestText{sha256, std::move(found.path), std::move(found.text), std::move(found.info),
+                        event.recorded_at};
   }
   return std::nullopt;
 }

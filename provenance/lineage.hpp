@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The origin of each checkpoint of a run: the attempt that recorded it, its host and build, and the
-// state it started from. Derived from the events alone.
+// state it started from.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +63,7 @@ struct CheckpointHistory {
 struct RunLineage {
   Stage stage;
   std::vector<Attempt> attempts;               ///< in the order of the log; shown as 1, 2, ...
-  std::vector<CheckpointHistory> checkpoints;  ///< in the order in which they were first recorded
+  std::vector<CheckpointHistory> checkpoints;  ///< in ascending order of step
 
   const CheckpointHistory* find(std::string_view sha256) const;
 };
@@ -93,6 +93,7 @@ struct ManifestText {
   std::string sha256;
   std::string path;           ///< as given when it was registered; only a name
   std::string text;           ///< its SHA-256 was checked
+  nlohmann::json info;        ///< as given when it was registered
   std::string registered_at;  ///< UTC
 };
 

@@ -50,7 +50,7 @@ using Step = std::pair<std::string, std::uint64_t>;  // run and step
 
 std::map<Step, std::set<std::string>> states_of(const Database& tables) {
   std::map<Step, std::set<std::string>> states;
-  for (const CheckpointRecord& record : query_checkpoints(tables)) {
+  for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
     if (record.state == CheckpointState::rejected) continue;
     states[{record.run, record.step}].insert(record.state_hash);
   }
@@ -76,11 +76,9 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
 
 void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
                         const std::string& b_name) {
-  std::map<std::string, Stage> known;
-  for (Stage& run : query_stages(a)) known.emplace(run.id, std::move(run));
   for (const Stage& run : query_stages(b)) {
-    const auto same = known.find(run.id);
-    if (same == known.end() || same_computation(same->second, run)) continue;
+    const auto same = query_stage(a, run.id);
+    if (!same || same_computation(*same, run)) continue;
     throw StoreDamaged(fmt::format(
         "run {}: {} and {} have different parameters for it; one of them was changed by "
         "hand. Nothing was merged",
@@ -105,7 +103,7 @@ bool is_news(const Database& into, const CheckpointRecord& record) {
 
 /// Checkpoints of the source whose files must be copied.
 std::vector<CheckpointRecord> needed_objects(const Database& into, const Source& source) {
-  auto needed = query_checkpoints(source.tables);
+  auto needed = query_all_checkpoints(source.tables);
   std::erase_if(needed, [&](const CheckpointRecord& record) {
     return record.state != CheckpointState::recorded || !is_news(into, record);
   });

@@ -142,16 +142,10 @@ std::vector<std::string> ObjectStore::strangers(const std::set<std::string>& kno
   std::vector<std::string> found;
   const fs::path objects = folder_ / kFolder;
   if (!fs::is_directory(fs::symlink_status(objects))) return found;
-  const auto note = [&](const fs::path& path) {
-    const std::string file = path.lexically_relative(folder_).generic_string();
-    if (!expected.contains(file)) found.push_back(file);
-  };
-  for (const fs::directory_entry& entry : fs::directory_iterator(objects)) {
-    if (!fs::is_directory(entry.symlink_status())) {
-      note(entry.path());
-      continue;
-    }
-    for (const fs::directory_entry& file : fs::directory_iterator(entry.path())) note(file.path());
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(objects)) {
+    const std::string file = entry.path().lexically_relative(folder_).generic_string();
+    const bool folder = fs::is_directory(entry.symlink_status());
+    if (!folder && !expected.contains(file)) found.push_back(file);
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "provenance/events.hpp"
@@ -115,19 +114,13 @@ class Projector {
     const Stage& d = e.run;
     const Ask& m = e.ask;
     require_cycles(m.target_cycles, m.checkpoint_every);
-    if (has_stage(database_, id_)) {
-      // A completed run may also have ended early, as other experiments asked for.
-      run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
-          "(target_cycles < ?2 OR cycle < ?2)",
-          id_, m.target_cycles);
-      run("UPDATE runs SET target_cycles = max(target_cycles, ?2) WHERE id = ?1", id_,
-          m.target_cycles);
-    } else {
-      run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
-          "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?)",
-          id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
-          event_.recorded_at);
-    }
+    // A completed run may also have ended early, as other experiments asked for.
+    run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
+        "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
+        "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
+        "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
+        id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
+        event_.recorded_at);
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
@@ -159,16 +152,13 @@ class Projector {
   void operator()(const events::RunFailed& e) const { set_state("failed", e.why); }
 
   void operator()(const events::RunCompleted& e) const {
-    const json ended = member_of(e.summary, "ended");
-    run("UPDATE runs SET error = '', state = 'completed', ends = json_insert(ends, '$[#]', "
-        "json(?2)) WHERE id = ?1",
-        id_, ended.dump());
-    // The target was raised while the run was computed, or the run ended early (`until`) without
-    // considering all its experiments.
-    const json asked = member_of(ended, "memberships");
-    run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND (target_cycles > ?2 OR "
-        "?3 < (SELECT count(*) FROM memberships WHERE run = ?1))",
-        id_, e.target_cycles.value_or(INT64_MAX),
+    const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
+    // Work is left if the target was raised while the run was computed, or if the run ended early
+    // (`until`) without considering all its experiments.
+    run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
+        "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
+        "'declared', 'completed') WHERE id = ?1",
+        id_, ended.dump(), e.target_cycles.value_or(INT64_MAX),
         asked.is_number_unsigned() ? asked.get<std::uint64_t>() : std::uint64_t{INT64_MAX});
   }
 
@@ -201,10 +191,10 @@ class Projector {
     move_to_furthest_from(e.checkpoint.sha256);
   }
 
-  void operator()(const events::FigureGenerated& e) const {
+  void record_figure() const {
     run("INSERT INTO figures VALUES(?,?,?,?) ON CONFLICT DO UPDATE SET seq = excluded.seq, "
         "recorded_at = excluded.recorded_at, provenance = excluded.provenance",
-        id_, event_.seq, event_.recorded_at, e.facts.dump());
+        id_, event_.seq, event_.recorded_at, event_.body().dump());
   }
 
   void operator()(const auto&) const {}  // changes no table
@@ -357,17 +347,15 @@ Database empty_projections(const std::string& name) {
 }
 
 void apply(Database& database, const Event& event) {
-  const auto of_run = run_of(event);
-  if (event.stream.starts_with("manifest/")) {
-    return Projector(database, event).register_manifest();
+  const Projector projector(database, event);
+  if (event.stream.starts_with("manifest/")) return projector.register_manifest();
+  if (event.stream.starts_with("figure/") && event.type == events::kFigureGenerated) {
+    return projector.record_figure();
   }
-  if (!of_run && !event.stream.starts_with("figure/")) return;
-  const events::Any decoded = events::decode(event);
-  const bool of_figure = std::holds_alternative<events::FigureGenerated>(decoded);
-  if (of_run.has_value() != of_figure) std::visit(Projector(database, event), decoded);
-  if (!of_run) return;
-  Statement(database, "UPDATE runs SET updated_at = ? WHERE id = ?", event.recorded_at, *of_run)
-      .run();
+  const auto run = run_of(event);
+  if (!run) return;
+  std::visit(projector, events::decode(event));
+  Statement(database, "UPDATE runs SET updated_at = ? WHERE id = ?", event.recorded_at, *run).run();
 }
 
 std::string try_apply(Database& database, const Event& event) {
@@ -428,42 +416,27 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256) {
   return NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
 }
 
-std::vector<Stage> query_stages(const Database& database) {
-  return select_runs(database, "ORDER BY ordinal");
+std::vector<Stage> query_stages(const Database& database, std::string_view prefix) {
+  return select_runs(database, "WHERE substr(id, 1, length(?1)) = ?1 ORDER BY ordinal", prefix);
 }
 
 std::optional<Stage> query_stage(const Database& database, std::string_view id) {
   return only(select_runs(database, "WHERE id = ?", id));
 }
 
-bool has_stage(const Database& database, std::string_view id) {
-  return Statement(database, "SELECT 1 FROM runs WHERE id = ?", id).step();
-}
-
-std::vector<std::string> query_stage_ids(const Database& database, std::string_view prefix,
-                                         std::size_t limit) {
-  Statement query(database,
-                  "SELECT id FROM runs WHERE substr(id, 1, length(?1)) = ?1 ORDER BY id LIMIT ?2",
-                  prefix, std::uint64_t{limit});
-  return query.all([](const Statement& row) { return row.text(0); });
+std::vector<CheckpointRecord> query_all_checkpoints(const Database& database,
+                                                    std::string_view prefix) {
+  return select_checkpoints(database, "WHERE substr(sha256, 1, length(?1)) = ?1 ORDER BY step, seq",
+                            prefix);
 }
 
 std::vector<CheckpointRecord> query_checkpoints(const Database& database, std::string_view run) {
-  if (run.empty()) return select_checkpoints(database, "ORDER BY step, seq");
   return select_checkpoints(database, "WHERE run = ? ORDER BY step, seq", run);
 }
 
 std::optional<CheckpointRecord> query_checkpoint(const Database& database, std::string_view run,
                                                  std::string_view sha256) {
   return only(select_checkpoints(database, "WHERE run = ? AND sha256 = ?", run, sha256));
-}
-
-std::vector<CheckpointRecord> query_checkpoints_by_prefix(const Database& database,
-                                                          std::string_view prefix,
-                                                          std::size_t limit) {
-  return select_checkpoints(database,
-                            "WHERE substr(sha256, 1, length(?1)) = ?1 ORDER BY step, seq LIMIT ?2",
-                            prefix, std::uint64_t{limit});
 }
 
 std::vector<FigureRecord> query_figures(const Database& database) {

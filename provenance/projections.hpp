@@ -51,22 +51,17 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// All stages in the order of their declaration.
-std::vector<Stage> query_stages(const sqlite::Database& database);
+/// The stages whose ids have this prefix, in the order of their declaration.
+std::vector<Stage> query_stages(const sqlite::Database& database, std::string_view prefix = "");
 std::optional<Stage> query_stage(const sqlite::Database& database, std::string_view id);
-bool has_stage(const sqlite::Database& database, std::string_view id);
-/// Ids with this prefix, at most `limit`.
-std::vector<std::string> query_stage_ids(const sqlite::Database& database, std::string_view prefix,
-                                         std::size_t limit);
-/// Checkpoints of one run, or of all (""), in ascending order of step.
+/// The checkpoints of all runs whose SHA-256 has this prefix, in ascending order of step.
+std::vector<CheckpointRecord> query_all_checkpoints(const sqlite::Database& database,
+                                                    std::string_view prefix = "");
+/// In ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
-                                                std::string_view run = "");
+                                                std::string_view run);
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);
-/// Checkpoints whose SHA-256 has this prefix, at most `limit`.
-std::vector<CheckpointRecord> query_checkpoints_by_prefix(const sqlite::Database& database,
-                                                          std::string_view prefix,
-                                                          std::size_t limit);
 std::vector<FigureRecord> query_figures(const sqlite::Database& database);
 
 }  // namespace shearcell

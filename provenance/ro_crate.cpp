@@ -292,21 +292,31 @@ bool is_crate_of(const fs::path& folder, const std::string& run) {
          });
 }
 
-/// Creates a folder in the crate; a link is refused.
-void make_subfolder(const fs::path& crate, const char* name) {
-  const fs::path path = crate / name;
+/// Creates the folder unless it exists; a link is refused.
+void make_folder(const fs::path& path) {
   const fs::file_status status = fs::symlink_status(path);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(path.string() +
-                                ": this must be a folder, but it is a file or a link; remove it");
+                                ": this must be a folder, but it is a file or a link; remove "
+                                "it, or name another one");
   }
   fs::create_directory(path);
 }
 
-std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const fs::path& folder) {
+}  // namespace
+
+std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
+                                        const fs::path& folder, const std::string& licence,
+                                        const std::vector<std::string>& left_out) {
+  const CrateFacts facts = crate_facts(store, run, licence, left_out);
+  make_folder(folder);
+  if (!fs::is_empty(folder) && !is_crate_of(folder, run)) {
+    throw std::invalid_argument(folder.string() +
+                                ": the folder is not an export of this run; name another one");
+  }
   const ObjectStore objects(store.folder());
   std::vector<std::string> written;
-  for (const char* subfolder : {"checkpoints", "manifests"}) make_subfolder(folder, subfolder);
+  for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
   std::set<std::string> done;
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
@@ -331,38 +341,6 @@ std::vector<std::string> fill(const Store& store, const CrateFacts& facts, const
   write_output(folder / kCrateMetadata,
                ro_crate_metadata(facts).dump(1, ' ', false, json::error_handler_t::replace) + '\n');
   written.emplace_back(kCrateMetadata);
-  return written;
-}
-
-}  // namespace
-
-std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
-                                        const fs::path& where, const std::string& licence,
-                                        const std::vector<std::string>& left_out) {
-  const CrateFacts facts = crate_facts(store, run, licence, left_out);
-  // "crate/" has no file name; "crate" is the same folder.
-  const fs::path given = fs::absolute(where);
-  const fs::path folder = given.has_filename() ? given : given.parent_path();
-  const fs::file_status status = fs::symlink_status(folder);
-  if (fs::exists(status) && !fs::is_directory(status)) {
-    throw std::invalid_argument(folder.string() +
-                                ": this is a file or a link; name another folder");
-  }
-  if (fs::exists(status) && !fs::is_empty(folder)) {
-    if (!is_crate_of(folder, run)) {
-      throw std::invalid_argument(folder.string() +
-                                  ": the folder is not an export of this run; name another one");
-    }
-    return fill(store, facts, folder);
-  }
-  // On the same file system as the folder, to be renamed to it.
-  fs::create_directories(folder.parent_path());
-  const TemporaryFolder beside(folder.parent_path() /
-                               fmt::format(".{}.tmp-", folder.filename().string()));
-  const fs::path staged = beside.path() / "crate";
-  fs::create_directory(staged);
-  std::vector<std::string> written = fill(store, facts, staged);
-  fs::rename(staged, folder);
   return written;
 }
 

@@ -35,9 +35,9 @@ nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 
 /// Writes the metadata, the manifests and every checkpoint that was neither rejected nor
 /// pruned; each checkpoint is verified. `folder` must be missing, empty, or an earlier export of
-/// the same run, which is updated: files of checkpoints that are no longer kept are deleted. A new
-/// folder appears complete or not at all. Returns the files, relative to the folder. Throws
-/// std::invalid_argument for any other folder and StoreDamaged for a damaged checkpoint.
+/// the same run, which is updated: files of checkpoints that are no longer kept are deleted.
+/// Returns the files, relative to the folder. Throws std::invalid_argument for any other folder and
+/// StoreDamaged for a damaged checkpoint; then a new folder is incomplete.
 std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
                                         const std::filesystem::path& folder,
                                         const std::string& licence = "",

@@ -236,11 +236,6 @@ bool Statement::step() {
 void Statement::run() {
   while (step()) {
   }
-  reset();
-}
-
-void Statement::reset() {
-  check(sqlite3_reset(handle_.get()));
 }
 
 std::string Statement::text(int column) const {

@@ -84,23 +84,17 @@ class Statement {
   template <class... Values>
   Statement(const Database& database, std::string_view sql, const Values&... values)
       : database_(&database), sql_(sql), handle_(prepared()) {
-    bind_all(values...);
+    int parameter = 0;
+    (bind(++parameter, values), ...);
   }
   ~Statement();
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  template <class... Values>
-  void bind_all(const Values&... values) {
-    int parameter = 0;
-    (bind(++parameter, values), ...);
-  }
   /// Moves to the next row; false when there is none.
   bool step();
-  /// Runs a statement that gives no rows and makes it ready to run again.
+  /// Runs a statement that gives no rows.
   void run();
-  /// Makes the statement ready to run again, even if rows are left to read.
-  void reset();
 
   // The current row. A value of another type is converted as SQLite does; NULL is empty or 0.
   std::string text(int column) const;

@@ -106,14 +106,16 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
   return own ? "" : "another process continued it";
 }
 
-constexpr std::size_t kListed = 10;  // candidates of an ambiguous prefix
-
-void require_one(const char* what, std::string_view prefix,
-                 const std::vector<std::string>& candidates) {
+/// Refuses an ambiguous prefix. `id` is the member of a candidate that has the prefix.
+void require_one(const char* what, std::string_view prefix, const auto& candidates, auto id) {
+  constexpr std::size_t most = 10;
   if (candidates.size() < 2) return;
-  const bool more = candidates.size() == kListed;
-  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of\n  {}{}", what,
-                             prefix, fmt::join(candidates, "\n  "), more ? "\n  ..." : ""));
+  std::string list;
+  for (const auto& one : std::span(candidates).first(std::min(most, candidates.size()))) {
+    list += "\n  " + one.*id;
+  }
+  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of{}{}", what,
+                             prefix, list, candidates.size() > most ? "\n  ..." : ""));
 }
 
 /// Checkpoints that are initial states of other stages.
@@ -157,17 +159,17 @@ Store::~Store() {
   }
 }
 
+Store::Writing::Writing(Store& store)
+    : scoped_lock(store.mutex_), WriteTransaction(store.must_write()) {}
+
 void Store::hold(const std::string& id, std::uint64_t attempt) {
   const std::uint64_t now = now_ms();
-  put_lease(database_, {.run = id,
-                        .holder = self_,
-                        .attempt = attempt,
-                        .renewed_at_ms = now,
-                        .expires_at_ms = now + lease_ms_});
+  put_lease(database_, {id, self_, attempt, now, now + lease_ms_});
 }
 
-void Store::must_write() const {
+sqlite::Database& Store::must_write() const {
   if (access_ == Access::read) throw std::logic_error("this store was opened for reading only");
+  return database_;
 }
 
 void Store::append(std::string_view stream, const NewEvent& event,
@@ -177,9 +179,7 @@ void Store::append(std::string_view stream, const NewEvent& event,
 
 void Store::record(std::string_view stream, const NewEvent& event,
                    std::optional<std::uint64_t> seen) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   if (const std::uint64_t found = log_.version(stream); seen.value_or(found) != found) {
     throw ConcurrencyConflict(fmt::format(
         "{}: stream {} has version {} instead of {}: another process wrote to it; read it again",
@@ -190,36 +190,31 @@ void Store::record(std::string_view stream, const NewEvent& event,
 }
 
 void Store::append_held(const std::string& id, const NewEvent& event, bool release) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
+  Writing lock(*this);
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
         fmt::format("run {}: this program does not hold the run; start it first", id));
   }
-  sqlite::WriteTransaction lock(database_);
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);
     throw ConcurrencyConflict(fmt::format("run {}: {}", id, why));
   }
   append(run_stream(id), event, lock);
-  if (!release) {
-    hold(id, held->second);
-    lock.commit();
-  } else {
+  if (release) {
     drop_lease(database_, id, self_.token);
-    lock.commit();
-    held_.erase(held);
+  } else {
+    hold(id, held->second);
   }
+  lock.commit();
+  if (release) held_.erase(held);
 }
 
 std::string Store::register_manifest(std::string_view text, std::string_view path,
                                      const json& info) {
-  must_write();
   std::string sha256 = sha256_hex(text);
   const std::string stream = "manifest/" + sha256;
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   const std::string experiment = info.is_object() ? info.value("experiment", "") : "";
   sqlite::Statement newest(
       database_,
@@ -239,11 +234,9 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
 }
 
 std::string Store::register_packing(std::string_view text, std::string_view path) {
-  must_write();
   std::string sha256 = sha256_hex(text);
   const std::string stream = packing_stream(sha256);
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   if (log_.version(stream) > 0) return sha256;
   append(stream, encode(events::PackingRegistered{sha256, std::string(path), std::string(text)}),
          lock);
@@ -261,12 +254,10 @@ std::pair<std::string, std::string> Store::packing_text(const std::string& sha25
 }
 
 void Store::declare_stage(const Stage& declared) {
-  must_write();
   if (!is_sha256_hex(declared.id)) {
     throw std::invalid_argument(fmt::format("'{}' is not a run id", declared.id));
   }
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   const auto known = query_stage(database_, declared.id);
   if (!known && !declared.parent.empty() && !query_stage(database_, declared.parent)) {
     throw std::invalid_argument(
@@ -286,12 +277,10 @@ void Store::declare_stage(const Stage& declared) {
 std::uint64_t Store::start_stage(const std::string& id, const json& host,
                                  const std::optional<std::string>& from_sha256,
                                  const std::string& parent_checkpoint, bool fill) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
+  Writing lock(*this);
   if (held_.contains(id)) {
     throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
   }
-  sqlite::WriteTransaction lock(database_);
   const auto known = query_stage(database_, id);
   if (!known) throw unknown_stage(id);
   for (const Lease& lease : query_leases(database_, id)) {
@@ -327,10 +316,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
 }
 
 void Store::renew_leases() {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  if (held_.empty()) return;
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   std::erase_if(held_, [this](const auto& run) {
     return !loss_of(database_, self_.token, run.first, run.second).empty();
   });
@@ -392,9 +378,7 @@ void Store::complete_stage(const std::string& id, const json& summary,
 
 void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
                               const std::string& why) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   const auto record = query_checkpoint(database_, id, sha256);
   if (!record) throw unknown_checkpoint(id, sha256);
   if (record->state != CheckpointState::recorded) return;
@@ -403,7 +387,7 @@ void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
 }
 
 void Store::record_figure(const std::string& name, const json& provenance) {
-  record("figure/" + name, encode(events::FigureGenerated{provenance}));
+  record("figure/" + name, {events::kFigureGenerated, provenance});
 }
 
 void Store::record_submission(const std::string& type, const json& facts,
@@ -455,26 +439,24 @@ std::vector<Lease> Store::leases() const {
 
 Stage Store::find_stage(std::string_view prefix) const {
   const std::scoped_lock guard(mutex_);
-  const std::vector<std::string> ids = query_stage_ids(database_, prefix, kListed);
-  if (ids.empty()) throw unknown_stage(prefix);
-  require_one("runs", prefix, ids);
-  return stage(ids.front());
+  std::vector<Stage> found = query_stages(database_, prefix);
+  if (found.empty()) throw unknown_stage(prefix);
+  require_one("runs", prefix, found, &Stage::id);
+  return std::move(found.front());
 }
 
 std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
   const std::scoped_lock guard(mutex_);
-  const auto found = query_checkpoints_by_prefix(database_, prefix, kListed);
+  const auto found = query_all_checkpoints(database_, prefix);
   if (found.empty()) return std::nullopt;
-  std::vector<std::string> names;
-  for (const CheckpointRecord& record : found) names.push_back(record.sha256);
-  require_one("checkpoints", prefix, names);
+  require_one("checkpoints", prefix, found, &CheckpointRecord::sha256);
   return found.front();
 }
 
 std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
   const std::scoped_lock guard(mutex_);
-  if (!has_stage(database_, id)) throw unknown_stage(id);
   auto found = query_checkpoints(database_, id);
+  if (found.empty() && !query_stage(database_, id)) throw unknown_stage(id);
   std::erase_if(found, [listed](const CheckpointRecord& record) {
     return (record.state == CheckpointState::rejected && listed != Listed::all) ||
            (record.state == CheckpointState::pruned && listed == Listed::recorded);
@@ -534,9 +516,7 @@ Head Store::head() const {
 }
 
 void Store::rebuild() {
-  must_write();
-  const std::scoped_lock guard(mutex_);
-  sqlite::WriteTransaction lock(database_);
+  Writing lock(*this);
   derive_projections(database_, log_, lock);
   lock.commit();
 }
@@ -565,7 +545,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
 
 std::vector<CheckpointRecord> Store::prune_leftovers() const {
   const std::scoped_lock guard(mutex_);
-  std::vector<CheckpointRecord> found = query_checkpoints(database_);
+  std::vector<CheckpointRecord> found = query_all_checkpoints(database_);
   std::erase_if(found, [this](const CheckpointRecord& record) {
     return record.state != CheckpointState::pruned || !objects_.contains(record.sha256);
   });
@@ -573,11 +553,9 @@ std::vector<CheckpointRecord> Store::prune_leftovers() const {
 }
 
 std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool last_too) {
-  must_write();
-  const std::scoped_lock guard(mutex_);
   {
     // One transaction: all checkpoints are recorded as pruned, or none.
-    sqlite::WriteTransaction lock(database_);
+    Writing lock(*this);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
       const auto run = query_stage(database_, record.run);
@@ -591,7 +569,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool la
   std::uint64_t freed = 0;
   for (const CheckpointRecord& record : records) {
     // Under the lock, so that the file is not recorded again between the check and the removal.
-    sqlite::WriteTransaction lock(database_);
+    const Writing lock(*this);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) continue;
     if (objects_.remove(record.sha256)) freed += record.size;
@@ -612,8 +590,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   }
   for (;;) {
     objects_.put(bytes);
-    const std::scoped_lock guard(mutex_);
-    sqlite::WriteTransaction lock(database_);
+    Writing lock(*this);
     if (!objects_.contains(sha256)) continue;  // a concurrent `prune` deleted it
     const auto now = query_checkpoint(database_, record.run, sha256);
     if (!now) throw unknown_checkpoint(record.run, sha256);

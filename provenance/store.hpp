@@ -215,7 +215,12 @@ class Store {
   /// Appends an event that only the holder may write; with `release`, ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);
-  void must_write() const;
+  /// The database. Throws std::logic_error with Access::read.
+  sqlite::Database& must_write() const;
+  /// A transaction in which this thread alone writes.
+  struct Writing : private std::scoped_lock<std::recursive_mutex>, sqlite::WriteTransaction {
+    explicit Writing(Store& store);
+  };
 
   std::filesystem::path folder_;
   Access access_;

@@ -63,22 +63,8 @@ std::string without_path(const std::string& subject, const std::string& message)
   return message.substr(at + subject.size() + 2);
 }
 
-void check_file(sqlite::Database& database, VerifyReport& report) {
-  sqlite::Statement query(database, "PRAGMA integrity_check(1)");
-  if (!query.step() || query.text(0) == "ok") return;
-  add_error(report, database.name(),
-            "SQLite finds the database damaged: " + query.text(0) + "; restore it from a backup");
-}
-
 std::string event_name(std::uint64_t seq) {
   return fmt::format("event {}", seq);
-}
-
-void check_chain(const EventLog& log, VerifyReport& report) {
-  report.head = log.head();
-  if (const auto fault = log.verify_chain()) {
-    add_error(report, event_name(fault->seq), fault->message + "; restore the log from a backup");
-  }
 }
 
 /// An unchanged head proves that no event before it was changed.
@@ -246,12 +232,20 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   try {
     // One snapshot of the log; the files are read after it.
     const sqlite::ReadTransaction snapshot(database_);
-    check_file(database_, report);
-    check_chain(log_, report);
+    sqlite::Statement integrity(database_, "PRAGMA integrity_check(1)");
+    if (integrity.step() && integrity.text(0) != "ok") {
+      add_error(report, database_.name(),
+                fmt::format("SQLite finds the database damaged: {}; restore it from a backup",
+                            integrity.text(0)));
+    }
+    report.head = log_.head();
+    if (const auto fault = log_.verify_chain()) {
+      add_error(report, event_name(fault->seq), fault->message + "; restore the log from a backup");
+    }
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);
     for (Stage& run : query_stages(fresh)) runs.emplace(run.id, std::move(run));
-    records = query_checkpoints(fresh);
+    records = query_all_checkpoints(fresh);
     log_was_read = true;
     compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
   } catch (const StoreDamaged& damage) {

@@ -269,7 +269,8 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
   // "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
-  if (single && format.writer == nullptr) {  // a crate may replace an earlier one of the run
+  // A crate may replace an earlier one of the run.
+  if (single && format.writer == nullptr && fs::exists(out) && !fs::is_empty(out)) {
     return {
         {runs.front().stage.id, options.out, write_run(store, runs.front(), format, options, out)}};
   }

@@ -66,7 +66,8 @@ std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const Colle
   Ask ask = ask_for(figure, run);
   ask.until = nullptr;
   ask.target_cycles = static_cast<std::uint64_t>(last_cycle(figure, run));
-  const Outlook look = outlook(run.stage, {&ask, 1}, seen_checkpoints(store, run.stage.id));
+  const Outlook look =
+      outlook(run.stage, {&ask, 1}, store.checkpoints(run.stage.id, Listed::and_pruned));
   const double first = first_cycle(figure) * static_cast<double>(cycle_steps(*motion));
   const auto taken = [first](std::uint64_t step) { return static_cast<double>(step) >= first; };
   return std::ranges::count_if(look.missing, taken) + std::ranges::count_if(look.lost, taken);

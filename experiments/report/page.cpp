@@ -582,7 +582,7 @@ void add_runs(Content& content) {
       std::vector<Ask> asks = run.asks;
       std::erase_if(
           asks, [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
-      const Outlook look = outlook(run, asks, seen_checkpoints(store, run.id));
+      const Outlook look = outlook(run, asks, store.checkpoints(run.id, Listed::and_pruned));
       if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
     }
   }

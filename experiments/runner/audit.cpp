@@ -21,6 +21,7 @@
 #include "provenance/derived.hpp"
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/lineage.hpp"
 
 namespace shearcell {
 namespace {
@@ -66,24 +67,16 @@ void check_run(const Stage& run) {
 /// Steps at which the run was completed: of each completion the last of its attempt and the
 /// furthest, which differ when attempts of several stores were merged.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
+  const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
-  std::map<std::string, std::uint64_t> recorded;  // by SHA-256
-  std::optional<std::uint64_t> last;              // of the attempt
-  for (const Event& event : store.events(run_stream(run))) {
-    const events::Any decoded = events::decode(event);
-    if (const auto* made = std::get_if<events::CheckpointRecorded>(&decoded)) {
-      last = recorded[made->checkpoint.sha256] = made->checkpoint.step;
-    } else if (const auto* bad = std::get_if<events::CheckpointRejected>(&decoded)) {
-      recorded.erase(bad->sha256);
-    } else if (const auto* again = std::get_if<events::CheckpointRegenerated>(&decoded)) {
-      recorded[again->checkpoint.sha256] = again->checkpoint.step;
-    } else if (std::holds_alternative<events::RunCompleted>(decoded)) {
-      if (last) steps.insert(*last);
-      std::uint64_t furthest = 0;
-      for (const auto& [sha256, step] : recorded) furthest = std::max(furthest, step);
-      steps.insert(furthest);
+  std::uint64_t furthest = 0;
+  for (const Attempt& attempt : stage.attempts) {
+    std::uint64_t last = furthest;
+    for (const std::string& sha256 : attempt.checkpoints) {
+      last = stage.find(sha256)->record.step;
+      furthest = std::max(furthest, last);
     }
-    if (events::begins_attempt(event) || events::ends_attempt(event)) last.reset();
+    if (attempt.outcome == AttemptOutcome::completed) steps.insert({last, furthest});
   }
   return steps;
 }
@@ -163,16 +156,15 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
   return "";
 }
 
-/// Checkpoints of which the cache keeps a measure, each once.
+/// Checkpoints of which the cache keeps a measure.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
                                                    MeasureSources& sources, Listed listed) {
   std::vector<CheckpointRecord> found;
-  std::set<std::string> seen;
   for (const Stage& run : store.stages()) {
     for (CheckpointRecord& record : store.checkpoints(run.id, listed)) {
       const Cached cached = cache.get(keys_of(record, sources));
       const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
-      if (any && seen.insert(record.sha256).second) found.push_back(std::move(record));
+      if (any) found.push_back(std::move(record));
     }
   }
   return found;

@@ -17,7 +17,6 @@
 #include "core/filling.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/variants.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "experiments/runner/repeated.hpp"
@@ -43,17 +42,6 @@ constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
 
-std::string describe(const StageStatus& status) {
-  const double rate = status.steps_per_second * static_cast<double>(status.grains) * 1e-6;
-  const std::string where =
-      status.target_cycles > 0
-          ? fmt::format("cycle {:.2f} of {:g}", status.cycle, status.target_cycles)
-          : fmt::format("step {}", status.step);
-  const std::string left =
-      status.seconds_left >= 0 ? format_duration(status.seconds_left) + " left" : "";
-  return fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate, left);
-}
-
 /// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
 /// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
 class Progress {
@@ -68,10 +56,10 @@ class Progress {
     if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
   }
 
-  void update(const StageJob& job, const StageStatus& status) {
+  void update(const StageJob& job, const std::string& text) {
     const std::lock_guard lock(mutex_);
     Shown& shown = running_[job.id];
-    shown.text = describe(status);
+    shown.text = text;
     if (quiet_) return;
     if (terminal_) return draw();
     if (shown.said.seconds() < 10) return;
@@ -79,21 +67,15 @@ class Progress {
     print_stderr("{}: {}\n", shown.name, shown.text);
   }
 
-  /// `done` counts it among the stages that are done.
+  /// `done` counts it among the stages that are done. Prints `how` it ended unless that is empty.
   void end(const StageJob& job, const std::string& how, bool done) {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
     if (done) ++done_;
-    if (quiet_) return;
+    if (quiet_ || how.empty()) return;
     erase();
     print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
     if (terminal_) draw();
-  }
-
-  /// Counts a stage that was done before among those that are done.
-  void count() {
-    const std::lock_guard lock(mutex_);
-    ++done_;
   }
 
   /// This program no longer computes the stage.
@@ -303,13 +285,8 @@ class Campaign {
     const StageJob& job = jobs_[j];
     const Stage run = store_.stage(job.id);
     if (is_done(store_, run)) {
-      if (was_held) {
-        finish(job, &CampaignResult::elsewhere, "done by another program", true);
-      } else {
-        progress_.count();
-        const std::lock_guard lock(mutex_);
-        ++result_.already;
-      }
+      finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
+             was_held ? "done by another program" : "", true);
       if (when_done_) when_done_(job.id);
       return JobState::done;
     }
@@ -319,14 +296,20 @@ class Campaign {
       return JobState::ended;
     }
     progress_.begin(job);
-    const StageOutcome outcome = run_stage(store_, job.id, options_of(job));
+    StageOptions options{.parallel = parallel_};
+    options.damaged = [&](const std::string& what) {
+      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
+    };
+    options.report = [&](const std::string& text) { progress_.update(job, text); };
+    const StageOutcome outcome = run_stage(store_, job.id, options);
     switch (outcome) {
       case StageOutcome::completed:
       case StageOutcome::already: {
         const bool now = outcome == StageOutcome::completed;
+        const std::string why = describe_end(end_of(store_.stage(job.id)));
         if (when_done_) when_done_(job.id);
-        finish(job, now ? &CampaignResult::completed : &CampaignResult::already, done_text(job),
-               true);
+        finish(job, now ? &CampaignResult::completed : &CampaignResult::already,
+               why.empty() ? "done" : "done, " + why, true);
         return JobState::done;
       }
       case StageOutcome::interrupted:
@@ -347,21 +330,6 @@ class Campaign {
         return put_off(j);
     }
     return JobState::ended;
-  }
-
-  StageOptions options_of(const StageJob& job) {
-    StageOptions options;
-    options.parallel = parallel_;
-    options.damaged = [&](const std::string& what) {
-      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
-    };
-    options.report = [&](const StageStatus& status) { progress_.update(job, status); };
-    return options;
-  }
-
-  std::string done_text(const StageJob& job) const {
-    const std::string why = describe_end(end_of(store_.stage(job.id)));
-    return why.empty() ? "done" : "done, " + why;
   }
 
   void finish(const StageJob& job, std::size_t CampaignResult::*count, const std::string& how,

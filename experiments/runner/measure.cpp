@@ -129,8 +129,7 @@ class Measuring {
       results_[i][p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
-    std::ranges::move(unread.damage, std::back_inserter(unread_earlier_.damage));
-    std::ranges::move(unread.pruned, std::back_inserter(unread_earlier_.pruned));
+    add_unread(unread, unread_earlier_);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
   }

@@ -24,11 +24,8 @@
 
 namespace shearcell {
 
-/// A checkpoint of a stage, recorded or pruned, with its scalar measures if they are known.
-struct SeenCheckpoint {
-  CheckpointRecord record;
-  std::optional<Measures> measures = {};
-};
+/// Scalar measures of checkpoints, by SHA-256.
+using KnownMeasures = std::map<std::string, Measures>;
 
 struct Outlook {
   /// The stage is completed for all asks and no checkpoint is missing.
@@ -60,11 +57,11 @@ struct Outlook {
 };
 
 /// What is left of a stage for `asks`. `stage`: a recorded stage, or a new one; its recorded asks
-/// need not be `asks`. `checkpoints`: all checkpoints of the stage except rejected ones, by step. A
-/// completed stage also meets an ask whose `until` is that of a recorded ask with at least as many
-/// cycles. Throws StoreDamaged for an ask that no manifest can state.
+/// need not be `asks`. `checkpoints`: all checkpoints of the stage except rejected ones, by step
+/// (Listed::and_pruned). A completed stage also meets an ask whose `until` is that of a recorded
+/// ask with at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
-                std::span<const SeenCheckpoint> checkpoints);
+                std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
 /// Whether `until` may end the stage before the number of cycles that is asked for.
 bool has_until(const Ask& ask);
@@ -95,7 +92,7 @@ struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
   std::vector<Ask> asks = {};  ///< those of the store and of the plan
-  std::vector<SeenCheckpoint> checkpoints = {};
+  std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };
 
@@ -104,14 +101,12 @@ struct PlannedStage {
 std::vector<PlannedStage> look_at(const Plan& plan, const Store* store);
 
 /// outlook() for these asks, with the measures that decide where `until` ends the stage. As long as
-/// a checkpoint is undecided, its measures are read from the cache, or computed and cached, and put
-/// into `checkpoints`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that may
-/// end the stage cannot be read.
+/// a checkpoint is undecided, its measures are read from the cache, or computed and cached, and
+/// added to `measures`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that
+/// may end the stage cannot be read.
 Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
-               std::vector<SeenCheckpoint>& checkpoints, const MeasureOptions& options);
-
-/// All checkpoints of the stage except rejected ones, without measures.
-std::vector<SeenCheckpoint> seen_checkpoints(const Store& store, const std::string& stage);
+               std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
+               const MeasureOptions& options);
 
 /// The last cycle of the stage for one of its asks alone: Outlook::end. Throws as decide().
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
@@ -152,15 +147,6 @@ double run_bytes(const Geometry& shape);
 
 /// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
 double checkpoint_bytes(const Geometry& shape);
-
-/// Simulated time [s] that a packing takes to settle; within a third of the measured 0.9, 1.1, 1.6
-/// and 2.8 s at N = 600, 2000, 5200 and 18200.
-double settling_time_s(const Parameters& parameters);
-
-/// Force evaluations in one minimization at the default tolerance, a mean over the nine
-/// minimizations of B.2; within a sixth of the measured 8.2e3, 16e3 and 52e3 at N = 600, 2000 and
-/// 7900.
-double minimization_evaluations(double grains);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core

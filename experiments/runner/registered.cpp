@@ -9,7 +9,17 @@
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
+namespace {
 
+// In place of a manifest: packings of all versions are named together.
+const std::string kPackings = "packings";
+
+bool is_packing(const Stage& run) {
+  return run.kind == name_of(StageKind::prepare);
+}
+
+/// The registrations, oldest first. A version that was registered again after another version
+/// occurs again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");
@@ -28,6 +38,8 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   return found;
 }
 
+}  // namespace
+
 std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
   try {
     return read_manifest(manifest.text, "manifest");
@@ -35,17 +47,6 @@ std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
     return std::nullopt;  // of another version of the schema
   }
 }
-
-namespace {
-
-// In place of a manifest: packings of all versions are named together.
-const std::string kPackings = "packings";
-
-bool is_packing(const Stage& run) {
-  return run.kind == name_of(StageKind::prepare);
-}
-
-}  // namespace
 
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;

@@ -22,10 +22,6 @@ struct RegisteredManifest {
   std::string text;
 };
 
-/// The registrations, oldest first. A version that was registered again after another version
-/// occurs again. Throws StoreDamaged for an event that does not hold a manifest.
-std::vector<RegisteredManifest> registered_manifests(const Store& store);
-
 /// The parsed manifest; nothing if this version of the program cannot read it.
 std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 
@@ -49,7 +45,7 @@ class VariantNames {
 };
 
 /// The version of each experiment that was registered last, in the order in which the experiments
-/// were first registered.
+/// were first registered. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> newest_manifests(const Store& store);
 
 }  // namespace shearcell

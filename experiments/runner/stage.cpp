@@ -29,6 +29,8 @@
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/lineage.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -36,14 +38,8 @@ namespace {
 // --- A stage, made from its record and ready to be stepped ---
 
 Scene make_scene(const StageInputs& inputs) {
-  switch (inputs.stage) {
-    case StageKind::shear:
-      return shear_scene(inputs.parameters);
-    case StageKind::stiffen:
-      return stiffen_scene(inputs.parameters);
-    case StageKind::prepare:
-      break;
-  }
+  if (inputs.stage == StageKind::shear) return shear_scene(inputs.parameters);
+  if (inputs.stage == StageKind::stiffen) return stiffen_scene(inputs.parameters);
   return settle_scene(inputs.parameters);
 }
 
@@ -89,17 +85,11 @@ std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& 
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.asks.empty() ? otherwise : 0;
   for (const Ask& ask : stage.asks) {
-    double stated = otherwise;
-    for (const Event& event : store.events("manifest/" + ask.manifest)) {
-      try {
-        const nlohmann::json info = event.body().at("info");
-        stated =
-            info.value("max_overlap_diameters", nlohmann::json::object()).value(ask.scale, stated);
-      } catch (const nlohmann::json::exception& problem) {
-        throw damaged_payload(event, problem);
-      }
-    }
-    limit = std::max(limit, stated);
+    const auto manifest = find_manifest(store, ask.manifest);
+    const nlohmann::json stated =
+        manifest ? member_of(member_of(manifest->info, "max_overlap_diameters"), ask.scale.c_str())
+                 : nlohmann::json();
+    limit = std::max(limit, stated.is_number() ? stated.get<double>() : otherwise);
   }
   return limit;
 }
@@ -416,7 +406,7 @@ class StageAttempt {
                          {"processes", options_.parallel.ranks}};
     }
     return attempt(beginning, facts, false, [&] {
-      seen_ = seen_checkpoints(store_, id());
+      seen_ = store_.checkpoints(id(), Listed::and_pruned);
       if (ends_early()) return StageOutcome::completed;
       std::unique_ptr<Engine> engine;
       if (lammps) {
@@ -448,7 +438,6 @@ class StageAttempt {
       for (const std::uint64_t step : steps) {
         const auto pause = [&](const StageProgress& progress) {
           give_up_if_requested();
-          must_hold();
           report(engine, progress.cycle);
         };
         const StageProgress there = advance_to(engine, step, pause);
@@ -520,13 +509,8 @@ class StageAttempt {
       const bool whole = progress.cycle == std::floor(progress.cycle);
       if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();
-      must_hold();
       report(engine, progress.cycle);
     }
-  }
-
-  void must_hold() const {
-    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
   }
 
   StageOutcome interrupted() {
@@ -539,7 +523,7 @@ class StageAttempt {
   bool ends_early() {
     const Stage now = store_.stage(id());
     if (seen_.empty() || std::ranges::none_of(now.asks, has_until)) return false;
-    const nlohmann::json ended = decide(store_, now, now.asks, seen_, {}).ended;
+    const nlohmann::json ended = decide(store_, now, now.asks, seen_, measures_, {}).ended;
     recorded_.restart();  // measuring is not computing
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
@@ -560,28 +544,26 @@ class StageAttempt {
     const CheckpointRecord recorded = store_.record_checkpoint(id(), checkpoint, effort);
     recorded_core_seconds_ = core_seconds.value_or(0);
     computed_ = true;
-    seen_.push_back({recorded});
+    seen_.push_back(recorded);
     recorded_.restart();
     recorded_evaluations_ = engine.evaluations();
   }
 
+  // Throws when another program took the stage.
   void report(const Engine& engine, double cycle) {
+    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
     const double since = reported_.seconds();
     if (!options_.report || since < 0.2) return;
-    StageStatus status;
-    status.cycle = cycle;
-    status.target_cycles = plan_.inputs.stage != StageKind::prepare
-                               ? static_cast<double>(plan_.stage.target_cycles)
-                               : 0;
-    status.steps_per_second =
-        static_cast<double>(engine.evaluations() - reported_evaluations_) / since;
-    status.grains = plan_.stage.grains;
-    status.step = engine.step();
-    const std::uint64_t end = plan_.protocol->last_step();
+    const auto steps = static_cast<double>(engine.evaluations() - reported_evaluations_);
+    const double rate = 1e-6 * steps * static_cast<double>(plan_.stage.grains) / since;
+    const std::uint64_t target = plan_.stage.target_cycles, end = plan_.protocol->last_step();
+    const std::string where = target > 0 ? fmt::format("cycle {:.2f} of {}", cycle, target)
+                                         : fmt::format("step {}", engine.step());
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
-    status.seconds_left =
-        end == 0 || !(mean_rate > 0) ? -1 : static_cast<double>(end - engine.step()) / mean_rate;
-    options_.report(status);
+    const bool known = end > 0 && mean_rate > 0;
+    const double left = static_cast<double>(end - engine.step()) / mean_rate;
+    options_.report(fmt::format("{:<18} {:6.1f} M particle-steps/s  {}", where, rate,
+                                known ? format_duration(left) + " left" : ""));
     reported_.restart();
     reported_evaluations_ = engine.evaluations();
   }
@@ -589,7 +571,8 @@ class StageAttempt {
   Store& store_;
   const StageOptions& options_;
   ReadyStage plan_;
-  std::vector<SeenCheckpoint> seen_;
+  std::vector<CheckpointRecord> seen_;
+  KnownMeasures measures_;
   bool computed_ = false;
   std::uint64_t first_step_ = 0, recorded_evaluations_ = 0, reported_evaluations_ = 0;
   double recorded_core_seconds_ = 0;
@@ -633,113 +616,92 @@ void compare(const char* field, const Eigen::Matrix3Xd& a, const Eigen::Matrix3X
   }
 }
 
-class Replaying {
- public:
-  Replaying(Store& store, const CheckpointRecord& record)
-      : store_(store), plan_(ready_stage(store, store.stage(record.run))) {
-    replay_.record = record;
-  }
+void diverge(Replay& replay, std::uint64_t step, const std::string& message,
+             const std::string& field = "") {
+  const std::uint64_t first = replay.from ? replay.from->step : 0;
+  replay.divergence = Divergence{first, step, field, -1, 0, message};
+}
 
-  /// The state at the record's step; nothing when that was not reached.
-  std::optional<Checkpoint> compute(std::size_t threads) {
-    const CheckpointRecord& record = replay_.record;
-    try {
-      Beginning beginning = beginning_of(store_, plan_, nullptr, record.step);
-      replay_.from = beginning.from;
-      OwnEngine engine(plan_, std::move(beginning), threads);
-      first_ = engine.step();
-      const StageProgress progress = advance_to(engine, record.step, [&](const StageProgress&) {
-        replay_.steps = engine.step() - first_;
-        give_up_if_requested();
-      });
-      replay_.steps = engine.step() - first_;
-      if (engine.step() == record.step) return engine.checkpoint(progress.cycle);
-      diverge(engine.step(), fmt::format("the stage ended at step {} already", engine.step()));
-    } catch (const Interrupted&) {
-      replay_.interrupted = true;
-    } catch (const NumericalFailure& failure) {
-      diverge(failure.step, failure.what());
-    }
-    return std::nullopt;
+/// The state at the record's step; nothing when that was not reached.
+std::optional<Checkpoint> compute_again(Store& store, Replay& replay, std::size_t threads) {
+  const CheckpointRecord& record = replay.record;
+  const ReadyStage plan = ready_stage(store, store.stage(record.run));
+  try {
+    Beginning beginning = beginning_of(store, plan, nullptr, record.step);
+    replay.from = beginning.from;
+    OwnEngine engine(plan, std::move(beginning), threads);
+    const std::uint64_t first = engine.step();
+    const StageProgress progress = advance_to(engine, record.step, [&](const StageProgress&) {
+      replay.steps = engine.step() - first;
+      give_up_if_requested();
+    });
+    replay.steps = engine.step() - first;
+    if (engine.step() == record.step) return engine.checkpoint(progress.cycle);
+    diverge(replay, engine.step(),
+            fmt::format("the stage ended at step {} already", engine.step()));
+  } catch (const Interrupted&) {
+    replay.interrupted = true;
+  } catch (const NumericalFailure& failure) {
+    diverge(replay, failure.step, failure.what());
   }
+  return std::nullopt;
+}
 
-  void compare_with(const Checkpoint& found) {
-    const CheckpointRecord& record = replay_.record;
-    const std::string hash = state_hash(found);
-    if (hash == record.state_hash) return compare_numbers(found);
-    diverge(record.step, fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
-    Divergence& worst = *replay_.divergence;
-    if (const auto recorded = store_.load_if_readable(record)) {
-      const State& a = recorded->state;
-      const State& b = found.state;
+/// Compares the state or, if it is the same, the numbers that the log and the file have beside it.
+void compare_again(const Store& store, const Checkpoint& found, Replay& replay) {
+  const CheckpointRecord& record = replay.record;
+  const std::string hash = state_hash(found);
+  if (hash != record.state_hash) {
+    diverge(replay, record.step,
+            fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
+    if (const auto recorded = store.load_if_readable(record)) {
+      const State &a = recorded->state, &b = found.state;
+      Divergence& worst = *replay.divergence;
       compare("position", a.position, b.position, worst);
       compare("velocity", a.velocity, b.velocity, worst);
       compare("wall_height", a.wall_height, b.wall_height, worst);
       compare("wall_velocity", a.wall_velocity, b.wall_velocity, worst);
     }
+    return;
   }
-
-  // Compares the numbers that the log and the file have beside the state.
-  void compare_numbers(const Checkpoint& found) {
-    const auto require = [this](const std::string& field, double computed, double recorded) {
-      if (computed == recorded || replay_.divergence) return;
-      diverge(replay_.record.step, fmt::format("{} {} instead of {}", field, computed, recorded),
-              field);
-      compare(field.c_str(), computed, recorded, *replay_.divergence);
-    };
-    const CheckpointRecord& record = replay_.record;
-    require("cycle", found.cycle, record.cycle);
-    require("time_s", found.time_s, record.time_s);
-    // Versions before this one may have recorded fewer observables.
-    for (const auto& [name, value] : record.observables) {
-      const auto again = found.observables.find(name);
-      require(name, again == found.observables.end() ? std::nan("") : again->second, value);
-    }
-    if (const auto recorded = store_.load_if_readable(record)) {
-      require("theta", found.theta, recorded->theta);
-    }
+  const auto require = [&](const std::string& field, double computed, double recorded) {
+    if (computed == recorded || replay.divergence) return;
+    diverge(replay, record.step, fmt::format("{} {} instead of {}", field, computed, recorded),
+            field);
+    compare(field.c_str(), computed, recorded, *replay.divergence);
+  };
+  require("cycle", found.cycle, record.cycle);
+  require("time_s", found.time_s, record.time_s);
+  // Versions before this one may have recorded fewer observables.
+  for (const auto& [name, value] : record.observables) {
+    const auto again = found.observables.find(name);
+    require(name, again == found.observables.end() ? std::nan("") : again->second, value);
   }
-
-  void diverge(std::uint64_t step, const std::string& message, const std::string& field = "") {
-    replay_.divergence = Divergence{first_, step, field, -1, 0, message};
+  if (const auto recorded = store.load_if_readable(record)) {
+    require("theta", found.theta, recorded->theta);
   }
-
-  void record_outcome() {
-    const CheckpointRecord& record = replay_.record;
-    nlohmann::json facts = {{"sha256", record.sha256}, {"step", record.step},
-                            {"cycle", record.cycle},   {"state_hash", record.state_hash},
-                            {"from", nullptr},         {"steps", replay_.steps},
-                            {"host", host_facts()}};
-    if (replay_.from) {
-      facts["from"] = {{"sha256", replay_.from->sha256}, {"step", replay_.from->step}};
-    }
-    if (replay_.divergence) facts.update(to_json(*replay_.divergence));
-    store_.record_replay(record.run, !replay_.divergence, facts);
-  }
-
-  Replay& result() { return replay_; }
-
- private:
-  Store& store_;
-  ReadyStage plan_;
-  Replay replay_;
-  std::uint64_t first_ = 0;
-};
+}
 
 /// `restore`: also writes the file.
 Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads, bool restore) {
-  Replaying replaying(store, record);
-  const auto found = replaying.compute(threads);
-  if (found) replaying.compare_with(*found);
-  Replay& result = replaying.result();
+  Replay result{.record = record};
+  const auto found = compute_again(store, result, threads);
+  if (found) compare_again(store, *found, result);
   if (restore && found && !result.divergence) {
     try {
       store.restore_checkpoint(record, *found);
     } catch (const StoreDamaged& other_bytes) {
-      replaying.diverge(record.step, other_bytes.what(), "file");
+      diverge(result, record.step, other_bytes.what(), "file");
     }
   }
-  if (restore ? result.divergence.has_value() : !result.interrupted) replaying.record_outcome();
+  if (restore ? !result.divergence : result.interrupted) return result;
+  nlohmann::json facts = {{"sha256", record.sha256}, {"step", record.step},
+                          {"cycle", record.cycle},   {"state_hash", record.state_hash},
+                          {"from", nullptr},         {"steps", result.steps},
+                          {"host", host_facts()}};
+  if (result.from) facts["from"] = {{"sha256", result.from->sha256}, {"step", result.from->step}};
+  if (result.divergence) facts.update(to_json(*result.divergence));
+  store.record_replay(record.run, !result.divergence, facts);
   return result;
 }
 
@@ -758,7 +720,7 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
     }
     // A denser cadence may have been asked for.
     const std::vector<std::uint64_t> missing =
-        outlook(run, run.asks, seen_checkpoints(store, id)).missing;
+        outlook(run, run.asks, store.checkpoints(id, Listed::and_pruned)).missing;
     if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const RunHeld&) {
@@ -771,7 +733,7 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 }
 
 bool is_done(const Store& store, const Stage& stage) {
-  return outlook(stage, stage.asks, seen_checkpoints(store, stage.id)).done &&
+  return outlook(stage, stage.asks, store.checkpoints(stage.id, Listed::and_pruned)).done &&
          newest_is_sound(store, stage);
 }
 

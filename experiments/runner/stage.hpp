@@ -26,21 +26,12 @@ struct Parallel {
 /// completed the stage or recorded a later state.
 enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
 
-/// The progress of a running stage.
-struct StageStatus {
-  double cycle = 0;
-  double target_cycles = 0;  ///< 0 for a stage without cycles
-  double steps_per_second = 0;
-  std::size_t grains = 0;
-  std::uint64_t step = 0;
-  double seconds_left = 0;  ///< negative when it is not known
-};
-
 struct StageOptions {
   Parallel parallel = {};
-  std::function<void(const std::string&)> damaged;  ///< called for each skipped checkpoint
-  std::function<void()> begun;                      ///< called when an attempt has been recorded
-  std::function<void(const StageStatus&)> report;   ///< called a few times a second
+  std::function<void(const std::string&)> damaged = {};  ///< called for each skipped checkpoint
+  std::function<void()> begun = {};                      ///< called when an attempt is recorded
+  /// Called a few times a second with the progress: where the stage is, its rate, the time left.
+  std::function<void(const std::string&)> report = {};
 };
 
 /// Computes the stage `id` until its target, then its missing checkpoints. Starts from the newest
@@ -76,9 +67,9 @@ nlohmann::json to_json(const Divergence& divergence);
 
 struct Replay {
   CheckpointRecord record;
-  std::optional<CheckpointRecord> from;  ///< nothing: from the beginning of the stage
-  std::uint64_t steps = 0;               ///< number of recomputed steps
-  std::optional<Divergence> divergence;
+  std::optional<CheckpointRecord> from = {};  ///< nothing: from the beginning of the stage
+  std::uint64_t steps = 0;                    ///< number of recomputed steps
+  std::optional<Divergence> divergence = {};
   bool interrupted = false;  ///< by a signal; there is no result and nothing was recorded
 };
 

@@ -41,7 +41,7 @@ TEST(Quoting, GivesTheTextItselfInAShell) {
   for (const std::string& text : kHostileNames) {
     for (const char* shell : {"sh", "bash"}) {
       const auto said =
-          run_program({shell, "-c", "x=" + shell_quoted(text) + "; printf %s \"$x\""}, "/");
+          run_program({shell, "-c", "x=" + shell_word(text) + "; printf %s \"$x\""}, "/");
       ASSERT_TRUE(said.has_value());
       EXPECT_EQ(said->output, text) << shell;
     }

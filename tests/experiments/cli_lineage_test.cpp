@@ -100,6 +100,13 @@ TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
   expect_refused({"export", id, "--to", "zip", "--out", "b"}, {});
   expect_refused({"export", id, "--to", "ro-crate", "--out", "b", "--license", "MIT"}, {"MIT"});
   expect_refused({"export", "xyz", "--to", "ro-crate", "--out", "b"}, {"xyz"});
+
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(path("shearcell-store/objects"))) {
+    if (entry.is_regular_file()) std::filesystem::resize_file(entry, 100);
+  }
+  expect(4, {"export", id, "--to", "ro-crate", "--out", "a/damaged"}, {"objects/"});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("a")), {}), 1) << "the crate";
 }
 
 TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {

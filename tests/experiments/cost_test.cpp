@@ -27,13 +27,13 @@ PlannedRun only_run(const std::string& text) {
 /// What is left of a stage of the run that nobody computed, or up to this cycle.
 Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) {
   Stage stage = planned;
-  std::vector<SeenCheckpoint> seen;
+  std::vector<CheckpointRecord> seen;
   if (cycle >= 0) {
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
     seen.emplace_back();
     for (const std::uint64_t step : asked_steps(stage, run.ask, 0, cycle)) {
-      seen.emplace_back().record.step = step;
+      seen.emplace_back().step = step;
     }
   }
   return outlook(stage, run.stage.asks, seen);

@@ -25,23 +25,29 @@ Ask ask(std::uint64_t cycles, std::optional<Until> until = std::nullopt, std::ui
   return made;
 }
 
+struct Seen {
+  std::vector<CheckpointRecord> checkpoints;
+  KnownMeasures measures;
+};
+
 // Checkpoints at cycles 0, 2, 4, ... with these percentages.
-std::vector<SeenCheckpoint> measured(std::initializer_list<double> percentages) {
-  std::vector<SeenCheckpoint> list;
+Seen measured(std::initializer_list<double> percentages) {
+  Seen seen;
   for (const double percent : percentages) {
-    SeenCheckpoint& next = list.emplace_back();
-    next.record.cycle = 2 * static_cast<double>(list.size() - 1);
-    next.measures.emplace().numbers["crystalline_percent"] = percent;
+    CheckpointRecord& next = seen.checkpoints.emplace_back();
+    next.cycle = 2 * static_cast<double>(seen.checkpoints.size() - 1);
+    next.sha256 = std::to_string(next.cycle);
+    seen.measures[next.sha256].numbers["crystalline_percent"] = percent;
   }
-  return list;
+  return seen;
 }
 
 // Why a running stage with these checkpoints ends at the last one.
-nlohmann::json ended(std::span<const Ask> asks, std::span<const SeenCheckpoint> seen) {
+nlohmann::json ended(std::span<const Ask> asks, const Seen& seen) {
   Stage stage;
   stage.state = StageState::running;
-  stage.cycle = seen.back().record.cycle;
-  return outlook(stage, asks, seen).ended;
+  stage.cycle = seen.checkpoints.back().cycle;
+  return outlook(stage, asks, seen.checkpoints, seen.measures).ended;
 }
 
 TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
@@ -50,7 +56,7 @@ TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
   const Until twenty{StopMeasure::crystalline_percent, 20, 0};
   struct Case {
     std::vector<Ask> asks;
-    std::vector<SeenCheckpoint> measured;
+    Seen measured;
     double reached;  // cycle; -1: the run continues
   };
   const std::vector<Case> cases = {

@@ -113,7 +113,7 @@ void take_events(Input input) {
   attempt<StoreDamaged>([&] {
     for (const Stage& record : query_stages(database)) {
       query_checkpoints(database, record.id);
-      query_stage_ids(database, record.id.substr(0, 3), 10);
+      query_stages(database, record.id.substr(0, 3));
     }
     query_figures(database);
     projection_rows(database);

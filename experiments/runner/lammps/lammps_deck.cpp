@@ -5,10 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <sstream>
 #include <string_view>
 
 #include "core/drive.hpp"
@@ -308,40 +308,6 @@ class Deck {
   std::string text_;
 };
 
-// Reads numbers from a text that may be damaged.
-class Numbers {
- public:
-  Numbers(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
-
-  /// Skips the text up to the end of the line that begins with `heading`.
-  void skip_past(std::string_view heading) {
-    const auto at = text_.find(heading);
-    const auto end = at == text_.npos ? at : text_.find('\n', at);
-    if (end == text_.npos) refuse();
-    text_.remove_prefix(end + 1);
-  }
-
-  template <typename Number>
-  Number next() {
-    const auto start = text_.find_first_not_of(" \n");
-    if (start == text_.npos) refuse();
-    text_.remove_prefix(start);
-    Number number{};
-    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
-    if (error != std::errc() || !std::isfinite(static_cast<double>(number))) refuse();
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return number;
-  }
-
-  [[noreturn]] void refuse() const {
-    throw ProgramError(file_ + ": not a complete state of the grains");
-  }
-
- private:
-  std::string_view text_;
-  std::string file_;
-};
-
 }  // namespace
 
 std::string lammps_data(const Particles& all, std::string_view title) {
@@ -381,24 +347,33 @@ std::string lammps_script(const LammpsTask& task, std::string_view data, std::st
 }
 
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
-  const std::string text = read_plain(file, kLargestFile).value_or("");
-  Numbers numbers(text, file.string());
+  std::istringstream text(read_plain(file, kLargestFile).value_or(""));
+  const auto require = [&](bool sound) {
+    if (!sound) throw ProgramError(file.string() + ": not a complete state of the grains");
+  };
+  const auto skip_to = [&](std::string_view heading) {
+    std::string line;
+    while (std::getline(text, line) && !line.starts_with(heading)) {
+    }
+  };
   State state;
-  numbers.skip_past("ITEM: TIMESTEP");
-  state.step = numbers.next<std::uint64_t>();
-  numbers.skip_past("ITEM: NUMBER OF ATOMS");
-  if (numbers.next<std::size_t>() != grains + 1) numbers.refuse();
-  numbers.skip_past("ITEM: ATOMS");
+  skip_to("ITEM: TIMESTEP");
+  text >> state.step;
+  skip_to("ITEM: NUMBER OF ATOMS");
+  std::size_t atoms = 0;
+  require((text >> atoms) && atoms == grains + 1);
+  skip_to("ITEM: ATOMS");
   const auto columns = static_cast<Eigen::Index>(grains);
   state.position.resize(3, columns);
   state.velocity.resize(3, columns);
   std::vector<bool> seen(grains + 1, false);
   for (std::size_t row = 0; row <= grains; ++row) {
-    const auto id = numbers.next<std::size_t>();
-    if (id < 1 || seen[std::min(id - 1, grains)]) numbers.refuse();
-    seen[std::min(id - 1, grains)] = true;
+    std::size_t id = 0;
     Eigen::Matrix<double, 6, 1> v;
-    for (double& value : v) value = numbers.next<double>();
+    text >> id;
+    for (double& value : v) text >> value;
+    require(text && id >= 1 && v.allFinite() && !seen[std::min(id - 1, grains)]);
+    seen[std::min(id - 1, grains)] = true;
     if (id > grains) {  // the moving wall
       state.wall_height = v(1);
       state.wall_velocity = v(4);
