@@ -11,9 +11,7 @@
 #include <set>
 #include <span>
 #include <system_error>
-#include <utility>
 
-#include "provenance/errors.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"

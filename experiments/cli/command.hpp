@@ -16,7 +16,6 @@
 
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/store.hpp"
@@ -59,8 +58,16 @@ AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_reb
     add_regenerate, add_submit, add_merge, add_table, add_figures, add_report, add_export,
     add_bench, add_new, add_doctor, add_manual;
 
-/// Prints the result of a campaign and sets the exit code.
-void print_result(const CampaignResult& result, Context& context);
+struct Freed {
+  std::size_t measured = 0;  ///< checkpoints
+  std::uint64_t bytes = 0;
+};
+
+/// keep_measures(), then deletes the files of these checkpoints. Names those that cannot be
+/// measured, whose files are kept, and removes them from `records`; the exit code is then 4 for a
+/// damaged file, 1 if measures cannot be cached. Several threads may call it at once.
+Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
+                 const MeasureOptions& options, bool last_too, Context& context);
 
 /// An error message if the path is empty; else "".
 std::string unnamed(const std::string& path);

@@ -23,29 +23,7 @@ struct FigureArguments {
   FigureOptions how;
 };
 
-std::string path_of(const FigureSummary& result) {
-  return result.experiment.empty() ? result.name : result.experiment + "/" + result.name;
-}
-
-void complain(const FigureSummary& result, std::set<std::string>& told, Context& context) {
-  for (const std::string& note : result.notes) {
-    if (told.insert(note).second) print_stderr("{}\n", note);
-  }
-  MeasureOutcome problems = result;
-  const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
-  std::erase_if(problems.damage, is_told);
-  std::erase_if(problems.pruned, is_told);
-  print_problems(problems, "left out", context);
-  if (!result.empty.empty()) {
-    print_stderr("warning: figure {}: its runs have no values to draw in {}\n", path_of(result),
-                 fmt::join(result.empty, ", "));
-  }
-  for (const std::string& why : result.undrawn) {
-    print_stderr("no plot: {}: {}\n", path_of(result), why);
-  }
-}
-
-nlohmann::json facts(const FigureSummary& result) {
+nlohmann::json facts(const ComputedFigure& result) {
   return {{"figure", result.name},
           {"experiment", result.experiment},
           {"scale", result.scale},
@@ -61,7 +39,7 @@ nlohmann::json facts(const FigureSummary& result) {
           {"verdict", to_json(result.verdicts)}};
 }
 
-void print_verdicts(const FigureSummary& result) {
+void print_verdicts(const ComputedFigure& result) {
   if (result.verdicts.empty()) return;
   print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
@@ -71,14 +49,28 @@ void print_verdicts(const FigureSummary& result) {
   }
 }
 
-/// Adds the figure's summary to the list, and prints it unless --json is given.
-void take(const FigureSummary& result, nlohmann::json& list, Context& context) {
+/// Prints the figure, unless --json is given, and what is missing in it: each message once. `path`:
+/// WantedFigure::path().
+void print(const ComputedFigure& result, const std::string& path, std::set<std::string>& told,
+           Context& context) {
+  const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
+  for (const std::string& note : result.notes) {
+    if (!is_told(note)) print_stderr("{}\n", note);
+  }
+  MeasureOutcome problems = result;
+  std::erase_if(problems.damage, is_told);
+  std::erase_if(problems.pruned, is_told);
+  print_problems(problems, "left out", context);
+  if (!result.empty.empty()) {
+    print_stderr("warning: figure {}: its runs have no values to draw in {}\n", path,
+                 fmt::join(result.empty, ", "));
+  }
+  for (const std::string& why : result.undrawn) print_stderr("no plot: {}: {}\n", path, why);
   if (!result.undrawn.empty()) fail(context, kOtherError);
-  list.push_back(facts(result));
   if (context.json) return;
-  print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path_of(result),
-             scale_name(result.scale), counted(result.runs, "run"),
-             counted(result.checkpoints, "checkpoint"), result.measured);
+  print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path, scale_name(result.scale),
+             counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
+             result.measured);
   for (const auto& file : result.files) print_text("  {}\n", file.string());
   print_verdicts(result);
 }
@@ -108,9 +100,9 @@ void figures(FigureArguments& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   for (const WantedFigure& figure : wanted.figures) {
     try {
-      const FigureSummary result = draw_figure(store, figure, how);
-      complain(result, told, context);
-      take(result, list, context);
+      const ComputedFigure result = draw_figure(store, figure, how);
+      list.push_back(facts(result));
+      print(result, figure.path(), told, context);
     } catch (const UsageError& problem) {
       complain_of(problem.what());
     } catch (const AnalysisError& problem) {

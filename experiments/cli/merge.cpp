@@ -2,10 +2,10 @@
 // `merge`: merges other stores into this one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <tuple>
-#include <utility>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
@@ -14,41 +14,30 @@
 namespace shearcell::cli {
 namespace {
 
-using Runs = std::set<std::string>;                                 // ids
 using Version = std::tuple<std::string, std::string, std::string>;  // experiment, scale, manifest
+using Shown = std::map<Version, std::set<std::string>>;             // ids of runs
 
-/// What figures and tables show of a store, and what not: runs of older versions of a manifest.
-struct Shown {
-  std::map<Version, Runs> shown;
-  std::map<std::pair<std::string, std::string>, Runs> left_out;  // by experiment and scale
-};
-
-void add_shown(const Store& store, Shown& all) {
+/// Adds the runs that figures and tables show of a store: none of older versions of a manifest.
+void add_shown(const Store& store, Shown& shown) {
   for (const Run& run : select_runs(store, {})) {
     const Ask& place = run.ask;
-    Runs& runs = place.newest ? all.shown[{place.experiment, place.scale, place.manifest}]
-                              : all.left_out[{place.experiment, place.scale}];
-    runs.insert(run.stage.id);
+    if (!place.newest) continue;
+    shown[{place.experiment, place.scale, place.manifest}].insert(run.stage.id);
   }
 }
 
 /// Warns of runs that figures showed before the merge, of this store or of a source, and do not
-/// show after it, since another version of the manifest was registered later. `own`: of this store
-/// before the merge, `before`: also of the sources.
-void warn_of_left_out(const Shown& own, const Shown& before, const Shown& now, Context& context) {
-  for (const auto& [version, runs] : before.shown) {
+/// show after it, since another version of the manifest was registered later.
+void warn_of_left_out(const Shown& before, const Shown& now, Context& context) {
+  for (const auto& [version, runs] : before) {
     const auto& [experiment, scale, manifest] = version;
     // The version that is shown now.
-    const auto newest = now.shown.lower_bound({experiment, scale, ""});
-    if (newest == now.shown.end() || now.shown.contains(version)) continue;
+    const auto newest = now.lower_bound({experiment, scale, ""});
+    if (newest == now.end() || now.contains(version)) continue;
     const auto& [its_experiment, its_scale, its_manifest] = newest->first;
     if (its_experiment != experiment || its_scale != scale) continue;
-    const auto told = own.left_out.find({experiment, scale});
-    std::size_t lost = 0;
-    for (const std::string& run : runs) {
-      const bool known = told != own.left_out.end() && told->second.contains(run);
-      lost += newest->second.contains(run) || known ? 0 : 1;
-    }
+    const auto lost = std::ranges::count_if(
+        runs, [&](const std::string& run) { return !newest->second.contains(run); });
     if (lost == 0) continue;
     warn(context,
          fmt::format("experiment {} at scale {}: the merged stores have two versions of its "
@@ -68,9 +57,8 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': there is no store here to merge", source));
   }
   Store store(context.store, Access::create);
-  Shown own;
-  add_shown(store, own);
-  Shown before = own, now;
+  Shown before, now;
+  add_shown(store, before);
   for (const std::string& source : sources) {
     try {
       add_shown(Store(source, Access::read), before);
@@ -84,7 +72,10 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
   }
   add_shown(store, now);
-  warn_of_left_out(own, before, now, context);
+  // A source that was merged before says nothing new.
+  const bool changed =
+      std::ranges::any_of(reports, [](const MergeReport& report) { return report.events > 0; });
+  if (changed) warn_of_left_out(before, now, context);
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {
       return {{"source", report.source},

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
-#include <string_view>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -28,23 +29,17 @@ struct PruneOptions {
   bool yes = false;
 };
 
-/// Whether any filter is given.
-bool selects(const RunSelection& s) {
-  return !(s.experiments.empty() && s.scales.empty() && s.variants.empty() && s.seeds.empty() &&
-           s.states.empty());
-}
-
 /// Ids of the selected runs, settled packings among them.
-std::vector<std::string> selected_ids(const Store& store, RunSelection selection) {
+std::set<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
-  std::vector<std::string> ids;
-  for (const PlacedRun& one : by_run(select_runs(store, selection))) ids.push_back(one.stage.id);
+  std::set<std::string> ids;
+  for (const Run& run : select_runs(store, selection)) ids.insert(run.stage.id);
   return ids;
 }
 
 std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store& store) {
   PruneChoice choice = options.choice;
-  const bool filtered = selects(options.selection);
+  const bool filtered = options.selection != RunSelection{};
   if (choice.runs.empty() && !filtered && choice.keep_every == 0 && !choice.last_too) {
     throw CLI::ValidationError("prune",
                                "choose what to delete: --keep-every K, --experiment E, --state "
@@ -52,13 +47,10 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
   }
   for (std::string& run : choice.runs) run = store.find_stage(run).id;
   if (filtered) {
-    std::vector<std::string> ids = selected_ids(store, options.selection);
-    const bool named = !choice.runs.empty();
-    std::erase_if(ids, [&](const std::string& id) {
-      return named && std::ranges::count(choice.runs, id) == 0;
-    });
-    if (ids.empty()) return {};  // an empty choice would be all runs
-    choice.runs = std::move(ids);
+    const std::set<std::string> ids = selected_ids(store, options.selection);
+    if (choice.runs.empty()) choice.runs.assign(ids.begin(), ids.end());
+    std::erase_if(choice.runs, [&](const std::string& id) { return !ids.contains(id); });
+    if (choice.runs.empty()) return {};  // an empty choice would be all runs
   }
   return store.prunable(choice);
 }
@@ -116,21 +108,14 @@ void prune(const PruneOptions& options, Context& context) {
   }
   const bool any = chosen + leftovers.size() > 0;
   const bool go = any && (options.yes || (!context.json && agreed()));
-  MeasureOutcome measuring;
+  Freed freed;
   if (go) {
-    measuring = keep_measures(store, records,
-                              {.workers = usable_cores(),
-                               .report = terminal_counter("measuring checkpoint before its file is "
-                                                          "deleted")});
-    print_problems(measuring, "not measured", context);
-    if (!measuring.cache_trouble.empty()) fail(context, kOtherError);
-    if (records.size() < chosen) {
-      print_stderr("kept: the files of {} that could not be measured\n",
-                   counted(chosen - records.size(), "checkpoint"));
-    }
+    const MeasureOptions measuring{
+        .workers = usable_cores(),
+        .report = terminal_counter("measuring checkpoint before its file is deleted")};
+    freed = free_files(store, records, measuring, options.choice.last_too, context);
+    freed.bytes += store.prune(leftovers);
   }
-  const std::vector<CheckpointRecord> all = with_leftovers();
-  const std::uint64_t freed = go ? store.prune(all, options.choice.last_too) : 0;
   if (context.json) {
     const auto checkpoint = [](const CheckpointRecord& record) -> nlohmann::json {
       return {{"run", record.run},
@@ -138,17 +123,19 @@ void prune(const PruneOptions& options, Context& context) {
               {"sha256", record.sha256},
               {"size", record.size}};
     };
+    const std::vector<CheckpointRecord> all = with_leftovers();
     print_json({{"checkpoints", json_list(all, checkpoint)},
                 {"leftovers", leftovers.size()},
                 {"kept_of_other_engines", kept},
-                {"measured", measuring.measured},
+                {"measured", freed.measured},
                 {"kept_unmeasured", chosen - records.size()},
                 {"bytes", bytes_of(all)},
                 {"pruned", go},
-                {"bytes_freed", freed}});
+                {"bytes_freed", freed.bytes}});
   } else if (go) {
     fmt::print("{} measured, {} freed; `shearcell regenerate` recomputes files\n",
-               counted(measuring.measured, "checkpoint"), format_bytes(static_cast<double>(freed)));
+               counted(freed.measured, "checkpoint"),
+               format_bytes(static_cast<double>(freed.bytes)));
   } else if (any) {
     fmt::print("Nothing was freed. Use --yes to delete these files.\n");
   }
@@ -229,7 +216,7 @@ std::vector<CheckpointRecord> without_file(const Store& store, const RunSelectio
 }
 
 void regenerate(const RegenerateOptions& options, Context& context) {
-  const bool named = !options.checkpoints.empty(), filtered = selects(options.selection);
+  const bool named = !options.checkpoints.empty(), filtered = options.selection != RunSelection{};
   if (named == (options.all || filtered)) {
     throw CLI::ValidationError("regenerate",
                                "choose what to recompute: either checkpoints, or runs by "
@@ -256,6 +243,21 @@ void regenerate(const RegenerateOptions& options, Context& context) {
 }
 
 }  // namespace
+
+Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
+                 const MeasureOptions& options, bool last_too, Context& context) {
+  const std::size_t chosen = records.size();
+  const MeasureOutcome outcome = keep_measures(store, records, options);
+  static std::mutex printing;
+  const std::lock_guard lock(printing);
+  print_problems(outcome, "not measured", context);
+  if (!outcome.cache_trouble.empty()) fail(context, kOtherError);
+  if (records.size() < chosen) {
+    print_stderr("kept: the files of {} that could not be measured\n",
+                 counted(chosen - records.size(), "checkpoint"));
+  }
+  return {outcome.measured, store.prune(records, last_too)};
+}
 
 void add_prune(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(

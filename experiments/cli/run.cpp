@@ -7,7 +7,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -15,9 +14,9 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
-#include "experiments/figures/keep_measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/campaign.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/repeated.hpp"
 #include "experiments/runner/stop.hpp"
@@ -77,18 +76,53 @@ std::size_t workers(const RunOptions& options) {
 CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
                        Context& context) {
   if (!options.task) catch_stop_signals();
-  // What `prune --keep-every` does, as soon as a stage is done.
-  const auto prune = [&](const std::string& stage) {
+  const auto prune = [&](const std::string& stage) {  // as soon as the stage is done
     std::vector<CheckpointRecord> records = store.prunable({{stage}, options.keep_every});
     if (records.empty() || why_not_again(store.stage(stage))) return;
-    const MeasureOutcome outcome = keep_measures(store, records, {});
-    store.prune(records);
-    static std::mutex printing;
-    const std::lock_guard lock(printing);
-    print_problems(outcome, "its file is kept, since it could not be measured", context);
+    free_files(store, records, {}, false, context);
   };
   return run_campaign(store, jobs, workers(options), options.parallel, options.quiet,
                       options.keep_every > 0 ? prune : std::function<void(const std::string&)>());
+}
+
+// Prints the result and sets the exit code. `failed_before`: whether failed runs were left out.
+void print_result(const CampaignResult& result, bool failed_before, Context& context) {
+  const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
+  fail(context, result.damaged > 0   ? kStoreDamaged
+                : result.failed > 0  ? kRunFailed
+                : interrupted        ? kInterrupted
+                : result.blocked > 0 ? kOtherError
+                : failed_before      ? kRunFailed
+                                     : kDone);
+  if (context.json) {
+    print_json({{"completed", result.completed},
+                {"already_done", result.already},
+                {"done_elsewhere", result.elsewhere},
+                {"failed", result.failed},
+                {"interrupted", result.interrupted},
+                {"not_begun", result.blocked},
+                {"damaged", result.damaged},
+                {"messages", result.messages},
+                {"warnings", context.warnings}});
+  } else if (result.completed + result.already + result.elsewhere + result.failed +
+                 result.interrupted + result.blocked + result.damaged ==
+             0) {
+    fmt::print("nothing is left to compute\n");
+  } else {
+    fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not started\n",
+               counted(result.completed, "stage"), result.already, result.failed,
+               result.interrupted, result.blocked);
+    if (result.elsewhere > 0) {
+      fmt::print("{} computed by other programs meanwhile\n", counted(result.elsewhere, "stage"));
+    }
+    if (result.damaged > 0) {
+      fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
+    }
+  }
+  if (context.exit_code == kInterrupted) {
+    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
+                 shell_word(context.store));
+  }
 }
 
 void run(const RunOptions& options, Context& context) {
@@ -105,7 +139,7 @@ void run(const RunOptions& options, Context& context) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }
-  print_result(compute(store, jobs, options, context), context);
+  print_result(compute(store, jobs, options, context), false, context);
 }
 
 // Removes the jobs that failed and those that depend on them. Returns whether there were any.
@@ -186,20 +220,19 @@ void resume_task(const RunOptions& options, Context& context) {
     store.reset();
     fs::remove_all(folder);
   }
-  print_result(result, context);
+  print_result(result, failed_before, context);
   // If work is left, the task continues later, whatever else happened.
   if (stop_requested() && result.interrupted + result.blocked > 0) {
     context.exit_code = kInterrupted;
   }
-  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
 }
 
 void resume_runs(const RunOptions& options, Context& context) {
   if (options.task) return resume_task(options, context);
   Store store(context.store, Access::write);
   bool failed_before = false;
-  print_result(compute_rest(store, options, failed_before, context), context);
-  if (failed_before && context.exit_code == kDone) context.exit_code = kRunFailed;
+  const CampaignResult result = compute_rest(store, options, failed_before, context);
+  print_result(result, failed_before, context);
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
@@ -218,44 +251,6 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 }
 
 }  // namespace
-
-void print_result(const CampaignResult& result, Context& context) {
-  const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
-  context.exit_code = result.damaged > 0   ? kStoreDamaged
-                      : result.failed > 0  ? kRunFailed
-                      : interrupted        ? kInterrupted
-                      : result.blocked > 0 ? kOtherError
-                                           : kDone;
-  if (context.json) {
-    print_json({{"completed", result.completed},
-                {"already_done", result.already},
-                {"done_elsewhere", result.elsewhere},
-                {"failed", result.failed},
-                {"interrupted", result.interrupted},
-                {"not_begun", result.blocked},
-                {"damaged", result.damaged},
-                {"messages", result.messages},
-                {"warnings", context.warnings}});
-  } else if (result.completed + result.already + result.elsewhere + result.failed +
-                 result.interrupted + result.blocked + result.damaged ==
-             0) {
-    fmt::print("nothing is left to compute\n");
-  } else {
-    fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not started\n",
-               counted(result.completed, "stage"), result.already, result.failed,
-               result.interrupted, result.blocked);
-    if (result.elsewhere > 0) {
-      fmt::print("{} computed by other programs meanwhile\n", counted(result.elsewhere, "stage"));
-    }
-    if (result.damaged > 0) {
-      fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
-    }
-  }
-  if (context.exit_code == kInterrupted) {
-    print_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
-                 shell_word(context.store));
-  }
-}
 
 void add_run(CLI::App& app, Context& context) {
   const auto [command, options] =

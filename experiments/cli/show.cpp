@@ -196,26 +196,26 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
             {"wall_grains", wall_grains}};
     measures = measures_at(store, record, context);
   }
-  if (context.json) {
-    nlohmann::json all = to_json(facts_of(record));
-    all.update(to_json(more));
-    if (!pruned) all["measures"] = to_json(measures);
-    return print_json(all);
-  }
   const std::string file =
       pruned ? fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256)
              : fmt::format("{} ({}, hash verified)", record.file,
                            format_bytes(static_cast<double>(record.size)));
-  Facts head = {
-      {"", record.sha256, "checkpoint"},
-      {"", record.state_hash, "state"},
-      {"", record.run, "run"},
-      {"", file, "file"},
-      {"", fmt::format("cycle {:g}, step {}, {:.6g} s", record.cycle, record.step, record.time_s),
-       "time"}};
-  head.insert(head.end(), more.begin(), more.end());
-  print_lines(head);
-  print_lines(measures);
+  Facts facts = {
+      {"sha256", record.sha256, "checkpoint"},
+      {"state_hash", record.state_hash, "state"},
+      {"run", record.run, "run"},
+      {"file", record.file, "file", file},
+      {"cycle", record.cycle, "time",
+       fmt::format("cycle {:g}, step {}, {:.6g} s", record.cycle, record.step, record.time_s)}};
+  facts.insert(facts.end(), more.begin(), more.end());
+  if (!context.json) {
+    print_lines(facts);
+    return print_lines(measures);
+  }
+  nlohmann::json all = to_json(facts_of(record));
+  all.update(to_json(facts));
+  if (!pruned) all["measures"] = to_json(measures);
+  print_json(all);
 }
 
 // --- Figures and their files ---
@@ -349,12 +349,23 @@ void print(const FigureLineage& lineage, bool list) {
   makers.print();
 }
 
+// `check`: of a file, or empty.
+void show(const FigureLineage& lineage, const Facts& check, bool list, const Context& context) {
+  if (context.json) {
+    nlohmann::json all = to_json(lineage);
+    if (!check.empty()) all["check"] = to_json(check);
+    return print_json(all);
+  }
+  print_lines(check);
+  if (!check.empty()) print_text("\n");
+  print(lineage, list);
+}
+
 void show_figure(const Store& store, const FigureRecord& record, bool list, Context& context) {
   const FigureLineage lineage = figure_lineage(store, record);
   const auto is_right = [](const FigureInput& input) { return input.fault.empty(); };
   if (!std::ranges::all_of(lineage.inputs, is_right)) fail(context, kStoreDamaged);
-  if (context.json) return print_json(to_json(lineage));
-  print(lineage, list);
+  show(lineage, {}, list, context);
 }
 
 Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
@@ -403,15 +414,7 @@ void show_published(const Store& store, const std::filesystem::path& file, bool 
   if (damaged || !found->matches()) fail(context, kStoreDamaged);
   std::size_t inputs = 0;
   for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();
-  const Facts check = facts_of(file, *found, faults, inputs);
-  if (context.json) {
-    nlohmann::json all = to_json(lineage);
-    all["check"] = to_json(check);
-    return print_json(all);
-  }
-  print_lines(check);
-  print_text("\n");
-  print(lineage, list);
+  show(lineage, facts_of(file, *found, faults, inputs), list, context);
 }
 
 // The newest record of "drag/desk/S2"; also of "drag/S2" and "S2" if no other figure has that name.

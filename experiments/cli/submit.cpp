@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `submit`: queues the rest of a campaign on a cluster as an array job.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
+#include "experiments/runner/campaign.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -137,11 +137,6 @@ json event_facts(const LoadedManifests& loaded) {
           {"scales", json_list(loaded.plans, [](const Plan& plan) { return plan.scale; })}};
 }
 
-std::optional<Store> open_to_submit(const fs::path& folder) {
-  require_slurm();
-  return std::optional<Store>(std::in_place, folder, Access::create);
-}
-
 /// Merges what earlier submissions computed and no job merged, as after `scancel`, and declares the
 /// runs.
 void prepare(Store& store, const std::vector<Submission>& open, const LoadedManifests& loaded) {
@@ -186,8 +181,10 @@ void submit(const SubmitOptions& options, Context& context) {
   }
   const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
   if (const std::string why = unfit_path(folder); !why.empty()) throw std::runtime_error(why);
-  std::optional<Store> store =
-      options.dry_run ? open_if_there(context.store) : open_to_submit(folder);
+  if (!options.dry_run) require_slurm();
+  std::optional<Store> store = options.dry_run
+                                   ? open_if_there(context.store)
+                                   : std::optional<Store>(std::in_place, folder, Access::create);
   const std::size_t seen = store ? store->events(kSubmissions).size() : 0;
   const QueueView queue = store ? view_queue(*store) : QueueView();
   if (!queue.problem.empty()) {

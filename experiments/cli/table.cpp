@@ -31,7 +31,7 @@ void table(const TableOptions& options, Context& context) {
       curve != nullptr ? curve_table(store, options.selection, *curve, how)
                        : run_table(store, options.selection, value_of<RowPer>(options.per).value(),
                                    how, options.simulated);
-  const std::string text = context.json               ? to_json_with_notes(made)
+  const std::string text = context.json               ? to_json(made, true)
                            : options.format == "json" ? to_json(made)
                                                       : to_csv(made);
   if (to_stdout) {

@@ -46,17 +46,16 @@ double last_cycle(const Figure& figure, const CollectedRun& run) {
   return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
 }
 
-/// The run's checkpoints for the figure, up to the run's end for this experiment. A figure that
-/// measures nothing gets only the last one.
-std::vector<CheckpointRecord> checkpoints_of(const Store& store, const Figure& figure,
-                                             const CollectedRun& run) {
+/// Adds the checkpoints that the figure takes, up to the run's end. A figure that measures nothing
+/// takes only the last one.
+void add_checkpoints(const Store& store, const Figure& figure, CollectedRun& run) {
   const Ask ask = ask_for(figure, run);
-  std::vector<CheckpointRecord> found =
+  const std::vector<CheckpointRecord> found =
       checkpoints_for(store, run.stage, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
-  if (figure.form == FigureForm::table && !found.empty()) {
-    found.erase(found.begin(), --found.end());
+  const bool last_only = figure.form == FigureForm::table;
+  for (const CheckpointRecord& record : found) {
+    if (!last_only || &record == &found.back()) run.checkpoints.push_back({record});
   }
-  return found;
 }
 
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
@@ -236,25 +235,55 @@ void share_needs(std::vector<WantedFigure>& figures) {
 
 }  // namespace
 
-FigureRun unmeasured(const CollectedRun& input) {
-  const nlohmann::json& resolved = input.stage.resolved;
-  if (!resolved.is_object() ||
-      !resolved.value("parameters", nlohmann::json::object()).is_object()) {
-    throw StoreDamaged(fmt::format(
-        "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
-        input.stage.id));
-  }
-  nlohmann::json parameters = effective_parameters(resolved);
+FigureRun figure_run(CollectedRun run) {
+  nlohmann::json parameters = effective_parameters(run.stage.resolved);
   parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
-  return {input.ask,
-          input.stage.id,
-          input.packing,
-          input.name,
-          input.named,
-          std::move(parameters),
-          {},
-          std::min(input.end, input.stage.cycle),
-          input.core_time_s};
+  FigureRun made{run.ask,
+                 run.stage.id,
+                 std::move(run.packing),
+                 std::move(run.name),
+                 run.named,
+                 std::move(parameters),
+                 {},
+                 std::min(run.end, run.stage.cycle),
+                 run.core_time_s};
+  for (CollectedCheckpoint& one : run.checkpoints) {
+    if (std::ranges::count(one.lacking, "scalars") > 0) continue;
+    made.checkpoints.push_back({one.cycle, std::move(one.sha256), std::move(one.measures)});
+  }
+  return made;
+}
+
+void measure_runs(const Store& store, std::vector<CollectedRun>& runs,
+                  std::span<const std::string> providers, const MeasureOptions& options,
+                  MeasureOutcome& outcome,
+                  const std::function<bool(const CollectedRun&, std::size_t)>& wanted) {
+  std::map<std::uint64_t, std::vector<CollectedRun*>> by_cadence;  // runs may share a stage
+  for (CollectedRun& run : runs) by_cadence[run.ask.checkpoint_every].push_back(&run);
+  for (const auto& [every, group] : by_cadence) {
+    std::vector<CheckpointRecord> records;
+    std::vector<CollectedCheckpoint*> chosen;
+    MeasureOptions with_cadence = options;
+    for (CollectedRun* run : group) {
+      with_cadence.cadence[run->stage.id] = every;
+      for (std::size_t k = 0; k < run->checkpoints.size(); ++k) {
+        if (wanted && !wanted(*run, k)) continue;
+        records.push_back(run->checkpoints[k]);
+        chosen.push_back(&run->checkpoints[k]);
+      }
+    }
+    if (records.empty()) continue;
+    MeasuredCheckpoints found = measure_checkpoints(store, records, providers, with_cadence);
+    for (std::size_t n = 0; n < chosen.size(); ++n) {
+      chosen[n]->measures = std::move(found.measures[n]);
+      chosen[n]->lacking = std::move(found.lacking[n]);
+    }
+    outcome.measured += found.measured;
+    outcome.cached += found.cached;
+    add_unread(found, outcome);
+    for (auto& [run, steps] : found.earlier) outcome.earlier[run].merge(steps);
+    if (!found.cache_trouble.empty()) outcome.cache_trouble = std::move(found.cache_trouble);
+  }
 }
 
 std::string WantedFigure::path() const {
@@ -347,18 +376,15 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
         wanted.path()));
   }
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
-  std::map<std::string, std::string> packings;  // by the stage before
   for (Run& run : newest.runs) {
     CollectedRun& one = collected.runs.emplace_back(CollectedRun{std::move(run)});
-    const auto [packing, fresh] = packings.try_emplace(one.stage.parent);
-    if (fresh) packing->second = packing_of(store, one.stage);
-    one.packing = packing->second;
+    one.packing = packing_of(store, one.stage);
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);
     std::erase_if(collected.runs, [&](const CollectedRun& run) {
-      return wanted.figure.uses && !wanted.figure.uses(unmeasured(run));
+      return wanted.figure.uses && !wanted.figure.uses(figure_run(run));
     });
   } else {
     std::set<std::pair<std::string, std::string>> known;
@@ -369,12 +395,22 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   for (CollectedRun& run : collected.runs) {
     run.end = measured ? end_for(store, run.stage, run.ask, measuring)
                        : static_cast<double>(run.ask.target_cycles);
-    run.checkpoints = checkpoints_of(store, wanted.figure, run);
+    add_checkpoints(store, wanted.figure, run);
   }
   if (measured) {
     leave_out_not_begun(wanted.figure, collected);
     if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
     note_never_made(store, wanted.figure, collected);
+  }
+  for (const CollectedRun& run : collected.runs) {
+    const nlohmann::json& resolved = run.stage.resolved;
+    if (resolved.is_object() &&
+        resolved.value("parameters", nlohmann::json::object()).is_object()) {
+      continue;
+    }
+    throw StoreDamaged(fmt::format(
+        "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
+        run.stage.id));
   }
   return collected;
 }

@@ -19,26 +19,20 @@ struct FigureOptions : MeasureOptions {
   bool wide = false;  ///< drawn as wide as two columns of a journal
 };
 
-struct FigureSummary : MeasureOutcome {
+/// A figure: its panels, its verdicts, and what was left out.
+struct ComputedFigure : MeasureOutcome, FigureResult {
   std::string name;
   std::string title;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
+  std::map<std::string, std::size_t> runs_by_variant;  ///< names, for people
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
-  std::vector<std::filesystem::path> files;  ///< CSV, SVG, PDF of each panel, verdict, lineage
-  std::vector<Verdict> verdicts;             ///< on the supplement's claims
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
   std::vector<std::string> empty;            ///< names of tables without a value to draw
+  nlohmann::json lineage;                    ///< the figure's record; `outputs` of draw_figure()
+  std::vector<std::filesystem::path> files;  ///< of draw_figure(): CSV, SVG, PDF of each panel, ...
   std::vector<std::string> undrawn;          ///< why drawings are missing, one line each
-};
-
-/// A figure before it is written.
-struct ComputedFigure {
-  FigureSummary summary;  ///< without files
-  FigureResult result;
-  std::map<std::string, std::size_t> runs_by_variant;
-  nlohmann::json lineage;  ///< the figure's record; `outputs` is empty
 };
 
 /// Computes tables, verdicts and inputs of a figure. Writes only measures into derived.sqlite;
@@ -56,6 +50,6 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// figure that the new one lacks. Records a FigureGenerated event with host and build, unless the
 /// newest event of this figure says the same or a drawing failed (gnuplot may be missing). The same
 /// checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
-FigureSummary draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
+ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

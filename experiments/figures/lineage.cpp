@@ -107,17 +107,6 @@ const ManifestText* remember_manifest(const Store& store, FigureLineage& lineage
   return &lineage.manifests.back();
 }
 
-json attempt_json(const Attempt& attempt, std::size_t number) {
-  return {{"attempt", number},
-          {"event", attempt.seq},
-          {"started_at", attempt.started_at},
-          {"ended_at", attempt.ended_at},
-          {"outcome", name_of(attempt.outcome)},
-          {"why", attempt.why},
-          {"host", attempt.host},
-          {"from", {{"run", attempt.from_run}, {"checkpoint", attempt.from_checkpoint}}}};
-}
-
 json checkpoint_json(const std::string& sha256, const RunLineage& run) {
   const CheckpointHistory* known = run.find(sha256);
   if (known == nullptr) return {{"sha256", sha256}, {"known", false}};
@@ -137,8 +126,16 @@ json checkpoint_json(const std::string& sha256, const RunLineage& run) {
 
 json stage_json(const RunLineage& stage) {
   json attempts = json::array();
-  for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
-    attempts.push_back(attempt_json(stage.attempts[a], a + 1));
+  for (const Attempt& attempt : stage.attempts) {
+    attempts.push_back(
+        {{"attempt", attempts.size() + 1},
+         {"event", attempt.seq},
+         {"started_at", attempt.started_at},
+         {"ended_at", attempt.ended_at},
+         {"outcome", name_of(attempt.outcome)},
+         {"why", attempt.why},
+         {"host", attempt.host},
+         {"from", {{"run", attempt.from_run}, {"checkpoint", attempt.from_checkpoint}}}});
   }
   return {{"run", stage.stage.id},
           {"kind", stage.stage.kind},

@@ -2,9 +2,9 @@
 #include "experiments/figures/run_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -14,8 +14,10 @@
 #include "analysis/onset.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 
@@ -23,19 +25,13 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
+using nlohmann::ordered_json;
 
 /// The source of the cells of a row.
 struct Row {
-  const Run* selected = nullptr;
-  const CheckpointRecord* checkpoint = nullptr;  // null for a run that was not started
-  Measures measures = {};
+  const CollectedRun* run = nullptr;
+  const CollectedCheckpoint* checkpoint = nullptr;  // null for a run that was not started
   const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
-};
-
-/// A run with its checkpoints and the measures of each.
-struct MeasuredRun : Run {
-  std::vector<CheckpointRecord> records = {};
-  std::vector<Measures> measures = {};
 };
 
 struct Column : TableColumn {
@@ -47,13 +43,14 @@ json number(double value) {
 }
 
 template <class Value>
-Column of_run(const char* name, const char* meaning, Value value) {
-  return {{name, meaning}, [value](const Row& row) -> json { return value(*row.selected); }};
+Column of_run(std::string_view name, std::string_view meaning, Value value) {
+  return {{std::string(name), std::string(meaning)},
+          [value](const Row& row) -> json { return value(*row.run); }};
 }
 
 template <class Value>
-Column of_checkpoint(const char* name, const char* meaning, Value value) {
-  return {{name, meaning}, [value](const Row& row) -> json {
+Column of_checkpoint(std::string_view name, std::string_view meaning, Value value) {
+  return {{std::string(name), std::string(meaning)}, [value](const Row& row) -> json {
             return row.checkpoint == nullptr ? json() : json(value(*row.checkpoint));
           }};
 }
@@ -78,12 +75,6 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// Counts are whole numbers.
-json cell_of(const Measure& measure, double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return measure.kind == MeasureKind::count ? json(static_cast<std::uint64_t>(value)) : json(value);
-}
-
 /// The numbers of a checkpoint; simulated ones only of the providers that `simulated` names.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
@@ -92,9 +83,11 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
     const bool listed = std::ranges::find(simulated, by.name) != simulated.end();
     if (by.from == ComputedFrom::simulation && !listed) continue;
     columns.push_back(
-        {{std::string(measure->name), std::string(measure->meaning)}, [measure](const Row& row) {
-           return cell_of(*measure, row.measures.number(measure->name));
-         }});
+        of_checkpoint(measure->name, measure->meaning, [measure](const CollectedCheckpoint& c) {
+          const double value = c.measures.number(measure->name);
+          const bool count = measure->kind == MeasureKind::count && std::isfinite(value);
+          return count ? json(static_cast<std::uint64_t>(value)) : number(value);
+        }));
   }
   return columns;
 }
@@ -136,10 +129,10 @@ std::vector<Column> ends() {
 
 /// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
-json swept_value(const Field& field, const Run& selected) try {
-  const auto value = selected.ask.swept.find(field.name);
-  if (value != selected.ask.swept.end()) return *value;
-  const StageInputs record = read_stage(selected.stage.resolved);
+json swept_value(const Field& field, const Run& run) try {
+  const auto value = run.ask.swept.find(field.name);
+  if (value != run.ask.swept.end()) return *value;
+  const StageInputs record = read_stage(run.stage.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? field.get(record.parameters) : json();
 } catch (const UnreadableRecord&) {
@@ -147,22 +140,22 @@ json swept_value(const Field& field, const Run& selected) try {
 }
 
 /// The columns that distinguish runs.
-std::vector<Column> columns_of_runs(const std::vector<MeasuredRun>& runs,
+std::vector<Column> columns_of_runs(const std::vector<CollectedRun>& runs,
                                     const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
-  for (const MeasuredRun& run : runs) {
+  for (const CollectedRun& run : runs) {
     for (const auto& [key, value] : run.ask.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
-    columns.push_back({{std::string(field.name), std::string(field.doc)},
-                       [&field](const Row& row) { return swept_value(field, *row.selected); }});
+    columns.push_back(of_run(field.name, field.doc,
+                             [&field](const Run& run) { return swept_value(field, run); }));
   }
   return columns;
 }
 
-std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per,
+std::vector<Column> columns_for(const std::vector<CollectedRun>& runs, RowPer per,
                                 const VariantNames& variants,
                                 std::span<const std::string> simulated) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
@@ -171,75 +164,36 @@ std::vector<Column> columns_for(const std::vector<MeasuredRun>& runs, RowPer per
   return columns;
 }
 
-std::vector<MeasuredRun> select(const Store& store, const RunSelection& selection,
-                                const MeasureOptions& options, RunTable& table) {
+std::vector<CollectedRun> select(const Store& store, const RunSelection& selection,
+                                 const MeasureOptions& options, RunTable& table) {
   NewestRuns newest = newest_runs(select_runs(store, selection));
   table.notes = std::move(newest.notes);
-  std::vector<MeasuredRun> runs;
+  std::vector<CollectedRun> runs;
   for (Run& selected : newest.runs) {
-    MeasuredRun& run = runs.emplace_back(MeasuredRun{std::move(selected)});
-    run.records = checkpoints_for(store, run.stage, run.ask, options);
-    run.measures.resize(run.records.size());
+    CollectedRun& run = runs.emplace_back(CollectedRun{std::move(selected)});
+    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run.ask, options)) {
+      run.checkpoints.push_back({std::move(record)});
+    }
   }
   return runs;
 }
 
-/// Measures the checkpoints of all runs for which `wanted(run, place)` holds. Adds the problems to
-/// the table.
-template <class Wanted>
-void measure_where(const Store& store, std::span<const std::string> names,
-                   const MeasureOptions& options, std::vector<MeasuredRun>& runs,
-                   const Wanted& wanted, RunTable& table) {
-  // By cadence: experiments that share a run may ask for different ones.
-  std::map<std::uint64_t, std::vector<MeasuredRun*>> groups;
-  for (MeasuredRun& run : runs) groups[run.ask.checkpoint_every].push_back(&run);
-  for (const auto& [every, group] : groups) {
-    std::vector<CheckpointRecord> records;
-    std::vector<Measures*> measures;
-    MeasureOptions with_cadence = options;
-    for (MeasuredRun* run : group) {
-      with_cadence.cadence[run->stage.id] = every;
-      for (std::size_t k = 0; k < run->records.size(); ++k) {
-        if (!wanted(*run, k)) continue;
-        records.push_back(run->records[k]);
-        measures.push_back(&run->measures[k]);
-      }
+/// Notes how many measures of checkpoints with a file need another file, which is gone.
+void note_lacking(const std::vector<CollectedRun>& runs, RunTable& table) {
+  std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
+  for (const CollectedRun& run : runs) {
+    for (const CollectedCheckpoint& one : run.checkpoints) {
+      if (one.state == CheckpointState::pruned) continue;
+      for (const std::string& name : one.lacking) ++lacking[name];
     }
-    if (records.empty()) continue;
-    MeasuredCheckpoints found = measure_checkpoints(store, records, names, with_cadence);
-    std::map<std::string, std::size_t> lacking;  // providers, and checkpoints with a file
-    for (std::size_t n = 0; n < measures.size(); ++n) {
-      *measures[n] = std::move(found.measures[n]);
-      if (records[n].state == CheckpointState::pruned) continue;
-      for (const std::string& name : found.lacking[n]) ++lacking[name];
-    }
-    for (const auto& [name, count] : lacking) {
-      if (provider(name).earlier.empty()) continue;
-      table.notes.push_back(
-          fmt::format("{} with a file: no {}, since a checkpoint before {} is pruned or damaged; "
-                      "`shearcell regenerate` restores it",
-                      counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
-    }
-    add_unread(found, table);
-    if (!found.cache_trouble.empty()) table.cache_trouble = found.cache_trouble;
   }
-}
-
-FigureRun history_of(const Store& store, const Run& selected, std::span<const Row> rows) {
-  FigureRun history;
-  static_cast<Place&>(history) = selected.ask;
-  const double last = rows.empty() ? 0 : rows.back().checkpoint->cycle;
-  history.core_time_s = computing_time(store, selected.stage.id, last).core_seconds;
-  history.run_id = selected.stage.id;
-  history.parameters = effective_parameters(selected.stage.resolved);
-  for (const Row& row : rows) {
-    if (!row.measures.numbers.contains("phi") ||
-        row.checkpoint->cycle != std::floor(row.checkpoint->cycle))
-      continue;
-    history.checkpoints.emplace_back().cycle = row.checkpoint->cycle;
-    history.checkpoints.back().measures = row.measures;
+  for (const auto& [name, count] : lacking) {
+    if (provider(name).earlier.empty()) continue;
+    table.notes.push_back(
+        fmt::format("{} with a file: no {}, since a checkpoint before {} is pruned or damaged; "
+                    "`shearcell regenerate` restores it",
+                    counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
   }
-  return history;
 }
 
 }  // namespace
@@ -264,35 +218,35 @@ std::vector<std::string> simulating_providers() {
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated) {
   RunTable table;
-  std::vector<MeasuredRun> runs = select(store, selection, options, table);
+  std::vector<CollectedRun> runs = select(store, selection, options, table);
   std::vector<std::string> names = table_providers();
   const std::vector<std::string> scalars = {names.front()};
   names.insert(names.end(), simulated.begin(), simulated.end());
-  const auto has_row = [per](const MeasuredRun& run, std::size_t k) {
-    return per == RowPer::checkpoint || k + 1 == run.records.size();
+  const auto has_row = [per](const CollectedRun& run, std::size_t k) {
+    return per == RowPer::checkpoint || k + 1 == run.checkpoints.size();
   };
-  measure_where(store, names, options, runs, has_row, table);
+  measure_runs(store, runs, names, options, table, has_row);
   // Onsets need only the scalars of the other checkpoints.
-  measure_where(store, scalars, options, runs, std::not_fn(has_row), table);
+  measure_runs(store, runs, scalars, options, table, std::not_fn(has_row));
+  note_lacking(runs, table);
   const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), simulated);
   table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     std::vector<json>& cells = table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
   };
-  for (MeasuredRun& run : runs) {
-    std::vector<Row> rows;
-    for (std::size_t k = 0; k < run.records.size(); ++k) {
-      rows.push_back({&run, &run.records[k], std::move(run.measures[k])});
-    }
+  for (CollectedRun& run : runs) {
     if (per == RowPer::checkpoint) {
-      for (const Row& row : rows) add(row);
+      for (const CollectedCheckpoint& checkpoint : run.checkpoints) add({&run, &checkpoint});
       continue;
     }
-    const FigureRun& history = table.histories.emplace_back(history_of(store, run, rows));
-    Row last = rows.empty() ? Row{&run} : rows.back();
-    if (run.stage.kind == name_of(StageKind::shear)) last.history = &history;
-    add(last);
+    const auto* last = run.checkpoints.empty() ? nullptr : &run.checkpoints.back();
+    const double end = last == nullptr ? 0 : last->cycle;
+    run.core_time_s = computing_time(store, run.stage.id, end).core_seconds;
+    FigureRun& history = table.histories.emplace_back(figure_run(run));
+    std::erase_if(history.checkpoints,
+                  [](const CheckpointMeasures& one) { return one.cycle != std::floor(one.cycle); });
+    add({&run, last, run.stage.kind == name_of(StageKind::shear) ? &history : nullptr});
   }
   return table;
 }
@@ -301,19 +255,19 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
                      const MeasureOptions& options) {
   const std::string provider = provider_of(measure).name;
   RunTable table;
-  std::vector<MeasuredRun> runs = select(store, selection, options, table);
-  const auto all = [](const MeasuredRun&, std::size_t) { return true; };
-  measure_where(store, {&provider, 1}, options, runs, all, table);
+  std::vector<CollectedRun> runs = select(store, selection, options, table);
+  measure_runs(store, runs, {&provider, 1}, options, table);
+  note_lacking(runs, table);
   std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
   table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
-  for (MeasuredRun& run : runs) {
-    for (std::size_t k = 0; k < run.records.size(); ++k) {
-      const MeasuredCurve& curve = run.measures[k].curves[std::string(measure.name)];
+  for (CollectedRun& run : runs) {
+    for (CollectedCheckpoint& checkpoint : run.checkpoints) {
+      const MeasuredCurve& curve = checkpoint.measures.curves[std::string(measure.name)];
       std::vector<json> cells;
-      for (const Column& column : columns) cells.push_back(column.cell({&run, &run.records[k]}));
+      for (const Column& column : columns) cells.push_back(column.cell({&run, &checkpoint}));
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
         table.rows.push_back(cells);
         table.rows.back().push_back(number(curve.x[i]));
@@ -332,11 +286,45 @@ std::vector<TableColumn> table_columns() {
 
 std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
                                                    const Measures& found) {
+  const CollectedCheckpoint checkpoint{record, found};
   std::vector<std::pair<TableColumn, json>> facts;
   for (const Column& column : measures({})) {
-    facts.emplace_back(column, column.cell({nullptr, &record, found}));
+    facts.emplace_back(column, column.cell({nullptr, &checkpoint}));
   }
   return facts;
+}
+
+std::string to_csv(const RunTable& table) {
+  std::string text = fmt::format("{}\n", fmt::join(names_of(table.columns), ","));
+  for (const std::vector<json>& row : table.rows) {
+    std::vector<std::string> cells;
+    for (const json& value : row) {
+      cells.push_back(value.is_null() ? "" : csv_field(value_text(value)));
+    }
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+std::string to_json(const RunTable& table, bool notes) {
+  ordered_json value = ordered_json::array();
+  for (const std::vector<json>& row : table.rows) {
+    ordered_json& object = value.emplace_back(ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
+  }
+  if (notes) {
+    value = {{"rows", std::move(value)},
+             {"notes", table.notes},
+             {"damage", table.damage},
+             {"pruned", table.pruned}};
+  }
+  return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+bool is_table(std::string_view beginning) {
+  return beginning.starts_with("experiment,scale,variant,run,seed,") || beginning == "[]\n" ||
+         beginning.starts_with("[\n {\n  \"experiment\": ") ||
+         beginning.starts_with("{\n \"rows\": [");
 }
 
 }  // namespace shearcell

@@ -10,9 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/figure.hpp"
-#include "experiments/figures/select_runs.hpp"
-#include "experiments/runner/measure.hpp"
+#include "experiments/figures/collect.hpp"
 
 namespace shearcell {
 
@@ -64,12 +62,10 @@ std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(const CheckpointRec
 
 /// RFC 4180 with a header row; numbers have the shortest digits that read back to the same double.
 std::string to_csv(const RunTable& table);
-/// An array of objects, one for each row, keys in the order of the columns.
-std::string to_json(const RunTable& table);
-
-/// An object: `rows`, those of to_json(); `notes` on runs that were left out; `damage` and
-/// `pruned`, the checkpoints that were not measured.
-std::string to_json_with_notes(const RunTable& table);
+/// An array of objects, one for each row, keys in the order of the columns. With `notes` an object:
+/// `rows`, that array; `notes` on runs that were left out; `damage` and `pruned`, the checkpoints
+/// that were not measured.
+std::string to_json(const RunTable& table, bool notes = false);
 
 /// Whether a file begins like the CSV or the JSON.
 bool is_table(std::string_view beginning);

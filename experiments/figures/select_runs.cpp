@@ -32,8 +32,9 @@ auto place(const Place& m) {
   return std::tie(m.experiment, m.scale, m.variant, m.seed);
 }
 
-bool at_same_scale(const Place& a, const Place& b) {
-  return a.experiment == b.experiment && a.scale == b.scale;
+using ExperimentScale = std::pair<std::string, std::string>;
+ExperimentScale experiment_scale(const Place& m) {
+  return {m.experiment, m.scale};
 }
 
 /// The places of the run in each experiment at each scale: those in the newest version of the
@@ -41,8 +42,7 @@ bool at_same_scale(const Place& a, const Place& b) {
 std::vector<Ask> places_of(const Stage& run) {
   std::vector<Ask> places;
   for (const Ask& m : run.asks) {
-    const auto known =
-        std::ranges::find_if(places, [&](const Ask& other) { return at_same_scale(m, other); });
+    const auto known = std::ranges::find(places, experiment_scale(m), experiment_scale);
     if (known == places.end() || (known->newest && m.newest)) {
       places.push_back(m);
     } else if (m.newest || !known->newest) {
@@ -58,11 +58,6 @@ std::vector<Ask> places_of(const Stage& run) {
 bool in_order(const Run& a, const Run& b) {
   const auto key = [](const Ask& m) { return std::tie(m.experiment, m.scale, m.swept, m.seed); };
   return key(a.ask) < key(b.ask);
-}
-
-using ExperimentScale = std::pair<std::string, std::string>;
-ExperimentScale experiment_scale(const Place& m) {
-  return {m.experiment, m.scale};
 }
 
 /// Says where an edited manifest asks for fewer cycles than an older version made.

@@ -19,6 +19,8 @@ struct RunSelection {
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::string> states = {};  ///< names of StageState
   bool packings = false;                 ///< settled packings too, whose variant is "packing"
+
+  bool operator==(const RunSelection&) const = default;
 };
 
 /// Returns the runs in the order of declaration, without names. Ask::newest is false for a run of

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/html.hpp"
 
-#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <kainjow/mustache.hpp>

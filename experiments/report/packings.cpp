@@ -17,7 +17,6 @@
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
-#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -50,12 +49,9 @@ std::byte byte_of(const GrainField& field, double value) {
 
 constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
-struct ChosenRun {
-  Stage stage;
-  Ask ask;
-  std::vector<CheckpointRecord> checkpoints;  // fit() reduces them to those to show
-  std::size_t bytes = 0;                      // of one checkpoint in the page
-  std::size_t grains = 0;
+struct ChosenRun : Run {
+  std::vector<CheckpointRecord> checkpoints = {};  // fit() reduces them to those to show
+  std::size_t bytes = 0;                           // of one checkpoint in the page
   std::size_t wall_grains = 0;
 };
 
@@ -71,18 +67,16 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
-  for (const Run& one : runs) {
-    const Stage& run = one.stage;
-    const Ask& member = one.ask;
-    if (member.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run, run.asks);
+  for (const Run& run : runs) {
+    if (run.ask.experiment != experiment) continue;
+    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run.stage, run.stage.asks);
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
-    auto same = std::ranges::find(last, member.variant,
+    auto same = std::ranges::find(last, run.ask.variant,
                                   [](const ChosenRun& other) { return other.ask.variant; });
     if (same == last.end()) same = last.emplace(last.end());
-    *same = {run, member, std::move(checkpoints)};
+    *same = {run, std::move(checkpoints)};
   }
   thin_out(last, limit);
   return last;
@@ -91,14 +85,11 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;
-  if (!choice.runs.empty()) {
-    for (const std::string& id : choice.runs) {
-      const Stage run = store.find_stage(id);
-      chosen.push_back({run, first_ask(run), store.checkpoints(run.id)});
-    }
-    std::erase_if(chosen, [](const ChosenRun& run) { return run.checkpoints.empty(); });
-    return chosen;
+  for (const std::string& id : choice.runs) {
+    const Stage run = store.find_stage(id);
+    chosen.push_back({{run, first_ask(run)}, store.checkpoints(run.id)});
   }
+  if (!choice.runs.empty()) return chosen;
   std::set<std::string> known;
   const std::vector<Run> runs = newest_runs(select_runs(store, selection)).runs;
   for (const std::string& experiment : experiments) {
@@ -125,8 +116,7 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
       try {
         const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
         run.wall_grains = last.cell.wall_grains.size();
-        run.grains = static_cast<std::size_t>(last.state.position.cols());
-        run.bytes = frame_size_in_page(run.grains, run.wall_grains, fields) + kFactsInPage;
+        run.bytes = frame_size_in_page(run.stage.grains, run.wall_grains, fields) + kFactsInPage;
       } catch (const StoreDamaged& damage) {
         packings.notes.emplace_back(damage.what());
         run.checkpoints.pop_back();
@@ -350,7 +340,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
                              {"label", fmt::format("{}, seed {}, N = {}", names.of(run.ask),
                                                    run.ask.seed, run.stage.grains)},
                              {"experiment", run.ask.experiment},
-                             {"grains", run.grains},
+                             {"grains", run.stage.grains},
                              {"wall_grains", run.wall_grains},
                              {"frames", std::move(list)}});
   }

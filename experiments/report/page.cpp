@@ -175,16 +175,8 @@ std::optional<FigureRecord> recorded_as(const Content& content, const FigureLine
   return newest;
 }
 
-std::string span_of_cycles(const FigureInput& input, const RunLineage& run) {
-  std::vector<double> cycles;
-  for (const std::string& sha256 : input.checkpoints) {
-    if (const CheckpointHistory* known = run.find(sha256)) cycles.push_back(known->record.cycle);
-  }
-  return cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front(), cycles.back());
-}
-
 /// Where a figure comes from.
-json lineage_json(const FigureLineage& lineage, const FigureSummary& summary, const json& panels,
+json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
                   const std::optional<FigureRecord>& recorded) {
   std::set<std::string> makers;
   for (const auto& [id, stage] : lineage.runs) {
@@ -206,27 +198,30 @@ json lineage_json(const FigureLineage& lineage, const FigureSummary& summary, co
         {{"brief", brief(manifest.sha256)}, {"path", manifest.path}, {"sha256", manifest.sha256}});
   }
   for (const FigureInput& input : lineage.inputs) {
+    const Cycles& cycles = input.states.cycles;
     std::set<int> lines;
     for (const ManifestLine& line : input.lines) lines.insert(line.line);
-    inputs.push_back({{"brief", brief(input.run)},
-                      {"experiment", input.experiment},
-                      {"variant", input.variant},
-                      {"seed", input.seed},
-                      {"checkpoints", input.checkpoints.size()},
-                      {"cycles", span_of_cycles(input, lineage.runs.at(input.run))},
-                      {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
+    inputs.push_back(
+        {{"brief", brief(input.run)},
+         {"experiment", input.experiment},
+         {"variant", input.variant},
+         {"seed", input.seed},
+         {"checkpoints", input.checkpoints.size()},
+         {"cycles",
+          cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front()[0], cycles.back()[1])},
+         {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
   }
-  const std::string command = "shearcell figures " + summary.name;
+  const std::string command = "shearcell figures " + figure.name;
   return {{"scale", scale_name(lineage.scale)},
-          {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", summary.runs,
-                                 summary.checkpoints, short_text(lineage.analysis_version))},
+          {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", figure.runs,
+                                 figure.checkpoints, short_text(lineage.analysis_version))},
           {"makers", makers},
           {"manifests", manifests},
           {"outputs", outputs},
           {"recorded",
            recorded ? fmt::format("event {} of {}", recorded->seq, recorded->recorded_at) : ""},
           {"command",
-           summary.experiment.empty() ? command : command + " --experiment " + summary.experiment},
+           figure.experiment.empty() ? command : command + " --experiment " + figure.experiment},
           {"record", lineage.record.name},
           {"inputs", inputs}};
 }
@@ -238,41 +233,40 @@ json figure_json(const WantedFigure& wanted, Content& content) {
   how.runs = options.runs;
   how.workers = options.workers;
   how.report = options.measured;
-  const ComputedFigure computed = compute_figure(content.store, wanted, how);
-  const FigureSummary& summary = computed.summary;
+  const ComputedFigure figure = compute_figure(content.store, wanted, how);
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
-      figure_lineage(content.store, {wanted.path(), 0, "", computed.lineage});
+      figure_lineage(content.store, {wanted.path(), 0, "", figure.lineage});
   for (const ManifestText& manifest : lineage.manifests) {
     content.manifests.try_emplace(manifest.sha256, manifest);
   }
   json panels = json::array(), claims = json::array(), warnings = json::array();
-  for (const FigureTable& table : computed.result.tables) {
+  for (const FigureTable& table : figure.tables) {
     panels.push_back(panel_json(table, prefix + table.name, wanted, content));
   }
-  for (const Verdict& verdict : summary.verdicts) {
+  for (const Verdict& verdict : figure.verdicts) {
     claims.push_back({{"ruling", ruling_json(verdict.ruling)},
                       {"claim", verdict.claim},
                       {"numbers", fmt::format("{}: {}{}{}", verdict.quantity, numbers_of(verdict),
                                               verdict.note.empty() ? "" : ". ", verdict.note)}});
   }
-  for (const auto* list : {&summary.damage, &summary.pruned}) {
+  for (const auto* list : {&figure.damage, &figure.pruned}) {
     for (const std::string& line : *list) warnings.push_back("Left out: " + line);
   }
-  for (const std::string& line : summary.notes) warnings.push_back(line);
+  for (const std::string& line : figure.notes) warnings.push_back(line);
   std::vector<std::string>& damage = content.report.damage;
-  damage.insert(damage.end(), summary.damage.begin(), summary.damage.end());
-  for (const auto* list : {&summary.pruned, &summary.notes}) {
+  damage.insert(damage.end(), figure.damage.begin(), figure.damage.end());
+  for (const auto* list : {&figure.pruned, &figure.notes}) {
     content.report.notes.insert(content.report.notes.end(), list->begin(), list->end());
   }
   return {{"id", prefix + wanted.figure.name},
-          {"name", summary.name},
-          {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", summary.name,
-                                  summary.title.empty() ? "" : ". ", summary.title)},
+          {"name", figure.name},
+          {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,
+                                  figure.title.empty() ? "" : ". ", figure.title)},
           {"panels", panels},
           {"claims", claims},
           {"warnings", warnings},
-          {"lineage", lineage_json(lineage, summary, panels, recorded_as(content, lineage))}};
+          {"lineage", lineage_json(lineage, figure, panels, recorded_as(content, lineage))}};
 }
 
 /// A stage with its attempts and checkpoints.

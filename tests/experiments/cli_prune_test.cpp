@@ -321,5 +321,15 @@ TEST_F(Prune, RunKeepsEveryKthFile) {
   }
 }
 
+TEST_F(Prune, RunDeletesNothingIfMeasuresCannotBeKept) {
+  write("m.yaml", tiny_manifest(short_));
+  expect(0, {"run", "m.yaml", "--cycles", "1", "-q", "--store", "thin"});
+  fs::remove(path("thin/derived.sqlite"));
+  fs::create_directories(path("thin/derived.sqlite/in-the-way"));
+  expect(1, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "-q", "--store", "thin"},
+         {"measures cannot be cached", "kept: "});
+  EXPECT_TRUE(Store(path("thin"), Access::read).events("", "CheckpointPruned").empty());
+}
+
 }  // namespace
 }  // namespace shearcell::test

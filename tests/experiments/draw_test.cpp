@@ -43,7 +43,7 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
   draw("after");
   EXPECT_EQ(contents("after"), contents("before"));
 
-  const FigureSummary other = draw("after", {*find_figure("S2"), "other"});
+  const ComputedFigure other = draw("after", {*find_figure("S2"), "other"});
   EXPECT_EQ(other.runs, 4U) << "two of them are those of tiny, extended";
   EXPECT_EQ(other.checkpoints, 4U * 5U);
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "after/other/base/S2a.csv"));
@@ -305,7 +305,7 @@ TEST_F(DrawFigure, GivesTheSameBytesTwiceAndSimulatesNothing) {
   const double steps = particle_steps();
   ASSERT_GT(steps, 0);
   FigureOptions options;
-  const FigureSummary first = draw("one", kS2, options);
+  const ComputedFigure first = draw("one", kS2, options);
   EXPECT_EQ(first.runs, 4U);
   EXPECT_EQ(first.checkpoints, 4U * 3U);
   EXPECT_TRUE(first.damage.empty());
@@ -388,7 +388,7 @@ TEST_F(DrawFigure, RecordsNothingIfADrawingFails) {
          "rsvg-convert could not draw S2a.pdf: it wrote 3000 bytes"},
         {"rsvg-convert", std::string("echo no >&2; exit 1\n"), "it ended with code 1:\nno"}}) {
     const FakeProgram fake(name, script);
-    const FigureSummary summary = draw("out");
+    const ComputedFigure summary = draw("out");
     ASSERT_FALSE(summary.undrawn.empty()) << script;
     EXPECT_TRUE(has(summary.undrawn.front(), failed)) << summary.undrawn.front();
     EXPECT_EQ(summary.undrawn.size(), script == second ? 1U : 2U);
@@ -433,7 +433,7 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
     known.rows = {{1.0, 2.0}};
     return FigureResult{{none, unknown, known}, {}};
   };
-  EXPECT_EQ(compute_figure(store_, made_up, {}).summary.empty,
+  EXPECT_EQ(compute_figure(store_, made_up, {}).empty,
             (std::vector<std::string>{"none", "unknown"}));
 }
 
@@ -442,7 +442,7 @@ TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   const Stage run = runs_of_kind(store_, "shear").back();
   const CheckpointRecord record = store_.checkpoints(run.id).at(1);
   truncate_file(store_.folder() / record.file);
-  const FigureSummary figure = draw("figures");
+  const ComputedFigure figure = draw("figures");
   EXPECT_EQ(figure.checkpoints, 2U * 3U - 1U);
   ASSERT_EQ(figure.damage.size(), 1U);
   std::printf("%s\n", figure.damage[0].c_str());
@@ -461,7 +461,7 @@ TEST_F(DrawFigure, UsesTheRequestedScale) {
   compute(store_, text, {.scale = "smoke"});
   compute(store_, text);
   EXPECT_EQ(draw("last").scale, "desk");
-  const FigureSummary smoke = draw("smoke", kS2, RunSelection{.scales = {"smoke"}});
+  const ComputedFigure smoke = draw("smoke", kS2, RunSelection{.scales = {"smoke"}});
   EXPECT_EQ(smoke.scale, "smoke");
   EXPECT_EQ(smoke.checkpoints, 2U * 3U);
   EXPECT_THROW(draw("paper", kS2, RunSelection{.scales = {"paper"}}), NotFound);

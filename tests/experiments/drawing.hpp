@@ -14,18 +14,18 @@ namespace shearcell::test {
 class DrawingTest : public StoreTest {
  protected:
   /// Draws a figure into that folder beside the store; S2 of the experiment if none is named.
-  FigureSummary draw(const std::string& folder, const WantedFigure& wanted = kS2,
+  ComputedFigure draw(const std::string& folder, const WantedFigure& wanted = kS2,
                      FigureOptions options = {}) {
     options.folder = folder_.path() / folder;
     return draw_figure(store_, wanted, options);
   }
-  FigureSummary draw(const std::string& folder, const WantedFigure& wanted,
+  ComputedFigure draw(const std::string& folder, const WantedFigure& wanted,
                      const RunSelection& runs) {
     FigureOptions options;
     options.runs = runs;
     return draw(folder, wanted, options);
   }
-  FigureSummary draw(const std::string& folder, const std::string& name) {
+  ComputedFigure draw(const std::string& folder, const std::string& name) {
     return draw(folder, wanted_figures(store_, {name}).figures.at(0));
   }
 

@@ -25,7 +25,7 @@ class Measure : public DrawingTest {
  protected:
   void SetUp() override { compute(store_, tiny_manifest("", kBothFluids)); }
 
-  FigureSummary make(const std::string& name) { return draw(name, kS2); }
+  ComputedFigure make(const std::string& name) { return draw(name, kS2); }
   std::string csv(const std::string& name) const {
     const std::filesystem::path folder = folder_.path() / name / "tiny/base";
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
@@ -139,7 +139,7 @@ TEST_F(Measure, EarlierCheckpointsAreInTheLineageAndMissedIfTheyAreGone) {
   EXPECT_TRUE(draw("own", "moved").damage.empty()) << "cached";
   std::filesystem::remove(cache());
   for (const char* name : {"moved", "work"}) {
-    const FigureSummary result = draw("own", name);
+    const ComputedFigure result = draw("own", name);
     EXPECT_EQ(result.damage.size(), 2U) << name;
     EXPECT_TRUE(has(contents("own").at(std::string(name) + ".caption.txt"),
                     "Left out: 2 checkpoints, damaged."));
@@ -175,7 +175,7 @@ TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
 // A run that two experiments have counts in each.
 TEST_F(Measure, RedrawingEveryExperimentMeasuresNothing) {
   compute(store_, renamed(tiny_manifest("", kBothFluids), "other"));
-  const FigureSummary table = draw("table", {*find_figure("table1"), ""});
+  const ComputedFigure table = draw("table", {*find_figure("table1"), ""});
   EXPECT_EQ(table.measured, 0U);
   EXPECT_EQ(table.runs, 2U * 2U);
   EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
@@ -294,7 +294,7 @@ TEST_F(Measure, OfAPrunedCheckpointIsMergedToo) {
   merge_stores(into, {store_.folder()});
   FigureOptions options;
   options.folder = folder_.path() / "second";
-  const FigureSummary figure = draw_figure(into, kS2, options);
+  const ComputedFigure figure = draw_figure(into, kS2, options);
   EXPECT_TRUE(figure.pruned.empty());
   EXPECT_EQ(csv("second"), csv("first"));
 }
@@ -303,7 +303,7 @@ TEST_F(Measure, WorksWithoutAWritableCache) {
   make("first");
   std::filesystem::remove(cache());
   std::filesystem::create_directory(cache());
-  const FigureSummary figure = make("second");
+  const ComputedFigure figure = make("second");
   std::printf("%s\n", figure.cache_trouble.c_str());
   EXPECT_NE(figure.cache_trouble, "");
   EXPECT_EQ(figure.measured, 6U);

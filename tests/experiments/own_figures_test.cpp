@@ -112,7 +112,7 @@ TEST_F(OwnFigures, AClaimSaysThatItsRunsAreNotSelected) {
     const WantedFigure wanted = wanted_figures(store_, {figure}).figures.at(0);
     FigureOptions options;
     options.runs.variants = {"fluid=cell"};
-    for (const Verdict& verdict : compute_figure(store_, wanted, options).summary.verdicts) {
+    for (const Verdict& verdict : compute_figure(store_, wanted, options).verdicts) {
       EXPECT_TRUE(verdict.note.starts_with("only runs with fluid=cell are selected: "))
           << verdict.note;
     }
@@ -199,7 +199,7 @@ TEST_F(OwnFigures, AClaimSaysWhatItsRunsLack) {
   compute(store_,
           tiny_manifest("  cycles: 4\n",
                         kBothFluids + "seeds: 3\ncheckpoints: {every_cycles: 2}\n" + claim));
-  const FigureSummary summary = draw("own", "same");
+  const ComputedFigure summary = draw("own", "same");
   EXPECT_TRUE(has(summary.verdicts.at(0).note, "6 of 6 runs lack a checkpoint of cycles 2 to 3"))
       << summary.verdicts.at(0).note;
 }

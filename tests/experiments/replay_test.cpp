@@ -208,7 +208,7 @@ TEST_F(ReplayTest, ReportsWhereAStateDiverges) {
 TEST_F(ReplayTest, FiguresNamePrunedCheckpoints) {
   const auto records = store_.checkpoints(sheared().id);
   store_.prune({records[1], records[2]});
-  const FigureSummary figure = draw("figures");
+  const ComputedFigure figure = draw("figures");
   EXPECT_TRUE(figure.damage.empty());
   ASSERT_EQ(figure.pruned.size(), 2U);
   for (const std::string& line : figure.pruned) {

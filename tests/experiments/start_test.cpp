@@ -183,7 +183,7 @@ TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
   const auto found =
       collect_runs(store_, wanted_figures(store_, {"S2"}, {"clones"}).figures.at(0), {});
   for (const CollectedRun& run : found.runs) {
-    EXPECT_EQ(unmeasured(run).packing, store_.stage(run.stage.parent).parent) << "one packing";
+    EXPECT_EQ(figure_run(run).packing, store_.stage(run.stage.parent).parent) << "one packing";
   }
 }
 
