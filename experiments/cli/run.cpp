@@ -119,7 +119,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
       fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
     }
   }
-  if (context.exit_code == kInterrupted) {
+  if (interrupted) {
     print_stderr("Interrupted. Continue with: shearcell resume --store {}\n",
                  shell_word(context.store));
   }
