@@ -179,11 +179,12 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
   std::vector<std::size_t> every;
   for (const std::vector<double>& places : groups) {
     every.push_back(histograms.size());
-    std::vector<double>& counts = histograms.emplace_back(bins);
+    std::vector<double> counts(bins);
     for (const double p : places) {
       const double k = p * static_cast<double>(bins);
       ++counts[static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(bins - 1)))];
     }
+    histograms.push_back(std::move(counts));
   }
   std::vector<DensityBin> result;
   const double width = 1 / static_cast<double>(bins);

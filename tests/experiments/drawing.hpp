@@ -15,12 +15,12 @@ class DrawingTest : public StoreTest {
  protected:
   /// Draws a figure into that folder beside the store; S2 of the experiment if none is named.
   ComputedFigure draw(const std::string& folder, const WantedFigure& wanted = kS2,
-                     FigureOptions options = {}) {
+                      FigureOptions options = {}) {
     options.folder = folder_.path() / folder;
     return draw_figure(store_, wanted, options);
   }
   ComputedFigure draw(const std::string& folder, const WantedFigure& wanted,
-                     const RunSelection& runs) {
+                      const RunSelection& runs) {
     FigureOptions options;
     options.runs = runs;
     return draw(folder, wanted, options);
