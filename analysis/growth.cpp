@@ -127,7 +127,10 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (later.size[after] > size) fate.larger += grains;
     if (later.size[after] == size) fate.same += grains;
     if (later.size[after] < size) fate.smaller += grains;
-    if (grains > fate.most) fate.most = grains, fate.end = after;
+    if (grains > fate.most) {
+      fate.most = grains;
+      fate.end = after;
+    }
     if (grains > origins[after].most) origins[after] = {grains, size};
   }
   for (std::size_t c = 0; c < fates.size(); ++c) {

@@ -142,10 +142,12 @@ std::vector<std::string> ObjectStore::strangers(const std::set<std::string>& kno
   std::vector<std::string> found;
   const fs::path objects = folder_ / kFolder;
   if (!fs::is_directory(fs::symlink_status(objects))) return found;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(objects)) {
-    const std::string file = entry.path().lexically_relative(folder_).generic_string();
-    const bool folder = fs::is_directory(entry.symlink_status());
-    if (!folder && !expected.contains(file)) found.push_back(file);
+  const fs::recursive_directory_iterator end;
+  for (fs::recursive_directory_iterator entry(objects); entry != end; ++entry) {
+    if (entry.depth() == 0 && fs::is_directory(entry->symlink_status())) continue;  // objects/ab
+    entry.disable_recursion_pending();
+    const std::string file = entry->path().lexically_relative(folder_).generic_string();
+    if (!expected.contains(file)) found.push_back(file);
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -164,7 +164,11 @@ Store::Writing::Writing(Store& store)
 
 void Store::hold(const std::string& id, std::uint64_t attempt) {
   const std::uint64_t now = now_ms();
-  put_lease(database_, {id, self_, attempt, now, now + lease_ms_});
+  put_lease(database_, {.run = id,
+                        .holder = self_,
+                        .attempt = attempt,
+                        .renewed_at_ms = now,
+                        .expires_at_ms = now + lease_ms_});
 }
 
 sqlite::Database& Store::must_write() const {
@@ -316,6 +320,8 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
 }
 
 void Store::renew_leases() {
+  const std::scoped_lock guard(mutex_);
+  if (held_.empty()) return;
   Writing lock(*this);
   std::erase_if(held_, [this](const auto& run) {
     return !loss_of(database_, self_.token, run.first, run.second).empty();

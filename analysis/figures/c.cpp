@@ -67,13 +67,14 @@ struct AmplitudeGrowth {
   const PublishedAmplitude* published;
   std::vector<const FigureRun*> all_runs;
   std::map<std::int64_t, GrowthAfter> after;  ///< by cycles_to_follow()
-  std::vector<GrowthBySize> runs;             ///< followed over n_bin cycles
   std::optional<double> onset_cycle;          ///< median over runs
   GrowthCurve curve;
-  std::optional<Estimate> critical;
   std::optional<Estimate> without_absorbed;
   std::optional<Estimate> without_vanished;
   Interval repeated;  ///< of 90 % of critical sizes from published_runs
+
+  /// Followed over the supplement's n_bin cycles.
+  const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
 };
 
 constexpr std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73",
@@ -88,7 +89,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
       const std::vector<GrowthBySize> counts = followed(members, cycles);
       after[cycles] = {counts, GrowthCurve(counts).critical_size()};
     }
-    const auto& [counts, critical] = after.at(published.n_bin);
+    const std::vector<GrowthBySize>& counts = after.at(published.n_bin).runs;
     const GrowthCurve curve(counts);
     const std::size_t k = all.size();
     all.push_back({.style = {{{"amplitude_rad", amplitude}},
@@ -99,10 +100,8 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
                    .published = &published,
                    .all_runs = members,
                    .after = after,
-                   .runs = counts,
                    .onset_cycle = median_wait(waits_for_onset(members)),
                    .curve = curve,
-                   .critical = critical,
                    .without_absorbed = critical_size_without(&GrowthCount::absorbed, counts),
                    .without_vanished = critical_size_without(&GrowthCount::vanished, counts),
                    .repeated = curve.repeated_critical_size(published_runs)});
@@ -142,7 +141,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
                             .points = smooth_points(one)});
     Series& data = chart.series.emplace_back(
         Series{.title = one.style.title, .colour = one.style.colour, .point = one.style.point});
-    for (const GrowthRate& bin : growth_rates(one.runs, least_counted)) {
+    for (const GrowthRate& bin : growth_rates(one.published_bin().runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
     ReferenceLine& line =
@@ -157,10 +156,11 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
                     .columns = {"amplitude_rad", "size_grains", "grew", "absorbed", "shrank",
                                 "vanished", "delta_rho", "delta_rho_standard_error", "runs"}};
   for (const AmplitudeGrowth& one : all) {
-    for (const GrowthRate& rate : growth_rates(one.runs)) {
+    for (const GrowthRate& rate : growth_rates(one.published_bin().runs)) {
       const GrowthCount& count = rate.count;
       table.rows.push_back({one.amplitude, rate.size, count.grew, count.absorbed, count.shrank,
-                            count.vanished, rate.delta, rate.delta_error, one.runs.size()});
+                            count.vanished, rate.delta, rate.delta_error,
+                            one.published_bin().runs.size()});
     }
   }
   table.chart = chart_of(all);
@@ -178,12 +178,12 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
   for (const AmplitudeGrowth& one : all) {
     TableRow& row =
         table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
-    for (const auto& size : {one.critical, one.curve.monotone_critical_size(), one.without_absorbed,
-                             one.without_vanished}) {
+    for (const auto& size : {one.published_bin().critical, one.curve.monotone_critical_size(),
+                             one.without_absorbed, one.without_vanished}) {
       add_size(size, row);
     }
     row.insert(row.end(), {one.repeated.low, one.repeated.high, one.published->critical_size,
-                           one.runs.size()});
+                           one.published_bin().runs.size()});
   }
   table.chart = {.x = amplitude_axis(),
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
@@ -280,28 +280,29 @@ std::string in_grains(const std::optional<Estimate>& size) {
 
 /// The supplement's number is from few runs and scatters as ours from so many would.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
+  const auto& [runs, critical] = one.published_bin();
   const double published = one.published->critical_size;
   const auto [low, high] = one.repeated;
   std::string note = fmt::format("crystallites followed over {} cycles in {} of {} runs",
-                                 one.published->n_bin, one.runs.size(), one.all_runs.size());
+                                 one.published->n_bin, runs.size(), one.all_runs.size());
   if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
   std::optional<Estimate> relative;
-  if (one.critical) {
-    const double size = one.critical->value;
+  if (critical) {
+    const double size = critical->value;
     note += fmt::format("; {:.3g} grains, {} if delta_rho may only rise with size", size,
                         in_grains(one.curve.monotone_critical_size()));
     note += fmt::format("; with {} runs 90 % of repetitions would give {} to {}", published_runs,
                         in_grains(low), in_grains(high));
-    relative = ratio(*one.critical, {.value = published,
-                                     .interval = {published * size / high, published * size / low},
-                                     .runs = one.critical->runs});
+    relative = ratio(*critical, {.value = published,
+                                 .interval = {published * size / high, published * size / low},
+                                 .runs = critical->runs});
     relative = mapped(*relative, [](double ratio) { return ratio - 1; });
   } else {
-    note += one.runs.size() < least_bootstrap_runs ? "; too few runs"
-                                                   : "; no size at which growth begins";
+    note +=
+        runs.size() < least_bootstrap_runs ? "; too few runs" : "; no size at which growth begins";
   }
   GrowthCount all;
-  for (const GrowthBySize& run : one.runs) {
+  for (const GrowthBySize& run : runs) {
     for (const auto& [size, count] : run) {
       if (size <= GrowthCurve::largest) all += count;
     }
@@ -316,8 +317,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
                           published),
               margin_critical_size},
              fmt::format("critical size, relative difference from {} grains", published), relative,
-             one.runs.size(), note);
-  if (one.critical && high / low > 1 + 2 * margin_critical_size) {
+             runs.size(), note);
+  if (critical && high / low > 1 + 2 * margin_critical_size) {
     verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
   }
   const AmplitudeGrowth* const alone = &one;

@@ -248,13 +248,15 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context) {
   const std::size_t chosen = records.size();
   const MeasureOutcome outcome = keep_measures(store, records, options);
-  static std::mutex printing;
-  const std::lock_guard lock(printing);
-  print_problems(outcome, "not measured", context);
-  if (!outcome.cache_trouble.empty()) fail(context, kOtherError);
-  if (records.size() < chosen) {
-    print_stderr("kept: the files of {} that could not be measured\n",
-                 counted(chosen - records.size(), "checkpoint"));
+  {
+    static std::mutex printing;
+    const std::lock_guard lock(printing);
+    print_problems(outcome, "not measured", context);
+    if (!outcome.cache_trouble.empty()) fail(context, kOtherError);
+    if (records.size() < chosen) {
+      print_stderr("kept: the files of {} that could not be measured\n",
+                   counted(chosen - records.size(), "checkpoint"));
+    }
   }
   return {outcome.measured, store.prune(records, last_too)};
 }

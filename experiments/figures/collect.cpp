@@ -376,9 +376,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
         wanted.path()));
   }
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
+  std::map<std::string, std::string> packings;  // by the stage before
   for (Run& run : newest.runs) {
     CollectedRun& one = collected.runs.emplace_back(CollectedRun{std::move(run)});
-    one.packing = packing_of(store, one.stage);
+    const auto [packing, fresh] = packings.try_emplace(one.stage.parent);
+    if (fresh) packing->second = packing_of(store, one.stage);
+    one.packing = packing->second;
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {

@@ -73,8 +73,9 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   for (const Attempt& attempt : stage.attempts) {
     std::uint64_t last = furthest;
     for (const std::string& sha256 : attempt.checkpoints) {
-      last = stage.find(sha256)->record.step;
-      furthest = std::max(furthest, last);
+      const CheckpointRecord& record = stage.find(sha256)->record;
+      last = record.step;
+      if (record.state != CheckpointState::rejected) furthest = std::max(furthest, last);
     }
     if (attempt.outcome == AttemptOutcome::completed) steps.insert({last, furthest});
   }

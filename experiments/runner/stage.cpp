@@ -86,10 +86,14 @@ double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.asks.empty() ? otherwise : 0;
   for (const Ask& ask : stage.asks) {
     const auto manifest = find_manifest(store, ask.manifest);
-    const nlohmann::json stated =
-        manifest ? member_of(member_of(manifest->info, "max_overlap_diameters"), ask.scale.c_str())
-                 : nlohmann::json();
-    limit = std::max(limit, stated.is_number() ? stated.get<double>() : otherwise);
+    const nlohmann::json info = manifest ? manifest->info : nlohmann::json::object();
+    try {
+      const nlohmann::json stated = info.value("max_overlap_diameters", nlohmann::json::object());
+      limit = std::max(limit, stated.value(ask.scale, otherwise));
+    } catch (const nlohmann::json::exception& problem) {
+      throw StoreDamaged(fmt::format("manifest {:.12}: the facts recorded with it: {}",
+                                     ask.manifest, problem.what()));
+    }
   }
   return limit;
 }

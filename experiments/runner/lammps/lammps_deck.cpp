@@ -368,18 +368,19 @@ State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   state.velocity.resize(3, columns);
   std::vector<bool> seen(grains + 1, false);
   for (std::size_t row = 0; row <= grains; ++row) {
-    std::size_t id = 0;
+    Eigen::Index id = 0;
     Eigen::Matrix<double, 6, 1> v;
     text >> id;
     for (double& value : v) text >> value;
-    require(text && id >= 1 && v.allFinite() && !seen[std::min(id - 1, grains)]);
-    seen[std::min(id - 1, grains)] = true;
-    if (id > grains) {  // the moving wall
+    const auto place = static_cast<std::size_t>(std::min(id - 1, columns));
+    require(text && id >= 1 && v.allFinite() && !seen[place]);
+    seen[place] = true;
+    if (id > columns) {  // the moving wall
       state.wall_height = v(1);
       state.wall_velocity = v(4);
     } else {
-      state.position.col(static_cast<Eigen::Index>(id - 1)) = v.head<3>();
-      state.velocity.col(static_cast<Eigen::Index>(id - 1)) = v.tail<3>();
+      state.position.col(id - 1) = v.head<3>();
+      state.velocity.col(id - 1) = v.tail<3>();
     }
   }
   return state;
