@@ -30,7 +30,8 @@ struct CheckpointMeasures {
 /// One run as a figure sees it.
 struct FigureRun : Place {
   std::string run_id;
-  /// Id of the stage that settled the packing that it descends from; "" if there is none.
+  /// Id of the stage that settled its packing, or SHA-256 of the file that all packings of its
+  /// seeds are made of; "" if there is neither.
   std::string packing;
   std::string name;                             ///< of the variant, for people; "" for `variant`
   bool named = false;                           ///< by a label of the manifest
@@ -67,13 +68,14 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table` shows the runs of all experiments, each run once per experiment, with its last
-/// checkpoint, which is not measured. `curves` and `groups` show the runs of one experiment:
+/// `table` is of all experiments: their runs, each once per experiment, with the last checkpoint,
+/// which is not measured; or other figures. `curves` and `groups` show the runs of one experiment:
 /// `curves` one curve for each variant, `groups` the means over variants with the same values of
 /// the figure's `keys`.
 enum class FigureForm { table, curves, groups };
 
-/// A figure of the supplement.
+/// A figure of the supplement, of plots and claims in a manifest, or of other figures (without
+/// `make`).
 struct Figure {
   std::string name;
   std::string title;

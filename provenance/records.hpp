@@ -32,7 +32,7 @@ struct Ask : Place {
   nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
   /// Whether the manifest is the last registered version among those that declared a stage at the
-  /// scale. The store sets it.
+  /// scale. The store sets it; a list of runs that is to be combined may clear it.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -72,7 +72,7 @@ struct Stage {
   std::string id;                                      ///< 64 hex digits
   std::string parent;                                  ///< "" when there is none
   std::string kind;                                    ///< "prepare", "shear", ...
-  nlohmann::json resolved = nlohmann::json::object();  ///< every parameter, in canonical form
+  nlohmann::json resolved = nlohmann::json::object();  ///< the record whose hash is the id
   /// `declared`: not started, or completed and then given a longer target. `running`: started and
   /// not ended; after a kill this remains until the run is resumed.
   StageState state = StageState::declared;

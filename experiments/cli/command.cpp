@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <ranges>
 #include <set>
-#include <span>
 #include <system_error>
 
 #include "provenance/io/read_number.hpp"
@@ -37,7 +37,7 @@ std::optional<Store> open_if_there(const std::string& folder) {
 void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context) {
   constexpr std::size_t most = 8;
   for (const auto* lines : {&outcome.damage, &outcome.pruned}) {
-    for (const std::string& line : std::span(*lines).first(std::min(most, lines->size()))) {
+    for (const std::string& line : *lines | std::views::take(most)) {
       print_stderr("{}: {}\n", left_out, line);
     }
     if (lines->size() > most) {

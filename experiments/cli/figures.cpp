@@ -120,11 +120,12 @@ std::string about_figures() {
       R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
 manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
 NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
-DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. table1, of all experiments, goes
-into DIR/SCALE; without names it is drawn if a manifest lists any of these figures. Where the number
-of runs of a mean changes along a curve, the key of the drawing names the fewest and the most (the
-caption, if all curves have the same). Caches measures in the store's derived.sqlite. If you delete
-that file, they are measured again, except those of pruned checkpoints (see `regenerate`).
+DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. Figures of all experiments go into
+DIR/SCALE; without names, table1 is drawn if a manifest lists any of these figures, and summary if
+several experiments have its parts. Where the number of runs of a mean changes along a curve, the key
+of the drawing names the fewest and the most (the caption, if all curves have the same). Caches
+measures in the store's derived.sqlite. If you delete that file, they are measured again, except those
+of pruned checkpoints (see `regenerate`).
 Figures and the keys that they compare (some have a curve for each value of other keys too):)";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("\n  {:<10} {}", figure.name, figure.title);

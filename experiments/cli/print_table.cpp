@@ -69,9 +69,8 @@ std::string painted(const std::string& word, const std::string& text) {
   using fmt::terminal_color;
   static const std::map<std::string, terminal_color> colours = {
       {"completed", terminal_color::green},    {"done", terminal_color::green},
-      {"pass", terminal_color::green},         {"ok", terminal_color::green},
-      {"running", terminal_color::cyan},       {"failed", terminal_color::red},
-      {"fail", terminal_color::red},           {"missing", terminal_color::red},
+      {"ok", terminal_color::green},           {"running", terminal_color::cyan},
+      {"failed", terminal_color::red},         {"missing", terminal_color::red},
       {"interrupted", terminal_color::yellow}, {"to extend", terminal_color::yellow},
       {"to replay", terminal_color::yellow}};
   const auto found = colours.find(word);

@@ -172,13 +172,6 @@ void check_time(const JobOptions& job) {
 void submit(const SubmitOptions& options, Context& context) {
   check_time(options.job);
   const LoadedManifests loaded = load_manifests(options.manifests, options.expand, context);
-  for (const Plan& plan : loaded.plans) {
-    if (plan.runs.empty() || plan.runs.front().prepare) continue;
-    throw UsageError(fmt::format(
-        "experiment {} begins with recorded states, which the tasks of a cluster do not have; copy "
-        "the store to each machine, `shearcell run --seed` a part there, and `shearcell merge`",
-        plan.experiment));
-  }
   const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
   if (const std::string why = unfit_path(folder); !why.empty()) throw std::runtime_error(why);
   if (!options.dry_run) require_slurm();

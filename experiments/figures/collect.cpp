@@ -278,11 +278,7 @@ void measure_runs(const Store& store, std::vector<CollectedRun>& runs,
       chosen[n]->measures = std::move(found.measures[n]);
       chosen[n]->lacking = std::move(found.lacking[n]);
     }
-    outcome.measured += found.measured;
-    outcome.cached += found.cached;
-    add_unread(found, outcome);
-    for (auto& [run, steps] : found.earlier) outcome.earlier[run].merge(steps);
-    if (!found.cache_trouble.empty()) outcome.cache_trouble = std::move(found.cache_trouble);
+    outcome += found;
   }
 }
 

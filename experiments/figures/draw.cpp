@@ -211,9 +211,7 @@ void make_of_parts(const Store& store, const FigureOptions& options, ComputedFig
         }
       }
       made.checkpoints += one.checkpoints;
-      made.measured += one.measured;
-      made.cached += one.cached;
-      add_unread(one, made);
+      made += one;
       parts.push_back({part.experiment, part.figure.name, std::move(one)});
     } catch (const NotFound&) {
       continue;  // no run at this scale

@@ -25,10 +25,8 @@ bool is_simulated(const std::string& name) {
 
 /// Whether the provider needs a file that was pruned before. Such a measure was lost then, as where
 /// a pruned run was continued.
-bool needs_a_pruned_file(const Store& store, const CollectedRun& run,
-                         const CheckpointRecord& record, const Provider& provider) {
-  MeasureSources sources(store, {{run.stage.id, run.ask.checkpoint_every}});
-  sources.read_run(run.stage.id);
+bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
+                         const Provider& provider) {
   return std::ranges::any_of(provider.earlier, [&](std::uint64_t cycles) {
     const CheckpointRecord* earlier = sources.find(record, cycles);
     return earlier != nullptr && earlier->state == CheckpointState::pruned;
@@ -70,9 +68,11 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   const auto measure_batch = [&] {
     measure_runs(store, batch, analyses, options, outcome);
     for (const CollectedRun& run : batch) {
+      MeasureSources sources(store, {{run.stage.id, run.ask.checkpoint_every}});
+      sources.read_run(run.stage.id);
       for (const CollectedCheckpoint& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
-          if (needs_a_pruned_file(store, run, one, provider(name))) continue;
+          if (needs_a_pruned_file(sources, one, provider(name))) continue;
           unmeasured.insert(one.sha256);
         }
       }

@@ -254,11 +254,9 @@ json figure_json(const WantedFigure& wanted, Content& content) {
     for (const std::string& line : *list) warnings.push_back("Left out: " + line);
   }
   for (const std::string& line : figure.notes) warnings.push_back(line);
-  std::vector<std::string>& damage = content.report.damage;
-  damage.insert(damage.end(), figure.damage.begin(), figure.damage.end());
-  for (const auto* list : {&figure.pruned, &figure.notes}) {
-    content.report.notes.insert(content.report.notes.end(), list->begin(), list->end());
-  }
+  content.report.damage.insert(figure.damage.begin(), figure.damage.end());
+  content.report.notes.insert(figure.pruned.begin(), figure.pruned.end());
+  content.report.notes.insert(figure.notes.begin(), figure.notes.end());
   return {{"id", prefix + wanted.figure.name},
           {"name", figure.name},
           {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,
@@ -542,21 +540,21 @@ std::vector<Experiment> experiments_of(const Store& store, const std::vector<std
 
 void add_figures(Content& content) {
   const WantedFigures wanted = wanted_figures(content.store, {}, content.options.runs.experiments);
-  std::vector<std::string>& notes = content.report.notes;
-  notes = wanted.unknown;
+  std::set<std::string>& notes = content.report.notes;
+  notes.insert(wanted.unknown.begin(), wanted.unknown.end());
   for (const WantedFigure& figure : wanted.figures) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
     const auto leave_out = [&](const std::exception& why) {
-      notes.push_back("figure " + figure.path() + ": " + why.what());
+      notes.insert("figure " + figure.path() + ": " + why.what());
       if (at_home) home->unmade.push_back(figure.figure.name);
     };
     try {
       (at_home ? home->figures : content.across).push_back(figure_json(figure, content));
       ++content.report.figures;
     } catch (const StoreDamaged& damage) {
-      content.report.damage.emplace_back(damage.what());
+      content.report.damage.insert(damage.what());
       leave_out(damage);
     } catch (const UsageError& problem) {
       leave_out(problem);
@@ -564,8 +562,6 @@ void add_figures(Content& content) {
       leave_out(problem);
     }
   }
-  std::ranges::sort(notes);
-  notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
 }
 
 void add_runs(Content& content) {
@@ -613,7 +609,6 @@ json traces_of(const RunTable& runs, const RunLineages& lineages) {
 /// Report::notes.
 void add_run_tables(Content& content) {
   const ReportOptions& options = content.options;
-  std::vector<std::string>& damage = content.report.damage;
   const MeasureOptions measuring{.workers = options.workers, .report = options.measured};
   for (Experiment& experiment : content.experiments) {
     RunSelection selection = options.runs;
@@ -624,12 +619,10 @@ void add_run_tables(Content& content) {
       for (const FigureRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.run_id, content.runs);
       experiment.traces = traces_of(experiment.table, content.runs);
-      for (const std::string& line : experiment.table.damage) {
-        if (std::ranges::count(damage, line) == 0) damage.push_back(line);
-      }
+      content.report.damage.insert(experiment.table.damage.begin(), experiment.table.damage.end());
     } catch (const std::runtime_error& problem) {
       // No run at this scale, or a record that this version of the program cannot read.
-      content.report.notes.push_back(
+      content.report.notes.insert(
           fmt::format("table of runs of {}: {}", experiment.manifest.experiment, problem.what()));
     }
   }
@@ -708,7 +701,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
     content.packings = collect_packings(store, names, options.runs, options.packings,
                                         options.workers, options.encoded);
     const std::vector<std::string>& notes = content.packings.notes;
-    report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+    report.notes.insert(notes.begin(), notes.end());
   }
   report.experiments = content.experiments.size();
   report.stages = content.runs.size();

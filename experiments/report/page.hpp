@@ -33,9 +33,9 @@ struct Report {
   bool interactive = false;
   std::size_t experiments = 0, figures = 0, stages = 0;  ///< that it shows
   std::size_t packings = 0, checkpoints = 0;             ///< runs in 3D, and their checkpoints
-  std::set<std::string> undrawn;    ///< which drawings failed and why, one line each
-  std::vector<std::string> damage;  ///< checkpoints that could not be read, one line each
-  std::vector<std::string> notes;   ///< about runs, figures and tables, one line each
+  std::set<std::string> undrawn;  ///< which drawings failed and why, one line each
+  std::set<std::string> damage;   ///< checkpoints that could not be read, one line each
+  std::set<std::string> notes;    ///< about runs, figures and tables, one line each
 };
 
 /// The same store and options give the same bytes with the same program (drawings also need the

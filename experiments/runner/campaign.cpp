@@ -82,7 +82,7 @@ class Progress {
   void drop(const StageJob& job) {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
-    erase();
+    if (terminal_ && !quiet_) draw();
   }
 
   /// A permanent line; a `minor` one only if progress is shown.
@@ -91,6 +91,7 @@ class Progress {
     if (minor && quiet_) return;
     erase();
     print_stderr("{}\n", line);
+    if (terminal_ && !quiet_) draw();
   }
 
  private:

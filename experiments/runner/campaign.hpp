@@ -26,7 +26,8 @@ struct CampaignResult {
   std::size_t elsewhere = 0;  ///< stages that another program completed meanwhile
   std::size_t failed = 0;     ///< stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;
-  /// Not begun, because the stage before failed or was interrupted, or because LAMMPS is missing.
+  /// Not begun: the stage before failed or was interrupted, LAMMPS is missing, the record cannot be
+  /// read, or a pruned checkpoint decides where the stage ends.
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< met a damaged file of the store
   std::vector<std::string> messages;  ///< one for each failure or damage

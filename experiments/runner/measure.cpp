@@ -21,6 +21,11 @@
 namespace shearcell {
 namespace {
 
+void add_lines(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
+  all.damage.insert(more.damage.begin(), more.damage.end());
+  all.pruned.insert(more.pruned.begin(), more.pruned.end());
+}
+
 using nlohmann::json;
 using Results = std::vector<json>;
 
@@ -80,7 +85,7 @@ class Measuring {
     }
     flush();
     outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
-    add_unread(unread_earlier_, outcome_);
+    add_lines(unread_earlier_, outcome_);
     for (std::size_t k = 0; k < records_.size(); ++k) read(records_[k], results_[place_[k]]);
     outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
@@ -129,7 +134,7 @@ class Measuring {
       results_[i][p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
-    add_unread(unread, unread_earlier_);
+    add_lines(unread, unread_earlier_);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
   }
@@ -179,12 +184,13 @@ bool MeasuredCheckpoints::lacks(std::size_t record, std::string_view provider) c
   return std::ranges::find(lacking[record], provider) != lacking[record].end();
 }
 
-void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
-  for (const auto lines : {&UnreadCheckpoints::damage, &UnreadCheckpoints::pruned}) {
-    (all.*lines).insert((all.*lines).end(), (more.*lines).begin(), (more.*lines).end());
-    std::ranges::sort(all.*lines);
-    (all.*lines).erase(std::unique((all.*lines).begin(), (all.*lines).end()), (all.*lines).end());
-  }
+MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
+  measured += more.measured;
+  cached += more.cached;
+  add_lines(more, *this);
+  for (const auto& [run, steps] : more.earlier) earlier[run].insert(steps.begin(), steps.end());
+  if (!more.cache_trouble.empty()) cache_trouble = more.cache_trouble;
+  return *this;
 }
 
 UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
@@ -201,10 +207,10 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
         work(i);
       } catch (const StoreDamaged& damage) {
         const std::lock_guard lock(mutex);
-        unread.damage.emplace_back(damage.what());
+        unread.damage.insert(damage.what());
       } catch (const FilePruned& pruned) {
         const std::lock_guard lock(mutex);
-        unread.pruned.emplace_back(pruned.what());
+        unread.pruned.insert(pruned.what());
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!error) error = std::current_exception();
@@ -220,8 +226,6 @@ UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
     work_on_some(0);
   }
   if (error) std::rethrow_exception(error);
-  std::sort(unread.damage.begin(), unread.damage.end());
-  std::sort(unread.pruned.begin(), unread.pruned.end());
   return unread;
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,10 +37,10 @@ struct MeasureOptions {
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
-/// A line for each checkpoint that could not be read; sorted.
+/// A line for each checkpoint that could not be read.
 struct UnreadCheckpoints {
-  std::vector<std::string> damage;
-  std::vector<std::string> pruned;  ///< whose files were pruned
+  std::set<std::string> damage;
+  std::set<std::string> pruned;  ///< whose files were pruned
 };
 
 struct MeasureOutcome : UnreadCheckpoints {
@@ -48,6 +49,8 @@ struct MeasureOutcome : UnreadCheckpoints {
   /// SHA-256 of the earlier checkpoints that entered measures, by run and step.
   std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
   std::string cache_trouble;  ///< why results cannot be cached; "" if they can
+
+  MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
 struct MeasuredCheckpoints : MeasureOutcome {
@@ -71,9 +74,6 @@ MeasuredCheckpoints measure_checkpoints(const Store& store,
 /// The analysis of a stored checkpoint. If analyse() throws AnalysisError, throws StoreDamaged,
 /// which names checkpoint and run, since this program records no such state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
-
-/// Adds lines; `all` stays sorted and without repetitions.
-void add_unread(const UnreadCheckpoints& more, UnreadCheckpoints& all);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and FilePruned
 /// become lines; the first other exception ends the work and is rethrown.

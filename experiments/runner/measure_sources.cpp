@@ -86,9 +86,9 @@ std::optional<nlohmann::json> MeasureSources::compute(const Provider& provider,
     return provider.compute(
         {analysis, checkpoint, load_earlier, &record, &runs_.at(record.run).facts});
   } catch (const FilePruned& pruned) {
-    unread.pruned.emplace_back(pruned.what());
+    unread.pruned.insert(pruned.what());
   } catch (const StoreDamaged& damage) {
-    unread.damage.emplace_back(damage.what());
+    unread.damage.insert(damage.what());
   }
   return std::nullopt;
 }

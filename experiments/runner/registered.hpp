@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// The figures, labels, plots and claims of a registered manifest.
+/// A registered manifest: its hash, experiment, question, names of figures, and its text.
 struct RegisteredManifest {
   std::string sha256;
   std::string experiment;

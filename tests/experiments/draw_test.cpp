@@ -445,8 +445,8 @@ TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
   const ComputedFigure figure = draw("figures");
   EXPECT_EQ(figure.checkpoints, 2U * 3U - 1U);
   ASSERT_EQ(figure.damage.size(), 1U);
-  std::printf("%s\n", figure.damage[0].c_str());
-  EXPECT_TRUE(has(figure.damage[0], record.file));
+  std::printf("%s\n", figure.damage.begin()->c_str());
+  EXPECT_TRUE(has(*figure.damage.begin(), record.file));
   const auto files = contents("figures");
   std::vector<CheckpointRecord> left = store_.checkpoints(run.id);
   std::erase_if(left, [&](const CheckpointRecord& c) { return c.sha256 == record.sha256; });

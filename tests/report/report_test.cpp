@@ -182,7 +182,7 @@ TEST_F(ReportOfRuns, AllowsOnlyItsOwnScriptAndHasNoneWithDrawings) {
   const std::string& drawn = made.html;
   EXPECT_FALSE(made.interactive);
   EXPECT_EQ(count(drawn, "<script"), 0U);
-  EXPECT_EQ(count(drawn, "<img alt=\"S2"), 2U) << (made.notes.empty() ? "" : made.notes.front());
+  EXPECT_EQ(count(drawn, "<img alt=\"S2"), 2U) << (made.notes.empty() ? "" : *made.notes.begin());
 }
 
 TEST_F(ReportOfRuns, SaysWhichDrawingsFailed) {
