@@ -427,7 +427,7 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
   }
   const Claim decided = stated(claim, words);
   const bool same = !sides[0].empty() && !sides[1].empty() &&
-                    sides[0].front()->run_id == sides[1].front()->run_id;
+                    sides[0].front()->stage.id == sides[1].front()->stage.id;
   const std::vector<std::string> problems = problems_of_sides(claim, counts, same);
   if (!problems.empty() && !claim.listed) {
     throw UsageError(fmt::format("claim {}: {}", claim.name, problems.front()));

@@ -39,7 +39,7 @@ bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
 }
 
 const std::string& packing_of(const FigureRun& run) {
-  return run.packing.empty() ? run.run_id : run.packing;
+  return run.packing.empty() ? run.stage.id : run.packing;
 }
 
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {

@@ -21,22 +21,21 @@
 
 namespace shearcell {
 
-struct CheckpointMeasures {
-  double cycle = 0;    ///< cycles since the stage began
-  std::string sha256;  ///< of the checkpoint file
-  Measures measures;
+/// A checkpoint and what was measured on it.
+struct CheckpointMeasures : CheckpointRecord {
+  Measures measures = {};
+  /// Names of the providers without a result, because this checkpoint or an earlier one could not
+  /// be read.
+  std::vector<std::string> lacking = {};
 };
 
-/// One run as a figure sees it.
-struct FigureRun : Place {
-  std::string run_id;
+/// A run with the checkpoints that a figure or a table takes.
+struct FigureRun : Run {
   /// Id of the stage that settled its packing, or SHA-256 of the file that all packings of its
   /// seeds are made of; "" if there is neither.
-  std::string packing;
-  std::string name;                             ///< of the variant, for people; "" for `variant`
-  bool named = false;                           ///< by a label of the manifest
-  nlohmann::json parameters;                    ///< of all its stages, by their keys in a manifest
-  std::vector<CheckpointMeasures> checkpoints;  ///< by cycle; those that the figure takes
+  std::string packing = {};
+  nlohmann::json parameters = {};  ///< of all its stages, by their keys in a manifest
+  std::vector<CheckpointMeasures> checkpoints = {};  ///< by step
   double end = 0;  ///< last cycle of the run so far, also if the figure leaves it out
   /// Computing time up to its end; known to figures that need the provider "cost".
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -62,7 +61,7 @@ struct RunValue {
 /// The value, which is missing if it is not finite.
 RunValue measured(double value);
 
-/// The panels of a figure in order, and the verdicts on the supplement's claims.
+/// The panels of a figure in order, and the verdicts on its claims.
 struct FigureResult {
   std::vector<FigureTable> tables;
   std::vector<Verdict> verdicts;

@@ -17,7 +17,7 @@ namespace shearcell {
 struct Place {
   std::string experiment = {};
   std::string scale = {};                           ///< "" if the manifest has no scales
-  std::string variant = {};                         ///< the swept values: "drag=still"
+  std::string variant = {};                         ///< the swept values: "fluid=still"
   nlohmann::json swept = nlohmann::json::object();  ///< swept key -> value
   std::uint64_t seed = 0;
   std::string manifest = {};  ///< SHA-256 of the manifest's text
@@ -92,9 +92,8 @@ struct Stage {
 
 /// What a user counts, lists and averages: a stage in one of its places. A stage of two experiments
 /// is a run of each.
-struct Run {
-  Stage stage = {};  ///< the last one: shear or stiffening
-  Ask ask = {};
+struct Run : Ask {
+  Stage stage = {};       ///< the last one: shear or stiffening
   std::string name = {};  ///< of its variant, for people
   bool named = false;     ///< by a label of the manifest
 };
@@ -143,7 +142,7 @@ struct CheckpointRecord {
 };
 
 struct FigureRecord {
-  std::string name;           ///< "drag/S2"
+  std::string name;           ///< "drag/desk/S2"
   std::uint64_t seq = 0;      ///< the event that recorded it
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs

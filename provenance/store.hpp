@@ -146,8 +146,8 @@ class Store {
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// `name` is the name of the figure's stream, "drag/S2"; `provenance` holds the inputs and the
-  /// SHA-256 of the outputs.
+  /// `name` is the name of the figure's stream, "drag/desk/S2"; `provenance` holds the inputs and
+  /// the SHA-256 of the outputs.
   void record_figure(const std::string& name, const nlohmann::json& provenance);
 
   /// `type` is "CampaignSubmitted" or "JobQueued"; `seen` as of record().

@@ -85,7 +85,7 @@ std::vector<CurvePoint> points_of(RunGroup runs) {
       const auto cycle = static_cast<std::int64_t>(checkpoint.cycle);
       CurvePoint& point = found[cycle];
       if (!point.runs.empty() && point.runs.back() == run) {
-        throw AnalysisError("run " + run->run_id + " has two checkpoints of cycle " +
+        throw AnalysisError("run " + run->stage.id + " has two checkpoints of cycle " +
                             std::to_string(cycle));
       }
       point.cycle = cycle;

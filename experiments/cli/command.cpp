@@ -154,7 +154,7 @@ std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   for (const Run& run : selected) {
     const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
     if (fresh) runs.push_back({run.stage, {}});
-    runs[at->second].places.push_back(run.ask);
+    runs[at->second].places.push_back(run);
   }
   return runs;
 }

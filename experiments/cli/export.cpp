@@ -196,7 +196,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame =
-        frame_of(store.load_checkpoint(record), record, {run.stage, shown_place(run)}, &sources);
+        frame_of(store.load_checkpoint(record), record, {shown_place(run), run.stage}, &sources);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files

@@ -20,9 +20,8 @@ using Shown = std::map<Version, std::set<std::string>>;             // ids of ru
 /// Adds the runs that figures and tables show of a store: none of older versions of a manifest.
 void add_shown(const Store& store, Shown& shown) {
   for (const Run& run : select_runs(store, {})) {
-    const Ask& place = run.ask;
-    if (!place.newest) continue;
-    shown[{place.experiment, place.scale, place.manifest}].insert(run.stage.id);
+    if (!run.newest) continue;
+    shown[{run.experiment, run.scale, run.manifest}].insert(run.stage.id);
   }
 }
 

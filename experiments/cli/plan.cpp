@@ -32,7 +32,7 @@ std::string state_of(const Line& line) {
 
 // The number of cycles that the stage gets at most.
 double cycles_of(const Line& line) {
-  return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
+  return std::max(static_cast<double>(line.run->target_cycles), line.look.end);
 }
 
 // Other experiments that have the stage.
@@ -40,7 +40,7 @@ std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
   for (const Ask& m : line.stage.asks) {
     const bool known = std::ranges::count(others, m.experiment) > 0;
-    if (m.experiment != line.run->ask.experiment && !known) others.push_back(m.experiment);
+    if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
   }
   return others;
 }
@@ -167,9 +167,9 @@ Facts facts(const Line& line, bool of_several_experiments) {
   const std::vector<std::string> others = shared_with(line);
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
-               {"experiment", run.ask.experiment},
-               {"variant", run.ask.variant, "variant", prepare ? "" : run.name},
-               {"seed", run.ask.seed, "seed"},
+               {"experiment", run.experiment},
+               {"variant", run.variant, "variant", prepare ? "" : run.name},
+               {"seed", run.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
                 prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
@@ -207,7 +207,7 @@ void plan(const PlanOptions& options, Context& context) {
   std::size_t longer = 0;
   for (const Line& line : lines) {
     if (!line.look.done) left_runs.insert(line.run);
-    longer += cycles_of(line) > static_cast<double>(line.run->ask.target_cycles) ? 1 : 0;
+    longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.seconds(cores);

@@ -47,12 +47,11 @@ std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
 
 void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
                Frame& frame) {
-  const Ask& m = selected.ask;
   frame.run = {{"run", selected.stage.id},
-               {"experiment", m.experiment},
-               {"scale", m.scale},
-               {"variant", m.variant},
-               {"seed", m.seed}};
+               {"experiment", selected.experiment},
+               {"scale", selected.scale},
+               {"variant", selected.variant},
+               {"seed", selected.seed}};
   frame.checkpoint = record.sha256;
   for (const auto& [column, value] : facts_of(record, measures)) {
     // Members of Frame.

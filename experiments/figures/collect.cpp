@@ -30,8 +30,8 @@ namespace {
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-Ask ask_for(const Figure& figure, const CollectedRun& run) {
-  Ask ask = run.ask;
+Ask ask_for(const Figure& figure, const FigureRun& run) {
+  Ask ask = run;
   if (!figure.within) ask.checkpoint_phases.clear();
   return ask;
 }
@@ -42,13 +42,13 @@ double first_cycle(const Figure& figure) {
 }
 
 /// The last cycle that the figure takes of the run.
-double last_cycle(const Figure& figure, const CollectedRun& run) {
+double last_cycle(const Figure& figure, const FigureRun& run) {
   return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
 }
 
 /// Adds the checkpoints that the figure takes, up to the run's end. A figure that measures nothing
 /// takes only the last one.
-void add_checkpoints(const Store& store, const Figure& figure, CollectedRun& run) {
+void add_checkpoints(const Store& store, const Figure& figure, FigureRun& run) {
   const Ask ask = ask_for(figure, run);
   const std::vector<CheckpointRecord> found =
       checkpoints_for(store, run.stage, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
@@ -60,7 +60,7 @@ void add_checkpoints(const Store& store, const Figure& figure, CollectedRun& run
 
 /// The number of checkpoints that the figure asks for, up to the end of the run, and that are
 /// missing.
-std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const CollectedRun& run) {
+std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const FigureRun& run) {
   const std::optional<Drive> motion = shear_drive(run.stage);
   if (!motion) return 0;
   Ask ask = ask_for(figure, run);
@@ -81,7 +81,7 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
-  for (const CollectedRun& run : collected.runs) {
+  for (const FigureRun& run : collected.runs) {
     const std::ptrdiff_t missing = missing_for(store, figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
@@ -101,7 +101,7 @@ void note_never_made(const Store& store, const Figure& figure, CollectedRuns& co
 
 /// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
 /// or can still be made.
-bool asks_for_one(const Figure& figure, const CollectedRun& run) {
+bool asks_for_one(const Figure& figure, const FigureRun& run) {
   if (!figure.within || run.stage.kind != name_of(StageKind::shear)) return true;
   double last = last_cycle(figure, run);
   if (run.stage.state == StageState::completed) last = std::min(last, run.stage.cycle);
@@ -111,8 +111,8 @@ bool asks_for_one(const Figure& figure, const CollectedRun& run) {
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
 void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, never, going_on;
-  for (const CollectedRun& run : collected.runs) {
-    const std::string name = fmt::format("{} seed {}", run.name, run.ask.seed);
+  for (const FigureRun& run : collected.runs) {
+    const std::string name = fmt::format("{} seed {}", run.name, run.seed);
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
     } else if (run.stage.state != StageState::completed &&
@@ -120,7 +120,7 @@ void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
       going_on.insert(name);
     }
   }
-  std::erase_if(collected.runs, [](const CollectedRun& run) { return run.checkpoints.empty(); });
+  std::erase_if(collected.runs, [](const FigureRun& run) { return run.checkpoints.empty(); });
   for (const auto* names : {&not_begun, &never}) {
     if (names->empty()) continue;
     const auto [first, last] = figure.within.value_or(whole_run);
@@ -158,10 +158,10 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
-/// Sets CollectedRun::core_time_s. Notes if the runs were computed by different processors.
+/// Sets FigureRun::core_time_s. Notes if the runs were computed by different processors.
 void add_core_times(const Store& store, CollectedRuns& collected) {
   std::set<std::string> processors;
-  for (CollectedRun& run : collected.runs) {
+  for (FigureRun& run : collected.runs) {
     ComputingTime time = computing_time(store, run.stage.id, run.end);
     run.core_time_s = time.core_seconds;
     processors.merge(time.processors);
@@ -171,22 +171,22 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
       fmt::format("core times are of different processors: {}", some_of(processors)));
 }
 
-/// Names the variants of the runs, which may be of several versions of a manifest.
+/// Sets Run::name and Run::named.
 void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
   for (const RegisteredManifest& manifest : manifests) {
     std::vector<nlohmann::json> variants;
-    for (const CollectedRun& run : collected.runs) {
-      if (run.ask.experiment == manifest.experiment) variants.push_back(run.ask.swept);
+    for (const FigureRun& run : collected.runs) {
+      if (run.experiment == manifest.experiment) variants.push_back(run.swept);
     }
     if (variants.empty()) continue;
     const auto known = parsed(manifest);
     const auto labels = known ? known->labels : std::vector<VariantLabel>();
     const auto names = variant_names(variants, labels);
-    for (CollectedRun& run : collected.runs) {
-      if (run.ask.experiment != manifest.experiment) continue;
-      run.name = names.at(run.ask.swept);
+    for (FigureRun& run : collected.runs) {
+      if (run.experiment != manifest.experiment) continue;
+      run.name = names.at(run.swept);
       run.named = std::ranges::any_of(
-          labels, [&](const VariantLabel& label) { return selects(label, run.ask.swept); });
+          labels, [&](const VariantLabel& label) { return selects(label, run.swept); });
     }
   }
 }
@@ -196,7 +196,7 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
                          const RunSelection& selection) {
   std::vector<Run> found = select_runs(store, selection);
   std::erase_if(found, [&](const Run& s) {
-    return !wanted.experiment.empty() && s.ask.experiment != wanted.experiment;
+    return !wanted.experiment.empty() && s.experiment != wanted.experiment;
   });
   if (found.empty()) {
     throw NotFound(
@@ -211,11 +211,11 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 std::string last_scale(const std::vector<Run>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
-    return std::ranges::find(manifests, run.ask.manifest, &RegisteredManifest::sha256) !=
+    return std::ranges::find(manifests, run.manifest, &RegisteredManifest::sha256) !=
            manifests.end();
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
-  return (last == runs.rend() ? runs.back() : *last).ask.scale;
+  return (last == runs.rend() ? runs.back() : *last).scale;
 }
 
 /// Sets WantedFigure::also.
@@ -235,36 +235,31 @@ void share_needs(std::vector<WantedFigure>& figures) {
 
 }  // namespace
 
-FigureRun figure_run(CollectedRun run) {
-  nlohmann::json parameters = effective_parameters(run.stage.resolved);
-  parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
-  FigureRun made{run.ask,
-                 run.stage.id,
-                 std::move(run.packing),
-                 std::move(run.name),
-                 run.named,
-                 std::move(parameters),
-                 {},
-                 std::min(run.end, run.stage.cycle),
-                 run.core_time_s};
-  for (CollectedCheckpoint& one : run.checkpoints) {
-    if (std::ranges::count(one.lacking, "scalars") > 0) continue;
-    made.checkpoints.push_back({one.cycle, std::move(one.sha256), std::move(one.measures)});
-  }
+FigureRun figure_run(Run run) {
+  FigureRun made{std::move(run)};
+  made.parameters = effective_parameters(made.stage.resolved);
+  made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
   return made;
 }
 
-void measure_runs(const Store& store, std::vector<CollectedRun>& runs,
+void keep_measured(FigureRun& run) {
+  std::erase_if(run.checkpoints, [](const CheckpointMeasures& one) {
+    return std::ranges::count(one.lacking, "scalars") > 0;
+  });
+  run.end = std::min(run.end, run.stage.cycle);
+}
+
+void measure_runs(const Store& store, std::vector<FigureRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome,
-                  const std::function<bool(const CollectedRun&, std::size_t)>& wanted) {
-  std::map<std::uint64_t, std::vector<CollectedRun*>> by_cadence;  // runs may share a stage
-  for (CollectedRun& run : runs) by_cadence[run.ask.checkpoint_every].push_back(&run);
+                  const std::function<bool(const FigureRun&, std::size_t)>& wanted) {
+  std::map<std::uint64_t, std::vector<FigureRun*>> by_cadence;  // runs may share a stage
+  for (FigureRun& run : runs) by_cadence[run.checkpoint_every].push_back(&run);
   for (const auto& [every, group] : by_cadence) {
     std::vector<CheckpointRecord> records;
-    std::vector<CollectedCheckpoint*> chosen;
+    std::vector<CheckpointMeasures*> chosen;
     MeasureOptions with_cadence = options;
-    for (CollectedRun* run : group) {
+    for (FigureRun* run : group) {
       with_cadence.cadence[run->stage.id] = every;
       for (std::size_t k = 0; k < run->checkpoints.size(); ++k) {
         if (wanted && !wanted(*run, k)) continue;
@@ -355,8 +350,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // experiments
   std::erase_if(selected, [&](const Run& s) {
-    const bool is_at_scale = s.ask.scale == collected.scale;
-    (is_at_scale ? at_scale : elsewhere).insert(s.ask.experiment);
+    const bool is_at_scale = s.scale == collected.scale;
+    (is_at_scale ? at_scale : elsewhere).insert(s.experiment);
     return !is_at_scale;
   });
   std::erase_if(elsewhere, [&](const std::string& name) { return at_scale.contains(name); });
@@ -374,7 +369,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
   std::map<std::string, std::string> packings;  // by the stage before
   for (Run& run : newest.runs) {
-    CollectedRun& one = collected.runs.emplace_back(CollectedRun{std::move(run)});
+    FigureRun& one = collected.runs.emplace_back(figure_run(std::move(run)));
     const auto [packing, fresh] = packings.try_emplace(one.stage.parent);
     if (fresh) packing->second = packing_of(store, one.stage);
     one.packing = packing->second;
@@ -382,18 +377,18 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     name_variants(manifests, collected);
-    std::erase_if(collected.runs, [&](const CollectedRun& run) {
-      return wanted.figure.uses && !wanted.figure.uses(figure_run(run));
+    std::erase_if(collected.runs, [&](const FigureRun& run) {
+      return wanted.figure.uses && !wanted.figure.uses(run);
     });
   } else {
     std::set<std::pair<std::string, std::string>> known;
-    std::erase_if(collected.runs, [&](const CollectedRun& run) {
-      return !known.emplace(run.ask.experiment, run.stage.id).second;
+    std::erase_if(collected.runs, [&](const FigureRun& run) {
+      return !known.emplace(run.experiment, run.stage.id).second;
     });
   }
-  for (CollectedRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.stage, run.ask, measuring)
-                       : static_cast<double>(run.ask.target_cycles);
+  for (FigureRun& run : collected.runs) {
+    run.end = measured ? end_for(store, run.stage, run, measuring)
+                       : static_cast<double>(run.target_cycles);
     add_checkpoints(store, wanted.figure, run);
   }
   if (measured) {
@@ -401,7 +396,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
     note_never_made(store, wanted.figure, collected);
   }
-  for (const CollectedRun& run : collected.runs) {
+  for (const FigureRun& run : collected.runs) {
     const nlohmann::json& resolved = run.stage.resolved;
     if (resolved.is_object() &&
         resolved.value("parameters", nlohmann::json::object()).is_object()) {

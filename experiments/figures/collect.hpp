@@ -2,7 +2,6 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -41,34 +40,23 @@ struct WantedFigures {
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
-/// A checkpoint of a run, and what was measured on it.
-struct CollectedCheckpoint : CheckpointRecord {
-  Measures measures = {};
-  std::vector<std::string> lacking = {};  ///< MeasuredCheckpoints::lacking
-};
+/// The run without checkpoints. Its parameters say `pressure_at: top` where P acts equally on both
+/// walls.
+FigureRun figure_run(Run run);
 
-/// A run with the checkpoints that a figure or a table takes.
-struct CollectedRun : Run {
-  std::vector<CollectedCheckpoint> checkpoints = {};  ///< by step
-  double end = 0;                                     ///< end_for()
-  std::string packing = {};                           ///< FigureRun::packing
-  double core_time_s = std::nan("");                  ///< FigureRun::core_time_s
-};
-
-/// The run as a figure sees it, without the checkpoints that lack "scalars". Its parameters say
-/// `pressure_at: top` where P acts equally on both walls.
-FigureRun figure_run(CollectedRun run);
+/// Removes the checkpoints that lack "scalars"; the run ends where its stage has ended so far.
+void keep_measured(FigureRun& run);
 
 /// Measures the checkpoints of the runs (those for which `wanted(run, place)` holds), with the
 /// cadence that each run's experiment asks for. Adds what could not be read to the outcome.
-void measure_runs(const Store& store, std::vector<CollectedRun>& runs,
+void measure_runs(const Store& store, std::vector<FigureRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome,
-                  const std::function<bool(const CollectedRun&, std::size_t)>& wanted = {});
+                  const std::function<bool(const FigureRun&, std::size_t)>& wanted = {});
 
 struct CollectedRuns {
   std::string scale;  ///< one figure never mixes scales
-  std::vector<CollectedRun> runs;
+  std::vector<FigureRun> runs;
   /// Runs that were left out or are not finished, checkpoints that were never made.
   std::vector<std::string> notes;
 };

@@ -29,11 +29,9 @@ namespace {
 /// The checkpoints of the run that the figure was made of, those of earlier cycles from which it
 /// measured changes included; by step.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
-                                               const CollectedRun& run) {
+                                               const FigureRun& run) {
   std::set<std::string> used;
-  for (const CollectedCheckpoint& c : run.checkpoints) {
-    if (std::ranges::count(c.lacking, "scalars") == 0) used.insert(c.sha256);
-  }
+  for (const CheckpointMeasures& c : run.checkpoints) used.insert(c.sha256);
   if (const auto found = figure.earlier.find(run.stage.id); found != figure.earlier.end()) {
     for (const auto& [step, sha256] : found->second) used.insert(sha256);
   }
@@ -44,20 +42,20 @@ std::vector<CheckpointRecord> used_checkpoints(const Store& store, const Compute
 
 /// What the figure was made of.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
-                         const std::vector<CollectedRun>& runs) {
+                         const std::vector<FigureRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
-  for (const CollectedRun& run : runs) {
+  for (const FigureRun& run : runs) {
     const States states = states_of(used_checkpoints(store, figure, run));
     list.push_back({{"run", run.stage.id},
                     {"parent", run.stage.parent},
-                    {"experiment", run.ask.experiment},
-                    {"manifest", run.ask.manifest},
-                    {"variant", run.ask.variant},
-                    {"seed", run.ask.seed},
+                    {"experiment", run.experiment},
+                    {"manifest", run.manifest},
+                    {"variant", run.variant},
+                    {"seed", run.seed},
                     {"cycles", states.cycles},
                     {"state_hash", states.state_hash},
                     {"states_sha256", states.sha256}});
-    if (auto given = overrides_of(store, run.stage, run.ask); !given.is_null()) {
+    if (auto given = overrides_of(store, run.stage, run); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }
   }
@@ -226,7 +224,7 @@ void make_of_parts(const Store& store, const FigureOptions& options, ComputedFig
 
 /// Makes the figure of these runs.
 void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOptions& options,
-                  std::vector<CollectedRun> collected, ComputedFigure& made) {
+                  std::vector<FigureRun> runs, ComputedFigure& made) {
   const Figure& figure = wanted.figure;
   MeasureOptions measuring = options;
   measuring.also = wanted.also;
@@ -236,10 +234,9 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     providers = figure.needs;
     providers.insert(providers.begin(), "scalars");
   }
-  measure_runs(store, collected, providers, measuring, made);
-  made.lineage = lineage_of(made, inputs_of(store, made, collected));
-  std::vector<FigureRun> runs;
-  for (CollectedRun& run : collected) runs.push_back(figure_run(std::move(run)));
+  measure_runs(store, runs, providers, measuring, made);
+  std::ranges::for_each(runs, keep_measured);
+  made.lineage = lineage_of(made, inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(
         figure.name, runs, figure.keys,

@@ -64,13 +64,13 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   std::map<std::string, std::vector<Figure>> simulating = simulating_figures(store);
   MeasureOutcome outcome;
   std::set<std::string> unmeasured;  // SHA-256
-  std::vector<CollectedRun> batch;
+  std::vector<FigureRun> batch;
   const auto measure_batch = [&] {
     measure_runs(store, batch, analyses, options, outcome);
-    for (const CollectedRun& run : batch) {
-      MeasureSources sources(store, {{run.stage.id, run.ask.checkpoint_every}});
+    for (const FigureRun& run : batch) {
+      MeasureSources sources(store, {{run.stage.id, run.checkpoint_every}});
       sources.read_run(run.stage.id);
-      for (const CollectedCheckpoint& one : run.checkpoints) {
+      for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
           if (needs_a_pruned_file(sources, one, provider(name))) continue;
           unmeasured.insert(one.sha256);
@@ -87,7 +87,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     if (stage.asks.empty()) stage.asks.emplace_back();  // no experiment of a damaged store has it
     std::set<std::uint64_t> cadences;
     for (const Ask& ask : stage.asks) {
-      CollectedRun run{{stage, ask}};
+      FigureRun run{{ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
@@ -97,7 +97,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), "scalars");
-        std::vector<CollectedRun> alone = {run};
+        std::vector<FigureRun> alone = {run};
         measure_runs(store, alone, names, some, outcome);
       }
       if (!cadences.insert(ask.checkpoint_every).second) continue;

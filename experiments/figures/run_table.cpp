@@ -29,9 +29,9 @@ using nlohmann::ordered_json;
 
 /// The source of the cells of a row.
 struct Row {
-  const CollectedRun* run = nullptr;
-  const CollectedCheckpoint* checkpoint = nullptr;  // null for a run that was not started
-  const FigureRun* history = nullptr;  // for onsets; null for a run that is not a shear
+  const FigureRun* run = nullptr;
+  const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
+  const FigureRun* history = nullptr;              // for onsets; null for a run that is not a shear
 };
 
 struct Column : TableColumn {
@@ -58,13 +58,12 @@ Column of_checkpoint(std::string_view name, std::string_view meaning, Value valu
 std::vector<Column> names(const VariantNames& variants) {
   return {
       of_run("experiment", "name of the manifest's experiment",
-             [](const Run& s) { return s.ask.experiment; }),
-      of_run("scale", "scale of the manifest",
-             [](const Run& s) { return scale_name(s.ask.scale); }),
+             [](const Run& s) { return s.experiment; }),
+      of_run("scale", "scale of the manifest", [](const Run& s) { return scale_name(s.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
-             [variants](const Run& s) { return variants.of(s.ask); }),
+             [variants](const Run& s) { return variants.of(s); }),
       of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
-      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.ask.seed; }),
+      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.seed; }),
   };
 }
 
@@ -83,7 +82,7 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
     const bool listed = std::ranges::find(simulated, by.name) != simulated.end();
     if (by.from == ComputedFrom::simulation && !listed) continue;
     columns.push_back(
-        of_checkpoint(measure->name, measure->meaning, [measure](const CollectedCheckpoint& c) {
+        of_checkpoint(measure->name, measure->meaning, [measure](const CheckpointMeasures& c) {
           const double value = c.measures.number(measure->name);
           const bool count = measure->kind == MeasureKind::count && std::isfinite(value);
           return count ? json(static_cast<std::uint64_t>(value)) : number(value);
@@ -119,7 +118,7 @@ std::vector<Column> ends() {
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
-              [](const Run& s) { return s.ask.target_cycles; }),
+              [](const Run& s) { return s.target_cycles; }),
        of_run("wall_time_s", "time that the run took to compute, over all attempts",
               [](const Run& s) { return number(s.stage.wall_seconds); }),
        of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
@@ -130,8 +129,8 @@ std::vector<Column> ends() {
 /// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
 json swept_value(const Field& field, const Run& run) try {
-  const auto value = run.ask.swept.find(field.name);
-  if (value != run.ask.swept.end()) return *value;
+  const auto value = run.swept.find(field.name);
+  if (value != run.swept.end()) return *value;
   const StageInputs record = read_stage(run.stage.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? field.get(record.parameters) : json();
@@ -140,11 +139,11 @@ json swept_value(const Field& field, const Run& run) try {
 }
 
 /// The columns that distinguish runs.
-std::vector<Column> columns_of_runs(const std::vector<CollectedRun>& runs,
+std::vector<Column> columns_of_runs(const std::vector<FigureRun>& runs,
                                     const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
-  for (const CollectedRun& run : runs) {
-    for (const auto& [key, value] : run.ask.swept.items()) swept.insert(key);
+  for (const FigureRun& run : runs) {
+    for (const auto& [key, value] : run.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
@@ -155,7 +154,7 @@ std::vector<Column> columns_of_runs(const std::vector<CollectedRun>& runs,
   return columns;
 }
 
-std::vector<Column> columns_for(const std::vector<CollectedRun>& runs, RowPer per,
+std::vector<Column> columns_for(const std::vector<FigureRun>& runs, RowPer per,
                                 const VariantNames& variants,
                                 std::span<const std::string> simulated) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
@@ -164,14 +163,14 @@ std::vector<Column> columns_for(const std::vector<CollectedRun>& runs, RowPer pe
   return columns;
 }
 
-std::vector<CollectedRun> select(const Store& store, const RunSelection& selection,
-                                 const MeasureOptions& options, RunTable& table) {
+std::vector<FigureRun> select(const Store& store, const RunSelection& selection,
+                              const MeasureOptions& options, RunTable& table) {
   NewestRuns newest = newest_runs(select_runs(store, selection));
   table.notes = std::move(newest.notes);
-  std::vector<CollectedRun> runs;
+  std::vector<FigureRun> runs;
   for (Run& selected : newest.runs) {
-    CollectedRun& run = runs.emplace_back(CollectedRun{std::move(selected)});
-    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run.ask, options)) {
+    FigureRun& run = runs.emplace_back(figure_run(std::move(selected)));
+    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run, options)) {
       run.checkpoints.push_back({std::move(record)});
     }
   }
@@ -179,10 +178,10 @@ std::vector<CollectedRun> select(const Store& store, const RunSelection& selecti
 }
 
 /// Notes how many measures of checkpoints with a file need another file, which is gone.
-void note_lacking(const std::vector<CollectedRun>& runs, RunTable& table) {
+void note_lacking(const std::vector<FigureRun>& runs, RunTable& table) {
   std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
-  for (const CollectedRun& run : runs) {
-    for (const CollectedCheckpoint& one : run.checkpoints) {
+  for (const FigureRun& run : runs) {
+    for (const CheckpointMeasures& one : run.checkpoints) {
       if (one.state == CheckpointState::pruned) continue;
       for (const std::string& name : one.lacking) ++lacking[name];
     }
@@ -218,11 +217,11 @@ std::vector<std::string> simulating_providers() {
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated) {
   RunTable table;
-  std::vector<CollectedRun> runs = select(store, selection, options, table);
+  std::vector<FigureRun> runs = select(store, selection, options, table);
   std::vector<std::string> names = table_providers();
   const std::vector<std::string> scalars = {names.front()};
   names.insert(names.end(), simulated.begin(), simulated.end());
-  const auto has_row = [per](const CollectedRun& run, std::size_t k) {
+  const auto has_row = [per](const FigureRun& run, std::size_t k) {
     return per == RowPer::checkpoint || k + 1 == run.checkpoints.size();
   };
   measure_runs(store, runs, names, options, table, has_row);
@@ -235,15 +234,16 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     std::vector<json>& cells = table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
   };
-  for (CollectedRun& run : runs) {
+  for (FigureRun& run : runs) {
     if (per == RowPer::checkpoint) {
-      for (const CollectedCheckpoint& checkpoint : run.checkpoints) add({&run, &checkpoint});
+      for (const CheckpointMeasures& checkpoint : run.checkpoints) add({&run, &checkpoint});
       continue;
     }
     const auto* last = run.checkpoints.empty() ? nullptr : &run.checkpoints.back();
     const double end = last == nullptr ? 0 : last->cycle;
     run.core_time_s = computing_time(store, run.stage.id, end).core_seconds;
-    FigureRun& history = table.histories.emplace_back(figure_run(run));
+    FigureRun& history = table.histories.emplace_back(run);
+    keep_measured(history);
     std::erase_if(history.checkpoints,
                   [](const CheckpointMeasures& one) { return one.cycle != std::floor(one.cycle); });
     add({&run, last, run.stage.kind == name_of(StageKind::shear) ? &history : nullptr});
@@ -255,7 +255,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
                      const MeasureOptions& options) {
   const std::string provider = provider_of(measure).name;
   RunTable table;
-  std::vector<CollectedRun> runs = select(store, selection, options, table);
+  std::vector<FigureRun> runs = select(store, selection, options, table);
   measure_runs(store, runs, {&provider, 1}, options, table);
   note_lacking(runs, table);
   std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
@@ -263,8 +263,8 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
   table.columns.assign(columns.begin(), columns.end());
   table.columns.push_back({std::string(measure.x), ""});
   table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
-  for (CollectedRun& run : runs) {
-    for (CollectedCheckpoint& checkpoint : run.checkpoints) {
+  for (FigureRun& run : runs) {
+    for (CheckpointMeasures& checkpoint : run.checkpoints) {
       const MeasuredCurve& curve = checkpoint.measures.curves[std::string(measure.name)];
       std::vector<json> cells;
       for (const Column& column : columns) cells.push_back(column.cell({&run, &checkpoint}));
@@ -286,7 +286,7 @@ std::vector<TableColumn> table_columns() {
 
 std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
                                                    const Measures& found) {
-  const CollectedCheckpoint checkpoint{record, found};
+  const CheckpointMeasures checkpoint{record, found};
   std::vector<std::pair<TableColumn, json>> facts;
   for (const Column& column : measures({})) {
     facts.emplace_back(column, column.cell({nullptr, &checkpoint}));

@@ -57,7 +57,7 @@ std::vector<Ask> places_of(const Stage& run) {
 /// history.
 bool in_order(const Run& a, const Run& b) {
   const auto key = [](const Ask& m) { return std::tie(m.experiment, m.scale, m.swept, m.seed); };
-  return key(a.ask) < key(b.ask);
+  return key(a) < key(b);
 }
 
 /// Says where an edited manifest asks for fewer cycles than an older version made.
@@ -68,12 +68,11 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   };
   std::map<ExperimentScale, Shortened> shortened;
   for (const Run& run : runs) {
-    const Ask& m = run.ask;
     const bool asked_for_more = std::ranges::any_of(run.stage.asks, [&](const Ask& older) {
-      return place(older) == place(m) && older.target_cycles > m.target_cycles;
+      return place(older) == place(run) && older.target_cycles > run.target_cycles;
     });
-    if (!asked_for_more || run.stage.cycle <= static_cast<double>(m.target_cycles)) continue;
-    Shortened& found = shortened[experiment_scale(m)];
+    if (!asked_for_more || run.stage.cycle <= static_cast<double>(run.target_cycles)) continue;
+    Shortened& found = shortened[experiment_scale(run)];
     ++found.runs;
     found.had = std::max(found.had, run.stage.cycle);
   }
@@ -114,10 +113,10 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
         // The same manifest may have meant another run to another version of the program.
         const Seed same = {experiment_scale(m), m.variant, m.seed};
         const auto [known, first] = seeds.try_emplace(same, selected.size());
-        if (!first) selected[known->second].ask.newest = false;
+        if (!first) selected[known->second].newest = false;
         known->second = selected.size();
       }
-      selected.push_back({run, m});
+      selected.push_back({m, run});
     }
   }
   require_found("experiment", experiment);
@@ -130,24 +129,23 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
 NewestRuns newest_runs(std::vector<Run> selected) {
   std::erase_if(selected, [](const Run& s) { return s.stage.kind == name_of(StageKind::prepare); });
   const auto older = std::stable_partition(selected.begin(), selected.end(),
-                                           [](const Run& s) { return s.ask.newest; });
+                                           [](const Run& s) { return s.newest; });
   NewestRuns chosen;
   chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
   std::map<ExperimentScale, std::vector<std::string>> left;  // variants
   for (const Run& one : std::ranges::subrange(older, selected.end())) {
-    const Ask& m = one.ask;
     const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {
-      return place(other.ask) == place(m) && other.ask.manifest == m.manifest;
+      return place(other) == place(one) && other.manifest == one.manifest;
     });
     if (instead == chosen.runs.end()) {
-      left[experiment_scale(m)].push_back(m.variant);
+      left[experiment_scale(one)].push_back(one.variant);
     } else {
       chosen.notes.push_back(fmt::format(
           "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
           "with run {:.8} in its place",
-          m.experiment, one.stage.id, m.variant, m.seed, instead->stage.id));
+          one.experiment, one.stage.id, one.variant, one.seed, instead->stage.id));
     }
   }
   for (const auto& [where, variants] : left) {

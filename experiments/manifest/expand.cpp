@@ -84,21 +84,21 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
   PlannedRun run;
-  run.ask = common;
-  run.ask.variant = variant.name;
-  run.ask.swept = variant.swept;
-  run.ask.seed = seed;
+  static_cast<Ask&>(run) = common;
+  run.variant = variant.name;
+  run.swept = variant.swept;
+  run.seed = seed;
   run.parameters = variant.parameters;
-  run.ask.target_cycles = target_cycles(run.parameters);
+  run.target_cycles = target_cycles(run.parameters);
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
   }
   run.stage = last_stage(run.parameters, seed, recorded == nullptr ? *run.prepare : *recorded);
   if (run.stage.kind == name_of(StageKind::shear) && scale.until.until) {
-    run.ask.until = to_json(*scale.until.until);
+    run.until = to_json(*scale.until.until);
   }
-  run.stage.asks = {run.ask};
+  run.stage.asks = {run};
   return run;
 }
 
@@ -177,10 +177,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
         placed(*plan.file, run.packing, seed);  // or says why it cannot
       }
 
-      const std::string& same = variant_of.emplace(run.stage.id, run.ask.variant).first->second;
-      if (same == run.ask.variant || seed != chosen_seeds.front()) continue;
+      const std::string& same = variant_of.emplace(run.stage.id, run.variant).first->second;
+      if (same == run.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
-                                          manifest.file, same, run.ask.variant));
+                                          manifest.file, same, run.variant));
     }
   }
   if (const std::string* missing = wanted.unfound()) {
@@ -193,9 +193,9 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   std::vector<nlohmann::json> swept;
-  for (const PlannedRun& run : plan.runs) swept.push_back(run.ask.swept);
+  for (const PlannedRun& run : plan.runs) swept.push_back(run.swept);
   const auto names = variant_names(swept, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.ask.swept);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.swept);
   take_declared_lengths(common, options.known, variants);
   std::ranges::move(warnings_of(manifest, scale, variants, chosen, seeds.size()),
                     std::back_inserter(plan.warnings));
@@ -214,8 +214,8 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
     const auto [place, fresh] = places.try_emplace(run.stage.id, known.size());
     if (fresh) known.push_back(run.stage);
     Stage& stage = known[place->second];
-    if (!fresh) stage.asks.push_back(run.ask);
-    stage.cycle = std::max(stage.cycle, static_cast<double>(run.ask.target_cycles));
+    if (!fresh) stage.asks.push_back(run);
+    stage.cycle = std::max(stage.cycle, static_cast<double>(run.target_cycles));
   }
 }
 

@@ -26,7 +26,7 @@ bool is_auto(const Setting& setting);
 /// A combination of swept values.
 struct Variant {
   std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
-  nlohmann::json swept = nlohmann::json::object();  ///< swept keys, without `cycles`, and values
+  nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
   Parameters packing = {};  ///< `parameters`, with those of `settle` in their place
   /// How many of the seeds it has, the first ones; default: all.

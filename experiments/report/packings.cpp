@@ -68,13 +68,12 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
   for (const Run& run : runs) {
-    if (run.ask.experiment != experiment) continue;
+    if (run.experiment != experiment) continue;
     std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run.stage, run.stage.asks);
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
-    auto same = std::ranges::find(last, run.ask.variant,
-                                  [](const ChosenRun& other) { return other.ask.variant; });
+    auto same = std::ranges::find(last, run.variant, &ChosenRun::variant);
     if (same == last.end()) same = last.emplace(last.end());
     *same = {run, std::move(checkpoints)};
   }
@@ -87,7 +86,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   std::vector<ChosenRun> chosen;
   for (const std::string& id : choice.runs) {
     const Stage run = store.find_stage(id);
-    chosen.push_back({{run, first_ask(run)}, store.checkpoints(run.id)});
+    chosen.push_back({{first_ask(run), run}, store.checkpoints(run.id)});
   }
   if (!choice.runs.empty()) return chosen;
   std::set<std::string> known;
@@ -137,8 +136,7 @@ std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
 void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
   std::vector<std::string> left_out;
   while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
-    left_out.push_back(
-        fmt::format("{:.8} of {}", runs.back().stage.id, runs.back().ask.experiment));
+    left_out.push_back(fmt::format("{:.8} of {}", runs.back().stage.id, runs.back().experiment));
     runs.pop_back();
   }
   if (!left_out.empty()) {
@@ -336,13 +334,13 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
     packings.frames += list.size();
     if (list.empty()) continue;
-    packings.runs.push_back({{"id", run.stage.id},
-                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.ask),
-                                                   run.ask.seed, run.stage.grains)},
-                             {"experiment", run.ask.experiment},
-                             {"grains", run.stage.grains},
-                             {"wall_grains", run.wall_grains},
-                             {"frames", std::move(list)}});
+    packings.runs.push_back(
+        {{"id", run.stage.id},
+         {"label", fmt::format("{}, seed {}, N = {}", names.of(run), run.seed, run.stage.grains)},
+         {"experiment", run.experiment},
+         {"grains", run.stage.grains},
+         {"wall_grains", run.wall_grains},
+         {"frames", std::move(list)}});
   }
   return packings;
 }

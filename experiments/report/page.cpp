@@ -617,7 +617,7 @@ void add_run_tables(Content& content) {
       experiment.table = run_table(content.store, selection, RowPer::run, measuring);
       // Another program may have declared runs since they were listed.
       for (const FigureRun& run : experiment.table.histories)
-        add_run_lineage(content.store, run.run_id, content.runs);
+        add_run_lineage(content.store, run.stage.id, content.runs);
       experiment.traces = traces_of(experiment.table, content.runs);
       content.report.damage.insert(experiment.table.damage.begin(), experiment.table.damage.end());
     } catch (const std::runtime_error& problem) {

@@ -385,7 +385,7 @@ std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNam
   return jobs;
 }
 
-// By scale, where it is not the default.
+// By scale, where the manifest states it.
 nlohmann::json overlap_limits(const Manifest& manifest) {
   nlohmann::json limits = nlohmann::json::object();
   for (const Scale& scale : scales_of(manifest)) {
@@ -415,16 +415,16 @@ std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan
       const bool prepare = stage.kind == name_of(StageKind::prepare);
       const bool first = known.insert(stage.id).second;
       if (prepare && !first) continue;
-      stage.asks = {run.ask};
+      stage.asks = {run};
       if (prepare) {
         // Variants that start from one packing share it, so its place says no variant.
         Ask& packing = stage.asks.front();
-        packing = {{.experiment = run.ask.experiment,
-                    .scale = run.ask.scale,
+        packing = {{.experiment = run.experiment,
+                    .scale = run.scale,
                     .variant = "packing",
-                    .seed = run.ask.seed,
-                    .manifest = run.ask.manifest}};
-        packing.checkpoint_every = run.ask.checkpoint_every;
+                    .seed = run.seed,
+                    .manifest = run.manifest}};
+        packing.checkpoint_every = run.checkpoint_every;
       }
       store.declare_stage(stage);
       if (first) stages.push_back(std::move(stage));

@@ -70,8 +70,8 @@ struct End {
   const CheckpointRecord* undecided = nullptr;  ///< the first that may have reached it
 };
 
-End end_for(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
-            const KnownMeasures& measures) {
+End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
+           const KnownMeasures& measures) {
   End end{static_cast<double>(ask.target_cycles)};
   const std::optional<Until> until = until_of(ask);
   if (!until) return end;
@@ -116,7 +116,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
   bool long_enough = true, reached = true;
   double latest = -1;
   for (const Ask& ask : asks) {
-    const End end = end_for(stage, ask, checkpoints, measures);
+    const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
         end.undecided != nullptr && (!look.undecided || end.undecided->step < look.undecided->step);
     if (earlier) look.undecided = *end.undecided;

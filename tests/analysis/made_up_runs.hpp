@@ -47,7 +47,7 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
   FigureRun run;
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   run.variant = key + "=" + text;
-  run.run_id = run.variant + "/" + std::to_string(seed);
+  run.stage.id = run.variant + "/" + std::to_string(seed);
   run.swept = {{key, value}};
   run.parameters = {{"amplitude_rad", 0.0833}, {"grains", 5200}, {"pressure_at", "top"}};
   run.seed = seed;

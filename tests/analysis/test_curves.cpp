@@ -31,7 +31,7 @@ std::vector<FigureRun> two_parameters(const std::vector<double>& drags = {0.001,
         run.swept["drag_kg_per_s"] = drag;
         run.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
         run.name = fmt::format("fluid={}, b={} kg/s", fluid, drag);
-        run.run_id = fmt::format("{}/{}", run.variant, seed);
+        run.stage.id = fmt::format("{}/{}", run.variant, seed);
         runs.push_back(std::move(run));
       }
     }

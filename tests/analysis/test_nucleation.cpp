@@ -91,7 +91,7 @@ std::vector<FigureRun> runs_with_places(int count, const std::function<double(do
                                      static_cast<std::int32_t>(20 * n)));
     }
     runs.push_back(run_with(maps));
-    runs.back().run_id = std::to_string(seed);
+    runs.back().stage.id = std::to_string(seed);
   }
   return runs;
 }
@@ -100,9 +100,9 @@ std::vector<FigureRun> runs_with_places(int count, const std::function<double(do
 std::vector<FigureRun> with_copies(std::vector<FigureRun> runs, double amplitude, bool shared) {
   for (std::size_t k = 0, count = runs.size(); k < count; ++k) {
     FigureRun copy = runs[k];
-    copy.run_id += " again";
+    copy.stage.id += " again";
     copy.parameters["amplitude_rad"] = amplitude;
-    if (shared) runs[k].packing = copy.packing = "packing of " + runs[k].run_id;
+    if (shared) runs[k].packing = copy.packing = "packing of " + runs[k].stage.id;
     runs.push_back(std::move(copy));
   }
   return runs;
@@ -286,7 +286,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
           const double rate = 2e-5 * grains * std::exp(0.6 * scatter[seed]);
           const double onset = 1 - std::log(u) / rate;
           runs.push_back(waiting(grains, seed, onset < 60 ? static_cast<int>(onset) : 0, 60));
-          runs.back().run_id += amplitude > 0.0833 ? "b" : "a";
+          runs.back().stage.id += amplitude > 0.0833 ? "b" : "a";
           runs.back().parameters["amplitude_rad"] = amplitude;
         }
       }

@@ -32,7 +32,7 @@ std::vector<FigureRun> runs_of_sweep() {
         run.swept["period_s"] = period;
         run.variant = fmt::format("amplitude_rad={},period_s={}", amplitude, period);
         run.name = fmt::format("A={} rad, T={} s", amplitude, period);
-        run.run_id = fmt::format("{}/{}", run.variant, seed);
+        run.stage.id = fmt::format("{}/{}", run.variant, seed);
         runs.push_back(std::move(run));
       }
     }
@@ -348,7 +348,7 @@ std::vector<FigureRun> runs_of_steps() {
           });
       run.swept["engine"] = engine;
       run.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
-      run.run_id = fmt::format("{}/{}", run.variant, seed);
+      run.stage.id = fmt::format("{}/{}", run.variant, seed);
       run.packing = fmt::format("packing {}", seed);
       run.core_time_s =
           steps * static_cast<double>(seed) * (engine == std::string("lammps") ? 9 : 1);
@@ -439,7 +439,7 @@ TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
 TEST(OwnPlot, IsADifferenceFromTheMeanOfSeveralPartners) {
   std::vector<FigureRun> runs = runs_of_steps();
   FigureRun clone = runs[0];  // the reference of packing 1
-  clone.run_id += "/clone";
+  clone.stage.id += "/clone";
   clone.seed = 11;
   for (CheckpointMeasures& checkpoint : clone.checkpoints) {
     checkpoint.measures.numbers["phi"] += 0.002;

@@ -32,7 +32,7 @@ Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) 
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
     seen.emplace_back();
-    for (const std::uint64_t step : asked_steps(stage, run.ask, 0, cycle)) {
+    for (const std::uint64_t step : asked_steps(stage, run, 0, cycle)) {
       seen.emplace_back().step = step;
     }
   }
@@ -110,9 +110,8 @@ void expect_bounded(const std::string& text) {
       const Geometry shape = geometry(p);
       EXPECT_FALSE(too_large(shape));
       EXPECT_LE(p.settle_time_limit_s / p.settle_time_step_s, kMostSteps);
-      EXPECT_LE(
-          static_cast<double>(run.ask.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
-          2 * kMostSteps);
+      EXPECT_LE(static_cast<double>(run.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
+                2 * kMostSteps);
       EXPECT_TRUE(std::isfinite(expected_overlap(p)));
       for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));

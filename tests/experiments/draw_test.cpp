@@ -55,9 +55,8 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
 // Variant and seed of the runs of tiny/S2, each once.
 std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRuns& collected) {
   std::set<std::pair<std::string, std::uint64_t>> found;
-  for (const CollectedRun& run : collected.runs) {
-    EXPECT_TRUE(found.emplace(run.ask.variant, run.ask.seed).second)
-        << run.ask.variant << " seed " << run.ask.seed;
+  for (const FigureRun& run : collected.runs) {
+    EXPECT_TRUE(found.emplace(run.variant, run.seed).second) << run.variant << " seed " << run.seed;
   }
   return found;
 }
@@ -69,7 +68,7 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   compute(store_, other);
   CollectedRuns newest = collect_runs(store_, kS2, {});
   EXPECT_EQ(distinct_runs(newest).size(), 4U);
-  for (const CollectedRun& run : newest.runs) {
+  for (const FigureRun& run : newest.runs) {
     EXPECT_EQ(run.stage.resolved.at("parameters").at("pressure_Pa"), 700);
   }
   ASSERT_EQ(newest.notes.size(), 1U);
@@ -90,7 +89,7 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1});
   std::string order;
   for (const shearcell::Run& run : newest_runs(select_runs(store_, {})).runs)
-    order += run.ask.variant + std::to_string(run.ask.seed) + " ";
+    order += run.variant + std::to_string(run.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
 

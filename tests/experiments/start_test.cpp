@@ -182,8 +182,8 @@ TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
   EXPECT_EQ(parents.size(), 2U);
   const auto found =
       collect_runs(store_, wanted_figures(store_, {"S2"}, {"clones"}).figures.at(0), {});
-  for (const CollectedRun& run : found.runs) {
-    EXPECT_EQ(figure_run(run).packing, store_.stage(run.stage.parent).parent) << "one packing";
+  for (const FigureRun& run : found.runs) {
+    EXPECT_EQ(run.packing, store_.stage(run.stage.parent).parent) << "one packing";
   }
 }
 

@@ -72,10 +72,10 @@ Run about() {
                           {"gravity_m_per_s2", 9.81},
                           {"fluid", "still"},
                           {"steps_per_cycle", 45600}}}};
-  run.ask.experiment = "drag";
-  run.ask.scale = "smoke";
-  run.ask.variant = "fluid=still,amplitude_rad=0.0833";
-  run.ask.seed = 7;
+  run.experiment = "drag";
+  run.scale = "smoke";
+  run.variant = "fluid=still,amplitude_rad=0.0833";
+  run.seed = 7;
   return run;
 }
 
@@ -440,7 +440,7 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
 TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
   const TemporaryFolder folder;
   shearcell::Run run = about();
-  run.ask.scale.clear();  // a manifest without scales
+  run.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
