@@ -38,6 +38,18 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
       .hex();
 }
 
+/// Renames the file, which may hold the only measures of pruned checkpoints. A journal left behind
+/// would be played back into the new database.
+void set_aside(const fs::path& file) {
+  std::error_code ignored;
+  fs::path kept;
+  for (int n = 1; kept.empty() || fs::exists(kept, ignored); ++n) {
+    kept = fmt::format("{}.damaged-{}", file.string(), n);
+  }
+  fs::rename(file.string() + "-journal", kept.string() + "-journal", ignored);
+  fs::rename(file, kept, ignored);
+}
+
 }  // namespace
 
 DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
@@ -95,10 +107,7 @@ void DerivedCache::attempt(Work&& work) {
       if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
       if (!first) return give_up(damage.what());
       database_.reset();
-      std::error_code ignored;
-      // A journal left behind would be played back into the new database.
-      fs::remove(file_.string() + "-journal", ignored);
-      fs::remove(file_, ignored);
+      set_aside(file_);
     } catch (const std::exception& problem) {
       return give_up(problem.what());
     }

@@ -30,8 +30,9 @@ struct DerivedObject {
 /// Derived objects of one store. For one thread at a time; several processes may use one store.
 ///
 /// The content of the file never causes an exception: an object that is missing, damaged or stored
-/// under another key is not returned, and a file that is not a valid database is replaced. If
-/// nothing can be stored (no space, no permission, a foreign file), `trouble` gives the reason.
+/// under another key is not returned, and a file that is not a valid database is renamed and
+/// replaced. If nothing can be stored (no space, no permission, a foreign file), `trouble` gives
+/// the reason.
 class DerivedCache {
  public:
   /// With Access::read nothing is created, replaced or stored.

@@ -299,7 +299,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     });
   };
   require(".verdict.json", "{\n \"claims\": [", "");
-  require(".verdict.csv", "claim,", "");
+  require(".verdict.csv", "claim", "");  // without a comma if no run has a value
   require(".caption.txt", "Figure " + made.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + made.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {

@@ -105,6 +105,10 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                           std::span<const Stage> known) {
   const Start& start = scale.start;
   const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
+  if (start.experiment == manifest.experiment && scale_name(at_scale) == scale_name(scale.name)) {
+    refuse(manifest.file, start.at, "start", "names the experiment and the scale of these runs", "",
+           "Give the manifest another `experiment`.");
+  }
   const auto is_it = [&](const Ask& ask) {
     return ask.newest && ask.experiment == start.experiment &&
            scale_name(ask.scale) == scale_name(at_scale) &&

@@ -304,6 +304,9 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
             std::string::npos);
   EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
       << "what acts on the grains may change";
+  EXPECT_NE(refusal(tiny_manifest("", "start: {experiment: tiny, seed: 1, cycle: 1}\n"))
+                .find("start: names the experiment and the scale of these runs."),
+            std::string::npos);
 }
 
 /// A manifest in a folder of its own, beside a file of grains.
