@@ -3,7 +3,7 @@
 //
 // A provider computes some measures of a checkpoint, or of a whole run, in one function. To add
 // measures, write a provider beside the function that computes them and add it to the list in
-// measures.cpp. Names that stand elsewhere are those of single measures that a figure or a page needs.
+// measures.cpp. Elsewhere only single measures are named, where a figure or a page needs them.
 #pragma once
 
 #include <cstddef>
