@@ -123,7 +123,6 @@ int after_output(int code) {
 }
 
 int run(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on files (`ulimit -f`) is an error as a full disk is
   Context context;
   // CLI11's envname would override what was parsed, since CLI11 reads it for every subcommand.
   const char* store = std::getenv("SHEARCELL_STORE");
