@@ -242,7 +242,7 @@ FigureRun figure_run(Run run) {
   return made;
 }
 
-void keep_measured(FigureRun& run) {
+void leave_out_unmeasured(FigureRun& run) {
   std::erase_if(run.checkpoints, [](const CheckpointMeasures& one) {
     return std::ranges::count(one.lacking, "scalars") > 0;
   });

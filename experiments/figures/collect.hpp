@@ -45,7 +45,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 FigureRun figure_run(Run run);
 
 /// Removes the checkpoints that lack "scalars"; the run ends where its stage has ended so far.
-void keep_measured(FigureRun& run);
+void leave_out_unmeasured(FigureRun& run);
 
 /// Measures the checkpoints of the runs (those for which `wanted(run, place)` holds), with the
 /// cadence that each run's experiment asks for. Adds what could not be read to the outcome.

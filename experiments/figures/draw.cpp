@@ -235,7 +235,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     providers.insert(providers.begin(), "scalars");
   }
   measure_runs(store, runs, providers, measuring, made);
-  std::ranges::for_each(runs, keep_measured);
+  std::ranges::for_each(runs, leave_out_unmeasured);
   made.lineage = lineage_of(made, inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(

@@ -243,7 +243,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     const double end = last == nullptr ? 0 : last->cycle;
     run.core_time_s = computing_time(store, run.stage.id, end).core_seconds;
     FigureRun& history = table.histories.emplace_back(run);
-    keep_measured(history);
+    leave_out_unmeasured(history);
     std::erase_if(history.checkpoints,
                   [](const CheckpointMeasures& one) { return one.cycle != std::floor(one.cycle); });
     add({&run, last, run.stage.kind == name_of(StageKind::shear) ? &history : nullptr});

@@ -991,8 +991,9 @@ struct Reader {
       reject_key(part, fmt::format("does not go with {}", sources.front()), "Leave it out.");
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
-    if (file != nullptr && start.file.empty())
-      reject_key(*file, "names no file", "State its path.");
+    if (file != nullptr && start.file.empty()) {
+      return reject_key(*file, "names no file", "State its path.");
+    }
     if (checkpoint == nullptr) return;
     const string_view text = checkpoint->text;
     const std::size_t at = std::min(text.find('@'), text.size());

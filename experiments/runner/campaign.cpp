@@ -75,14 +75,14 @@ class Progress {
     if (quiet_ || how.empty()) return;
     erase();
     print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
-    if (terminal_) draw();
+    draw();
   }
 
   /// This program no longer computes the stage.
   void drop(const StageJob& job) {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
-    if (terminal_ && !quiet_) draw();
+    draw();
   }
 
   /// A permanent line; a `minor` one only if progress is shown.
@@ -91,7 +91,7 @@ class Progress {
     if (minor && quiet_) return;
     erase();
     print_stderr("{}\n", line);
-    if (terminal_ && !quiet_) draw();
+    draw();
   }
 
  private:
@@ -105,6 +105,7 @@ class Progress {
   }
 
   void draw() {
+    if (quiet_ || !terminal_) return;
     erase();
     // A longer line would wrap, and drawing over it would leave its beginning behind.
     const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
