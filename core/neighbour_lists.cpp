@@ -23,10 +23,16 @@ float round_down(double margin) {
   return static_cast<float>(margin * (1 - 0x1p-23));
 }
 
+// Margins that no grain may exceed in a cell of this depth.
+double largest_margin(double depth) {
+  return 0.24 * (depth - 2);
+}
+
 }  // namespace
 
-double ListSettings::widest_margin() const {
-  return 0.5 * (std::max({widest_cutoff, outer_cutoff, inner_cutoff}) - 1);
+double ListSettings::widest_margin(double depth) const {
+  return std::max(
+      {std::min(0.5 * (widest_cutoff - 1), largest_margin(depth)), outer_margin(), inner_margin()});
 }
 
 void Reference::set(const double* rows, std::size_t grains, const WallPose& pose, double widest,
@@ -80,7 +86,7 @@ NeighbourLists::NeighbourLists(const Kernels& kernels, const ListSettings& setti
       team_(team),
       settings_(settings),
       depth_(depth),
-      widest_margin_(settings.widest_margin()) {}
+      widest_margin_(settings.widest_margin(depth)) {}
 
 bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   if (settings_.rebuild_every_step) return false;
@@ -93,9 +99,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;
-  // No grain may be near a neighbour across both seams.
-  const double most = std::min(0.5, 0.24 * (depth_ - 2));
-  const double least = settings_.widest_margin();
+  const double most = std::min(0.5, largest_margin(depth_));
+  const double least = settings_.widest_margin(depth_);
   if (age > 0 && age < 100) widest_margin_ = std::min(1.3 * widest_margin_, most);
   if (age > 250) widest_margin_ /= 1.3;
   widest_margin_ = std::max(widest_margin_, least);

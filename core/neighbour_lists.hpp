@@ -25,13 +25,14 @@ namespace shearcell {
 struct ListSettings {
   double outer_cutoff = 1.25;  ///< for two grains that only follow the shear [d]
   double inner_cutoff = 1.04;  ///< the same for the inner list
-  double widest_cutoff = 1.4;  ///< for the fastest grains [d]
+  double widest_cutoff = 1.6;  ///< for the fastest grains, where the cell is deep enough [d]
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory
 
   double outer_margin() const { return 0.5 * (outer_cutoff - 1); }  ///< smallest [d]
   double inner_margin() const { return 0.5 * (inner_cutoff - 1); }
-  double widest_margin() const;
+  /// The same, reduced so that no grain is near a neighbour across both ends of the depth [d].
+  double widest_margin(double depth) const;
 };
 
 /// Positions when a list was built, in the frame that moves with the affine shear.

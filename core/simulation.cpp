@@ -30,7 +30,7 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
     throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
   }
   // A grain must not meet a neighbour through both seams.
-  if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin())) {
+  if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin(cell_.depth))) {
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
                                 " d, is less than twice the cutoff of the neighbour list: a "
                                 "grain could meet a neighbour, or itself, through both ends of the "

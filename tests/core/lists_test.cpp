@@ -140,7 +140,8 @@ PROPERTY(NeighbourLists, HoldExactlyThePairsWithinTheirMarginsInAscendingId, 300
                        static_cast<std::int32_t>(walls.size()) + points.id[g]});
     }
     CellOrder order;
-    order.build(cell, pose, 1 + 2 * settings.widest_margin(), points.rows.data(), sites, team);
+    order.build(cell, pose, 1 + 2 * settings.widest_margin(cell.depth), points.rows.data(), sites,
+                team);
     lists.build(now, points.id, order);
     for (std::size_t g = 0; g < grains; ++g) {
       RC_ASSERT(found_row(lists, walls, grains, kernels->lanes, g) ==

@@ -56,7 +56,7 @@ inline SimulationSettings any_settings() {
   settings.limits.overlap = settings.limits.escape = 1;  // small cells driven hard
   settings.lists.inner_cutoff = any_number("inner cutoff", 1.02, 1.2);
   settings.lists.outer_cutoff = settings.lists.inner_cutoff + any_number("outer beyond", 0.02, 0.1);
-  settings.lists.widest_cutoff = settings.lists.outer_cutoff + any_number("widest beyond", 0, 0.1);
+  settings.lists.widest_cutoff = settings.lists.outer_cutoff + any_number("widest beyond", 0, 0.3);
   settings.lists.rebuild_every_step = *rc::gen::inRange(0, 10).as("rebuilt always if 9") == 9;
   settings.lists.sort_memory = any_bool("memory sorted");
   return settings;
