@@ -192,11 +192,11 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), lengths)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
   const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
-  MeasureSources sources(store, {{run.stage.id, every}});
+  MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
-    const Frame frame =
-        frame_of(store.load_checkpoint(record), record, {shown_place(run), run.stage}, &sources);
+    const Frame frame = frame_of(store.load_checkpoint(record), record,
+                                 {shown_place(run), run.stage}, &sources, every);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files

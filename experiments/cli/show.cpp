@@ -61,19 +61,19 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
 
 /// The values of `table`; measured now if they are not cached.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
-  Measures measures;
+  CheckpointMeasures one{record};
   try {
-    const auto found = measure_checkpoints(store, {&record, 1}, table_providers(), {});
-    print_problems(found, "not measured", context);
-    measures = found.measures.front();
+    const ToMeasure todo{&one};
+    print_problems(measure_checkpoints(store, {&todo, 1}, table_providers(), {}), "not measured",
+                   context);
   } catch (const AnalysisError& problem) {  // a failed run may leave such a state
     print_stderr("not measured: {}\n", problem.what());
     MeasureSources sources(store);
     sources.read_run(record.run);
-    sources.add_recorded(record, measures);
+    sources.add_recorded(record, one.measures);
   }
   Facts facts;
-  for (const auto& [column, value] : facts_of(record, measures)) {
+  for (const auto& [column, value] : facts_of(record, one.measures)) {
     Fact& fact = facts.emplace_back(Fact{column.name, value});
     if (!value.is_number()) continue;
     fact.heading = column.name;

@@ -96,11 +96,11 @@ std::string frame_name(const Frame& frame) {
 }
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
-               const MeasureSources* sources) {
+               const MeasureSources* sources, std::uint64_t every) {
   const MeasureSources alone(record.run, run.stage);
-  const Measures measures =
-      (sources == nullptr ? alone : *sources)
-          .measures_of(record, checkpoint, analyse_stored(record, checkpoint), enters_frames);
+  const Measures measures = (sources == nullptr ? alone : *sources)
+                                .measures_of(record, every, checkpoint,
+                                             analyse_stored(record, checkpoint), enters_frames);
   const WallPose pose = pose_of(checkpoint);
   const double rate = measures.number("shear_rate_per_s");  // only of a shear
   Frame frame;

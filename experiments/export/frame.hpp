@@ -57,9 +57,10 @@ struct Frame : Particles {
 /// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".
 std::string frame_name(const Frame& frame);
 
-/// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. Throws
-/// as analyse_stored().
+/// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. `every`:
+/// as in ToMeasure. Throws as analyse_stored().
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-               const Run& run = {}, const MeasureSources* sources = nullptr);
+               const Run& run = {}, const MeasureSources* sources = nullptr,
+               std::uint64_t every = 1);
 
 }  // namespace shearcell

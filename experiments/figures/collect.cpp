@@ -253,28 +253,14 @@ void measure_runs(const Store& store, std::vector<FigureRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome,
                   const std::function<bool(const FigureRun&, std::size_t)>& wanted) {
-  std::map<std::uint64_t, std::vector<FigureRun*>> by_cadence;  // runs may share a stage
-  for (FigureRun& run : runs) by_cadence[run.checkpoint_every].push_back(&run);
-  for (const auto& [every, group] : by_cadence) {
-    std::vector<CheckpointRecord> records;
-    std::vector<CheckpointMeasures*> chosen;
-    MeasureOptions with_cadence = options;
-    for (FigureRun* run : group) {
-      with_cadence.cadence[run->stage.id] = every;
-      for (std::size_t k = 0; k < run->checkpoints.size(); ++k) {
-        if (wanted && !wanted(*run, k)) continue;
-        records.push_back(run->checkpoints[k]);
-        chosen.push_back(&run->checkpoints[k]);
-      }
+  std::vector<ToMeasure> chosen;
+  for (FigureRun& run : runs) {
+    for (std::size_t k = 0; k < run.checkpoints.size(); ++k) {
+      if (wanted && !wanted(run, k)) continue;
+      chosen.push_back({&run.checkpoints[k], run.checkpoint_every});
     }
-    if (records.empty()) continue;
-    MeasuredCheckpoints found = measure_checkpoints(store, records, providers, with_cadence);
-    for (std::size_t n = 0; n < chosen.size(); ++n) {
-      chosen[n]->measures = std::move(found.measures[n]);
-      chosen[n]->lacking = std::move(found.lacking[n]);
-    }
-    outcome += found;
   }
+  if (!chosen.empty()) outcome += measure_checkpoints(store, chosen, providers, options);
 }
 
 std::string WantedFigure::path() const {

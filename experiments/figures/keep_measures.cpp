@@ -26,9 +26,9 @@ bool is_simulated(const std::string& name) {
 /// Whether the provider needs a file that was pruned before. Such a measure was lost then, as where
 /// a pruned run was continued.
 bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
-                         const Provider& provider) {
+                         std::uint64_t every, const Provider& provider) {
   return std::ranges::any_of(provider.earlier, [&](std::uint64_t cycles) {
-    const CheckpointRecord* earlier = sources.find(record, cycles);
+    const CheckpointRecord* earlier = sources.find(record, cycles, every);
     return earlier != nullptr && earlier->state == CheckpointState::pruned;
   });
 }
@@ -67,12 +67,12 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   std::vector<FigureRun> batch;
   const auto measure_batch = [&] {
     measure_runs(store, batch, analyses, options, outcome);
+    MeasureSources sources(store);
     for (const FigureRun& run : batch) {
-      MeasureSources sources(store, {{run.stage.id, run.checkpoint_every}});
       sources.read_run(run.stage.id);
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
-          if (needs_a_pruned_file(sources, one, provider(name))) continue;
+          if (needs_a_pruned_file(sources, one, run.checkpoint_every, provider(name))) continue;
           unmeasured.insert(one.sha256);
         }
       }

@@ -218,7 +218,7 @@ PageFrame make_frame(const CheckpointRecord& record, const MeasureSources& sourc
   const Checkpoint checkpoint = sources.load(record);
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
-  const Measures measures = sources.measures_of(record, checkpoint, analysis, enters_page);
+  const Measures measures = sources.measures_of(record, 1, checkpoint, analysis, enters_page);
   const std::vector<GrainField> fields =
       make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);

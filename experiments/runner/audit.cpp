@@ -117,36 +117,47 @@ std::string difference(const json& cached, const json& computed, const std::stri
   return a.size() == b.size() ? "" : measure + ": its structure is another one";
 }
 
-std::vector<const Provider*> kept_providers() {
-  std::vector<const Provider*> kept;
-  for (const Provider& one : all_providers()) {
-    if (one.is_kept()) kept.push_back(&one);
-  }
-  return kept;
-}
+struct CachedMeasure {
+  const Provider* provider;
+  std::uint64_t every;  // as in ToMeasure
+  DerivedObject object;
+};
 
-/// Of one checkpoint, in the order of kept_providers().
-using Cached = std::vector<std::optional<std::vector<std::byte>>>;
-
-std::vector<DerivedKey> keys_of(const CheckpointRecord& record, MeasureSources& sources) {
+/// What the cache keeps of a checkpoint, for the cadences of all experiments that ask for its run.
+std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
+                                           MeasureSources& sources) {
   sources.read_run(record.run);
+  std::vector<CachedMeasure> found;
   std::vector<DerivedKey> keys;
-  for (const Provider* one : kept_providers()) keys.push_back(sources.key(record, *one));
-  return keys;
+  for (const Provider& one : all_providers()) {
+    for (const std::uint64_t every : sources.cadences(record.run)) {
+      if (!one.is_kept() || (every != 1 && one.earlier.empty())) continue;
+      keys.push_back(sources.key(record, one, every));
+      found.push_back({&one, every, {keys.back(), {}}});
+    }
+  }
+  auto cached = cache.get(keys);
+  std::size_t k = 0;
+  std::erase_if(found, [&](CachedMeasure& one) {
+    const bool has = cached[k].has_value();
+    if (has) one.object.content = std::move(*cached[k]);
+    ++k;
+    return !has;
+  });
+  return found;
 }
 
-std::string wrong_measure(const Store& store, const CheckpointRecord& record, const Cached& cached,
-                          const MeasureSources& sources) {
+std::string wrong_measure(const Store& store, const CheckpointRecord& record,
+                          const std::vector<CachedMeasure>& cached, const MeasureSources& sources) {
   try {
     const Checkpoint checkpoint = store.load_checkpoint(record);
     const Analysis analysis = analyse(checkpoint);
-    for (std::size_t m = 0; m < cached.size(); ++m) {
-      if (!cached[m]) continue;
-      const Provider& one = *kept_providers()[m];
+    for (const CachedMeasure& one : cached) {
       UnreadCheckpoints unread;
-      const auto computed = sources.compute(one, record, &checkpoint, &analysis, unread);
+      const auto computed =
+          sources.compute(*one.provider, record, one.every, &checkpoint, &analysis, unread);
       if (!computed) continue;
-      auto found = difference(decode_result(*cached[m]), *computed, one.name);
+      auto found = difference(decode_result(one.object.content), *computed, one.provider->name);
       if (!found.empty()) return found;
     }
   } catch (const AnalysisError& error) {
@@ -159,13 +170,11 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record, co
 
 /// Checkpoints of which the cache keeps a measure.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
-                                                   MeasureSources& sources, Listed listed) {
+                                                   MeasureSources& sources) {
   std::vector<CheckpointRecord> found;
   for (const Stage& run : store.stages()) {
-    for (CheckpointRecord& record : store.checkpoints(run.id, listed)) {
-      const Cached cached = cache.get(keys_of(record, sources));
-      const bool any = std::ranges::any_of(cached, [](const auto& k) { return k.has_value(); });
-      if (any) found.push_back(std::move(record));
+    for (CheckpointRecord& record : store.checkpoints(run.id)) {
+      if (!cached_measures(record, cache, sources).empty()) found.push_back(std::move(record));
     }
   }
   return found;
@@ -175,12 +184,11 @@ void copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  for (const CheckpointRecord& record :
-       measured_checkpoints(store, from, sources, Listed::and_pruned)) {
-    const std::vector<DerivedKey> keys = keys_of(record, sources);
-    Cached there = from.get(keys), here = into.get(keys);
-    for (std::size_t m = 0; m < keys.size(); ++m) {
-      if (there[m] && !here[m]) missing.push_back({keys[m], std::move(*there[m])});
+  for (const Stage& run : store.stages()) {
+    for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+      for (CachedMeasure& one : cached_measures(record, from, sources)) {
+        if (!into.get({&one.object.key, 1}).front()) missing.push_back(std::move(one.object));
+      }
     }
   }
   if (!missing.empty()) into.put(missing);
@@ -247,13 +255,12 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  const std::vector<CheckpointRecord> cached =
-      measured_checkpoints(store, cache, sources, Listed::recorded);
+  const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
   const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
   MeasureCheck check{.cached = cached.size(), .computed = chosen.size(), .findings = {}};
   for (const CheckpointRecord& record : chosen) {
     const std::string wrong =
-        wrong_measure(store, record, cache.get(keys_of(record, sources)), sources);
+        wrong_measure(store, record, cached_measures(record, cache, sources), sources);
     if (wrong.empty()) continue;
     check.findings.push_back(
         {Finding::Severity::error, (folder / DerivedCache::kFile).string(), record.run,

@@ -34,40 +34,39 @@ constexpr std::size_t kBatch = 64;
 
 class Measuring {
  public:
-  Measuring(const Store& store, std::span<const CheckpointRecord> records,
+  Measuring(const Store& store, std::span<const ToMeasure> checkpoints,
             std::span<const std::string> names, const MeasureOptions& options)
-      : records_(records),
-        sources_(store, options.cadence),
-        options_(options),
-        cache_(store.folder()) {
+      : checkpoints_(checkpoints), sources_(store), options_(options), cache_(store.folder()) {
     for (const std::string& name : names) add(provider(name));
     wanted_ = providers_.size();
     for (const std::string& name : options.also) add(provider(name));
-    std::map<std::string_view, std::size_t> known;  // a run of two experiments is listed twice
-    for (const CheckpointRecord& record : records) {
-      sources_.read_run(record.run);
-      const auto [entry, fresh] = known.try_emplace(record.sha256, distinct_.size());
-      if (fresh) distinct_.push_back(&record);
+    // A run of two experiments is listed twice.
+    std::map<std::pair<std::string_view, std::uint64_t>, std::size_t> known;
+    for (const ToMeasure& one : checkpoints) {
+      sources_.read_run(one.checkpoint->run);
+      const std::pair which = {std::string_view(one.checkpoint->sha256), one.every};
+      const auto [entry, fresh] = known.try_emplace(which, distinct_.size());
+      if (fresh) distinct_.push_back(one);
       place_.push_back(entry->second);
     }
     results_.assign(distinct_.size(), Results(providers_.size()));
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const CheckpointRecord* record = distinct_[i];
+      const auto [record, every] = distinct_[i];
       for (std::size_t p = 0; p < providers_.size(); ++p) {
-        keys_.push_back(sources_.key(*record, *providers_[p]));
+        keys_.push_back(sources_.key(*record, *providers_[p], every));
         if (!takes(*record, *providers_[p])) {
           results_[i][p] = json::object();  // without measures
           continue;
         }
         for (const std::uint64_t cycles : providers_[p]->earlier) {
-          const CheckpointRecord* other = sources_.find(*record, cycles);
+          const CheckpointRecord* other = sources_.find(*record, cycles, every);
           if (other != nullptr) outcome_.earlier[other->run].emplace(other->step, other->sha256);
         }
       }
     }
   }
 
-  MeasuredCheckpoints run() {
+  MeasureOutcome run() {
     look_up();
     for (std::size_t i = 0; i < distinct_.size(); ++i) {
       const auto wanted = std::span(results_[i]).first(wanted_);
@@ -86,7 +85,9 @@ class Measuring {
     flush();
     outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
     add_lines(unread_earlier_, outcome_);
-    for (std::size_t k = 0; k < records_.size(); ++k) read(records_[k], results_[place_[k]]);
+    for (std::size_t k = 0; k < place_.size(); ++k) {
+      read(*checkpoints_[k].checkpoint, results_[place_[k]]);
+    }
     outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
   }
@@ -118,7 +119,7 @@ class Measuring {
   }
 
   void compute(std::size_t i) {
-    const CheckpointRecord& record = *distinct_[i];
+    const CheckpointRecord& record = *distinct_[i].checkpoint;
     const Checkpoint checkpoint = sources_.load(record);
     std::optional<Analysis> analysis;  // once, for the first that takes it
     std::vector<DerivedObject> objects;
@@ -127,7 +128,7 @@ class Measuring {
       if (!results_[i][p].is_null()) continue;
       const bool analyses = providers_[p]->from != ComputedFrom::simulation;
       if (analyses && !analysis) analysis = analyse_stored(record, checkpoint);
-      auto result = sources_.compute(*providers_[p], record, &checkpoint,
+      auto result = sources_.compute(*providers_[p], record, distinct_[i].every, &checkpoint,
                                      analysis ? &*analysis : nullptr, unread);
       if (!result) continue;
       objects.push_back({keys_[i * providers_.size() + p], encode_result(*result)});
@@ -144,45 +145,40 @@ class Measuring {
     pending_.clear();
   }
 
-  /// Adds the measures of one record.
-  void read(const CheckpointRecord& record, const Results& results) try {
-    std::vector<std::string>& lacking = outcome_.lacking.emplace_back();
-    Measures& found = outcome_.measures.emplace_back();
+  void read(CheckpointMeasures& one, const Results& results) try {
+    one.measures = {};
+    one.lacking.clear();
     for (std::size_t p = 0; p < wanted_; ++p) {
       if (results[p].is_null()) {
-        lacking.push_back(providers_[p]->name);
+        one.lacking.push_back(providers_[p]->name);
       } else {
-        providers_[p]->read(results[p], found);
+        providers_[p]->read(results[p], one.measures);
       }
     }
-    sources_.add_recorded(record, found);
+    sources_.add_recorded(one, one.measures);
   } catch (const AnalysisError& problem) {
     throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
                         problem.what() + "); delete it, and the measures are computed again");
   }
 
-  const std::span<const CheckpointRecord> records_;
+  const std::span<const ToMeasure> checkpoints_;
   MeasureSources sources_;
   const MeasureOptions& options_;
   std::vector<const Provider*> providers_;  // those that are asked for, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // the number of those that are asked for
-  std::vector<const CheckpointRecord*> distinct_;
-  std::vector<std::size_t> place_;  // of each record in distinct_
+  std::vector<ToMeasure> distinct_;
+  std::vector<std::size_t> place_;  // of each checkpoint in distinct_
   std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the providers
   std::vector<std::size_t> todo_;
   std::vector<Results> results_;  // of each in distinct_; a thread writes only its own
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
-  MeasuredCheckpoints outcome_;
+  MeasureOutcome outcome_;
   UnreadCheckpoints unread_earlier_;
 };
 
 }  // namespace
-
-bool MeasuredCheckpoints::lacks(std::size_t record, std::string_view provider) const {
-  return std::ranges::find(lacking[record], provider) != lacking[record].end();
-}
 
 MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
   measured += more.measured;
@@ -238,11 +234,10 @@ Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkp
   }
 }
 
-MeasuredCheckpoints measure_checkpoints(const Store& store,
-                                        std::span<const CheckpointRecord> records,
-                                        std::span<const std::string> providers,
-                                        const MeasureOptions& options) {
-  return Measuring(store, records, providers, options).run();
+MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
+                                   std::span<const std::string> providers,
+                                   const MeasureOptions& options) {
+  return Measuring(store, checkpoints, providers, options).run();
 }
 
 }  // namespace shearcell

@@ -12,9 +12,9 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "analysis/figure.hpp"
 #include "analysis/measures.hpp"
 #include "provenance/store.hpp"
 
@@ -26,9 +26,6 @@ using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 struct MeasureOptions {
   std::size_t workers = 1;
   ReadProgress report = {};  ///< called as checkpoints are computed
-  /// Cycles between the checkpoints that the experiment asks of a run, by the run's id; 1 if not
-  /// given. Measures over two checkpoints use checkpoints of this cadence only.
-  std::map<std::string, std::uint64_t> cadence = {};
   /// Names of further providers, whose results are computed and cached whenever a checkpoint is
   /// analysed, so that one analysis serves many callers. They must not need earlier checkpoints.
   std::vector<std::string> also = {};
@@ -53,23 +50,21 @@ struct MeasureOutcome : UnreadCheckpoints {
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-struct MeasuredCheckpoints : MeasureOutcome {
-  std::vector<Measures> measures;  ///< in the order of the records
-  /// For each record: names of the providers without a result, because the checkpoint or an earlier
-  /// one could not be read.
-  std::vector<std::vector<std::string>> lacking;
-
-  bool lacks(std::size_t record, std::string_view provider) const;
+/// A checkpoint of an experiment that asks for one `every` so many cycles. Measures over two
+/// checkpoints use no others.
+struct ToMeasure {
+  CheckpointMeasures* checkpoint;
+  std::uint64_t every = 1;
 };
 
-/// The measures of these providers, and the measures that follow from the log
-/// (ComputedFrom::record). Results are cached under the checkpoint's recorded SHA-256: for a cached
-/// result the file is not read and may be missing. Cached and computed results are the same bytes.
-/// Throws AnalysisError, with a remedy, for a cached result that does not match its key.
-MeasuredCheckpoints measure_checkpoints(const Store& store,
-                                        std::span<const CheckpointRecord> records,
-                                        std::span<const std::string> providers,
-                                        const MeasureOptions& options);
+/// Sets the measures of these providers, and the measures that follow from the log
+/// (ComputedFrom::record), and what is lacking. Results are cached under the checkpoint's recorded
+/// SHA-256: for a cached result the file is not read and may be missing. Cached and computed
+/// results are the same bytes. Throws AnalysisError, with a remedy, for a cached result that does
+/// not match its key.
+MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
+                                   std::span<const std::string> providers,
+                                   const MeasureOptions& options);
 
 /// The analysis of a stored checkpoint. If analyse() throws AnalysisError, throws StoreDamaged,
 /// which names checkpoint and run, since this program records no such state.

@@ -39,7 +39,9 @@ MeasureSources::MeasureSources(const std::string& id, const Stage& run) {
 void MeasureSources::read_run(const std::string& run) {
   const auto [entry, first] = runs_.try_emplace(run);
   if (!first) return;
-  entry->second.facts = facts_of(store_->stage(run));
+  const Stage stage = store_->stage(run);
+  entry->second.facts = facts_of(stage);
+  for (const Ask& ask : stage.asks) entry->second.cadences.insert(ask.checkpoint_every);
   if (!entry->second.facts.drive) return;
   for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
     const std::uint64_t step = one.step;
@@ -47,37 +49,34 @@ void MeasureSources::read_run(const std::string& run) {
   }
 }
 
-DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider) const {
+DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider,
+                               std::uint64_t every) const {
   std::string text = provider.key();
   for (const std::uint64_t cycles : provider.earlier) {
-    const CheckpointRecord* other = find(record, cycles);
+    const CheckpointRecord* other = find(record, cycles, every);
     text += " " + (other == nullptr ? "none" : other->sha256);
   }
   return {record.sha256, std::move(text), analysis_version};
 }
 
-const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record,
-                                             std::uint64_t cycles) const {
+const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record, std::uint64_t cycles,
+                                             std::uint64_t every) const {
   const auto run = runs_.find(record.run);
   if (run == runs_.end() || !run->second.facts.drive) return nullptr;
   const std::uint64_t steps = cycle_steps(*run->second.facts.drive), back = cycles * steps;
   if (record.step < back) return nullptr;
-  const auto every = cadence_.find(record.run);
-  const std::uint64_t step = record.step - back, cycle = step / steps;
-  const bool whole = step % steps == 0;
-  if (whole && every != cadence_.end() && cycle % every->second != 0) return nullptr;
+  const std::uint64_t step = record.step - back;
+  if (step % steps == 0 && step / steps % every != 0) return nullptr;
   const auto found = run->second.checkpoints.find(step);
   return found == run->second.checkpoints.end() ? nullptr : &found->second;
 }
 
-std::optional<nlohmann::json> MeasureSources::compute(const Provider& provider,
-                                                      const CheckpointRecord& record,
-                                                      const Checkpoint* checkpoint,
-                                                      const Analysis* analysis,
-                                                      UnreadCheckpoints& unread) const {
+std::optional<nlohmann::json> MeasureSources::compute(
+    const Provider& provider, const CheckpointRecord& record, std::uint64_t every,
+    const Checkpoint* checkpoint, const Analysis* analysis, UnreadCheckpoints& unread) const {
   Checkpoint other;
   const auto load_earlier = [&](std::uint64_t cycles) -> const Checkpoint* {
-    const CheckpointRecord* found = find(record, cycles);
+    const CheckpointRecord* found = find(record, cycles, every);
     if (found == nullptr) return nullptr;
     other = load(*found);
     return &other;
@@ -97,20 +96,20 @@ void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& meas
   UnreadCheckpoints none;
   for (const Provider& one : all_providers()) {
     if (one.from != ComputedFrom::record) continue;
-    if (const auto result = compute(one, record, nullptr, nullptr, none)) {
+    if (const auto result = compute(one, record, 1, nullptr, nullptr, none)) {
       one.read(*result, measures);
     }
   }
 }
 
-Measures MeasureSources::measures_of(const CheckpointRecord& record, const Checkpoint& checkpoint,
-                                     const Analysis& analysis,
+Measures MeasureSources::measures_of(const CheckpointRecord& record, std::uint64_t every,
+                                     const Checkpoint& checkpoint, const Analysis& analysis,
                                      bool (*wanted)(const Provider&)) const {
   UnreadCheckpoints unread;
   Measures measures;
   for (const Provider& one : all_providers()) {
     if (!wanted(one)) continue;
-    const auto result = compute(one, record, &checkpoint, &analysis, unread);
+    const auto result = compute(one, record, every, &checkpoint, &analysis, unread);
     if (result) one.read(*result, measures);
   }
   add_recorded(record, measures);

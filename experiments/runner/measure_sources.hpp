@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
-#include <utility>
 
 #include "analysis/measures.hpp"
 #include "experiments/runner/measure.hpp"
@@ -19,9 +19,7 @@ namespace shearcell {
 
 class MeasureSources {
  public:
-  /// `cadence` is MeasureOptions::cadence.
-  explicit MeasureSources(const Store& store, std::map<std::string, std::uint64_t> cadence = {})
-      : store_(&store), cadence_(std::move(cadence)) {}
+  explicit MeasureSources(const Store& store) : store_(&store) {}
   /// For one run, called `id`, without its earlier checkpoints.
   MeasureSources(const std::string& id, const Stage& run);
 
@@ -29,39 +27,46 @@ class MeasureSources {
   /// run; any number of threads may then call them.
   void read_run(const std::string& run);
 
-  /// The checkpoint of the same run `cycles` earlier, on the cadence of the experiment; null if
-  /// there is none. Valid as long as this object.
-  const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles) const;
+  /// The checkpoint of the same run `cycles` earlier, if an experiment that asks for a checkpoint
+  /// `every` so many cycles has one there; else null. Valid as long as this object.
+  const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles,
+                               std::uint64_t every) const;
 
   /// The key under which a result is cached; it also names the earlier checkpoints that the
   /// provider needs.
-  DerivedKey key(const CheckpointRecord& record, const Provider& provider) const;
+  DerivedKey key(const CheckpointRecord& record, const Provider& provider,
+                 std::uint64_t every) const;
 
+  /// Cycles between the checkpoints that experiments ask for, and 1.
+  const std::set<std::uint64_t>& cadences(const std::string& run) const {
+    return runs_.at(run).cadences;
+  }
   const RunFacts& facts(const std::string& run) const { return runs_.at(run).facts; }
   Checkpoint load(const CheckpointRecord& record) const { return store_->load_checkpoint(record); }
 
   /// The provider's result; nothing, and a line in `unread`, if an earlier checkpoint cannot be
   /// read. `checkpoint` may be null if the provider needs only the record.
   std::optional<nlohmann::json> compute(const Provider& provider, const CheckpointRecord& record,
-                                        const Checkpoint* checkpoint, const Analysis* analysis,
-                                        UnreadCheckpoints& unread) const;
+                                        std::uint64_t every, const Checkpoint* checkpoint,
+                                        const Analysis* analysis, UnreadCheckpoints& unread) const;
 
   /// Adds the measures that follow from the log.
   void add_recorded(const CheckpointRecord& record, Measures& measures) const;
 
   /// The measures of a loaded checkpoint by these providers, and the measures that follow from the
   /// log. Measures whose earlier checkpoint cannot be read are left out.
-  Measures measures_of(const CheckpointRecord& record, const Checkpoint& checkpoint,
-                       const Analysis& analysis, bool (*wanted)(const Provider&)) const;
+  Measures measures_of(const CheckpointRecord& record, std::uint64_t every,
+                       const Checkpoint& checkpoint, const Analysis& analysis,
+                       bool (*wanted)(const Provider&)) const;
 
  private:
   struct Run {
     RunFacts facts = {};
+    std::set<std::uint64_t> cadences = {1};
     std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // of a shear, by step
   };
 
   const Store* store_ = nullptr;
-  std::map<std::string, std::uint64_t> cadence_;
   std::map<std::string, Run> runs_;  // by id
 };
 

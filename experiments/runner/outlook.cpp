@@ -294,20 +294,22 @@ namespace {
 void measure_from(const Store& store, const CheckpointRecord& first,
                   std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
                   const MeasureOptions& options) {
-  std::vector<CheckpointRecord> chosen;
+  std::vector<CheckpointMeasures> chosen;
   for (const CheckpointRecord& one : checkpoints) {
     const bool whole = one.cycle == std::floor(one.cycle);
     if (one.step < first.step || !whole || measures.contains(one.sha256)) continue;
-    chosen.push_back(one);
+    chosen.push_back({one});
     if (chosen.size() == options.workers) break;
   }
+  std::vector<ToMeasure> todo;
+  for (CheckpointMeasures& one : chosen) todo.push_back({&one});
   // The crystallites come from the same analysis, and figures need them.
   static const std::array<std::string, 1> scalars = {"scalars"};
   const MeasureOptions also = {
       .workers = options.workers, .report = options.report, .also = {"crystallites"}};
-  MeasuredCheckpoints found = measure_checkpoints(store, chosen, scalars, also);
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (!found.lacks(k, "scalars")) measures[chosen[k].sha256] = std::move(found.measures[k]);
+  measure_checkpoints(store, todo, scalars, also);
+  for (CheckpointMeasures& one : chosen) {
+    if (one.lacking.empty()) measures[one.sha256] = std::move(one.measures);
   }
   if (!measures.contains(chosen.front().sha256)) refuse_unread(first);
 }

@@ -245,8 +245,8 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
       const std::vector<std::string> names = {"scalars", "rest"};
       std::vector<double> phi;
       const MeasureOptions how{.workers = workers};
-      for (const Measures& one : measure_checkpoints(store_, records, names, how).measures) {
-        phi.push_back(one.number("phi_at_rest"));
+      for (const CheckpointMeasures& one : measured(store_, records, names, how).checkpoints) {
+        phi.push_back(one.measures.number("phi_at_rest"));
       }
       return phi;
     };
@@ -263,11 +263,11 @@ TEST_F(DrawFigure, PhiAtRestIsThatOfTheRestedPacking) {
     EXPECT_EQ(at_rest(1)[2], phi[2]) << "as kept";
     const std::vector<std::string> names = {"scalars", "rest"};
     const MeasureOptions one_cycle{.simulated = {{1, 1}}};
-    const auto some = measure_checkpoints(store_, records, names, one_cycle);
-    EXPECT_EQ(some.measures[1].number("phi_at_rest"), phi[1]);
+    const auto some = measured(store_, records, names, one_cycle).checkpoints;
+    EXPECT_EQ(some[1].measures.number("phi_at_rest"), phi[1]);
     for (const std::size_t other : {0U, 2U}) {
-      EXPECT_TRUE(std::isnan(some.measures[other].number("phi_at_rest"))) << "kept, not asked for";
-      EXPECT_FALSE(some.lacks(other, "rest"));
+      EXPECT_TRUE(std::isnan(some[other].measures.number("phi_at_rest"))) << "kept, not asked for";
+      EXPECT_TRUE(some[other].lacking.empty());
     }
   }
 }

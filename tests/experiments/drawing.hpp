@@ -4,12 +4,28 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "experiments/figures/draw.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "tests/experiments/temporary_store.hpp"
 
 namespace shearcell::test {
+
+struct Measured : MeasureOutcome {
+  std::vector<CheckpointMeasures> checkpoints;
+};
+
+/// The records with their measures, as of an experiment with a checkpoint every cycle.
+inline Measured measured(const Store& store, const std::vector<CheckpointRecord>& records,
+                         const std::vector<std::string>& providers, const MeasureOptions& options) {
+  std::vector<CheckpointMeasures> checkpoints;
+  for (const CheckpointRecord& record : records) checkpoints.push_back({record});
+  std::vector<ToMeasure> todo;
+  for (CheckpointMeasures& one : checkpoints) todo.push_back({&one});
+  return {measure_checkpoints(store, todo, providers, options), std::move(checkpoints)};
+}
 
 class DrawingTest : public StoreTest {
  protected:

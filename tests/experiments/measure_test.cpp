@@ -241,21 +241,21 @@ TEST_F(Measure, MeasuresHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   std::vector<CheckpointRecord> all = records();
   all.push_back(all.front());  // a run that two experiments share
   const std::vector<std::string> two = {"scalars", "pair_correlation"};
-  const MeasuredCheckpoints one = measure_checkpoints(store_, all, two, {.workers = 1});
+  const Measured one = measured(store_, all, two, {.workers = 1});
   std::filesystem::remove(cache());
-  const MeasuredCheckpoints many = measure_checkpoints(store_, all, two, {.workers = 4});
-  const MeasuredCheckpoints kept = measure_checkpoints(store_, all, two, {.workers = 2});
-  ASSERT_EQ(one.measures.size(), all.size());
+  const Measured many = measured(store_, all, two, {.workers = 4});
+  const Measured kept = measured(store_, all, two, {.workers = 2});
+  ASSERT_EQ(one.checkpoints.size(), all.size());
   EXPECT_EQ(one.measured, all.size() - 1);
   EXPECT_EQ(many.measured, all.size() - 1);
   EXPECT_EQ(kept.measured, 0U);
   EXPECT_EQ(kept.cached, all.size() - 1);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Measures& found = one.measures[i];
-    EXPECT_TRUE(one.lacking[i].empty());
+    const Measures& found = one.checkpoints[i].measures;
+    EXPECT_TRUE(one.checkpoints[i].lacking.empty());
     EXPECT_EQ(found.number("phi"), analyse(store_.load_checkpoint(all[i])).measures.phi);
-    for (const MeasuredCheckpoints* other : {&many, &kept}) {
-      const Measures& again = other->measures[i];
+    for (const Measured* other : {&many, &kept}) {
+      const Measures& again = other->checkpoints[i].measures;
       EXPECT_EQ(found.numbers, again.numbers);
       EXPECT_EQ(found.curves.at("pair_correlation").x, again.curves.at("pair_correlation").x);
     }
@@ -288,7 +288,12 @@ TEST_F(Measure, AnotherKeptRestIsNamed) {
 
 // What was measured before is all that is left of it.
 TEST_F(Measure, OfAPrunedCheckpointIsMergedToo) {
+  const std::string sparse =
+      "checkpoints: {every_cycles: 2}\n"
+      "plots: [{name: moved, y: msd_1_cycle_d2, log: y}]\n";
+  compute(store_, renamed(tiny_manifest("", kBothFluids + sparse), "sparse"));
   make("first");
+  draw("first", "moved");
   store_.prune(store_.prunable({}));
   Store into(folder_.path() / "into", Access::create);
   merge_stores(into, {store_.folder()});
@@ -297,6 +302,9 @@ TEST_F(Measure, OfAPrunedCheckpointIsMergedToo) {
   const ComputedFigure figure = draw_figure(into, kS2, options);
   EXPECT_TRUE(figure.pruned.empty());
   EXPECT_EQ(csv("second"), csv("first"));
+  const ComputedFigure moved =
+      draw_figure(into, wanted_figures(into, {"moved"}).figures.at(0), options);
+  EXPECT_TRUE(moved.pruned.empty()) << "measured for another cadence";
 }
 
 TEST_F(Measure, WorksWithoutAWritableCache) {

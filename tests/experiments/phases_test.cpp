@@ -234,8 +234,8 @@ TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
 
   // As kept, and as a plot or a claim has it.
   const std::vector<std::string> names = {"scalars", "ledger"};
-  const MeasuredCheckpoints found = measure_checkpoints(store_, records, names, {});
-  EXPECT_EQ(found.measures.back().numbers.at("work_of_walls_per_cycle_J"), work);
+  const auto found = measured(store_, records, names, {}).checkpoints;
+  EXPECT_EQ(found.back().measures.numbers.at("work_of_walls_per_cycle_J"), work);
 }
 
 }  // namespace
