@@ -1,4 +1,4 @@
-set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -22,9 +22,24 @@ set yrange [0:1]
 set offsets 0, 0, 0, 0
 set arrow from graph 0, first 0.5 to graph 1, first 0.5 nohead dt 2 lc rgb '#888888'
 set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#0072b2'
-set arrow from graph 0, first 0.0416666667 to graph 1, first 0.0416666667 nohead dt 2 lc rgb '#d55e00'
-set arrow from graph 0, first 0.78125 to graph 1, first 0.78125 nohead dt 2 lc rgb '#009e73'
+set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#d55e00'
+set arrow from graph 0, first 0.0416666667 to graph 1, first 0.0416666667 nohead dt 2 lc rgb '#009e73'
+set arrow from graph 0, first 0.78125 to graph 1, first 0.78125 nohead dt 2 lc rgb '#cc79a7'
 $series0 << EOD
+3,-1.7214008e-12,,1.27115741e-12
+4,1.33673028e-08,,1.36086555e-08
+5,1.09954778e-05,,8.00785035e-06
+8,0.0196445434,,0.0267139329
+9,0.121578644,,0.116139819
+13,0.467522261,,0.467685202
+15,0.151252733,,0.654372554
+EOD
+$series1 << EOD
+3,0,,0.0664963812
+4.61030863,0,,0.0712169308
+9.65476415,0.333333333,,0.244031726
+EOD
+$series2 << EOD
 3,0.00582252981,,0.00848788514
 4,0.119218232,,0.134738885
 5,0.0529179329,,0.0691463113
@@ -39,7 +54,7 @@ $series0 << EOD
 16,0.911838431,,0.164751528
 17,0.952877637,,0.214585085
 EOD
-$series1 << EOD
+$series3 << EOD
 3,0,,0.0587085273
 4,0.2,,0.292715546
 5,0,,0.0829882663
@@ -47,7 +62,7 @@ $series1 << EOD
 10.7383255,0.416666667,,0.236844295
 14.2372438,0.9,,0.118387808
 EOD
-$series2 << EOD
+$series4 << EOD
 3,-0.00128080645,,0.00199326759
 4,0.0336629774,,0.021819536
 5,0.139090884,,0.066665703
@@ -63,7 +78,7 @@ $series2 << EOD
 17,1.00141385,,0.0018958682
 18,1.00168681,,0.00144874854
 EOD
-$series3 << EOD
+$series5 << EOD
 3,0,,0.0416272656
 4,0,,0.0554593554
 5.51576888,0.0769230769,,0.0849836586
@@ -73,7 +88,7 @@ $series3 << EOD
 15,1,,0.0904534034
 17.7954014,1,,0.0766555176
 EOD
-$series4 << EOD
+$series6 << EOD
 3,0.299709081,,0.118080923
 4,0.342336047,,0.0996381005
 5,0.427650747,,0.0986778002
@@ -90,7 +105,7 @@ $series4 << EOD
 17,0.996427624,,0.0118309584
 18,1.00693208,,0.0101508901
 EOD
-$series5 << EOD
+$series7 << EOD
 3,0.3,,0.118752555
 4,0.333333333,,0.19340822
 5,0.36,,0.154319129
@@ -102,14 +117,20 @@ $series5 << EOD
 17.3570406,1,,0.0712169308
 EOD
 plot keyentry with lines lc rgb '#0072b2' lw 1.2 notitle, \
-     keyentry with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.0667', \
+     keyentry with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.05', \
      keyentry with lines lc rgb '#d55e00' lw 1.2 notitle, \
-     keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0667', \
      keyentry with lines lc rgb '#009e73' lw 1.2 notitle, \
-     keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.1', \
+     keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with lines lc rgb '#cc79a7' lw 1.2 notitle, \
+     keyentry with points lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.1', \
+     $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \
      $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
+     $series7 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#cc79a7' lw 0.7 notitle, \
+     $series7 every 1 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series6 every 1 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 notitle, \
      $series5 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
      $series5 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
      $series4 every 1 using 1:2 with lines lc rgb '#009e73' lw 1.2 notitle, \
