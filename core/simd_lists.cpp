@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "core/kernel.hpp"
 #include "core/simd_vectors-inl.hpp"
@@ -34,26 +35,21 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Sorts by rank: the number of smaller keys is counted one vector at a time.
-HWY_INLINE void sort_ids(std::int32_t* HWY_RESTRICT ids, std::size_t count) {
+// Writes the offsets of the ids to `outer` in ascending id, each at its rank: the number of smaller
+// ids, counted one vector at a time.
+HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
+                             std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
-  constexpr std::size_t kMost = 64;
-  if (count > kMost) {
-    std::sort(ids, ids + count);
-    return;
-  }
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t k = count; k % lanes != 0; ++k) ids[k] = INT32_MAX;
-  std::int32_t sorted[kMost];
   for (std::size_t k = 0; k < count; ++k) {
     const auto key = hn::Set(d, ids[k]);
     std::size_t rank = 0;
     for (std::size_t v = 0; v < count; v += lanes) {
       rank += hn::CountTrue(d, hn::Lt(hn::LoadU(d, ids + v), key));
     }
-    sorted[rank] = ids[k];
+    outer[rank] = t.offset_of_id[ids[k]];
   }
-  std::copy(sorted, sorted + count, ids);
 }
 
 // The square of 1 plus both margins.
@@ -62,8 +58,10 @@ HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   return hn::Mul(cutoff, cutoff);
 }
 
-// Finds the sites near the one at `place`, without itself, in any order; returns their number.
+// Finds the sites in these ranges of places that are near the one at `place`, without itself, in
+// any order; returns their number.
 HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
+                                 std::span<const CellRange> ranges,
                                  std::int32_t* HWY_RESTRICT found) {
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
@@ -72,12 +70,9 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
   const V own_margin = hn::Set(kD, t.grid.margin[place]);
   // Compared as doubles, which represent every id exactly and have masks of the right size.
   const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
-  std::array<CellRange, 9> ranges;
-  const std::size_t range_count = t.grid.cells.surrounding(t.grid.cell[place], ranges);
   std::size_t count = 0;
-  for (std::size_t r = 0; r < range_count; ++r) {
-    const std::size_t end = t.grid.begin[ranges[r].end];
-    for (std::size_t p = t.grid.begin[ranges[r].begin]; p < end; p += kLanes) {
+  for (const auto& [begin, end] : ranges) {
+    for (std::size_t p = begin; p < end; p += kLanes) {
       const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
                           hn::LoadU(kD, t.grid.position[1] + p),
                           hn::LoadU(kD, t.grid.position[2] + p)};
@@ -96,17 +91,25 @@ HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
 
 std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   std::int32_t found[kMostNeighbours + 64];
-  std::size_t most = 0;
+  std::array<CellRange, 9> ranges;  // of places around the cell of the grain before
+  std::size_t most = 0, range_count = 0;
+  std::uint32_t cell = UINT32_MAX;
   for (std::size_t place = first; place < last; ++place) {
     const std::int32_t id = t.grid.id[place];
     if (id < t.first_grain) continue;
-    std::size_t count = find_near(t, place, found);
+    if (t.grid.cell[place] != cell) {
+      cell = t.grid.cell[place];
+      range_count = t.grid.cells.surrounding(cell, ranges);
+      for (CellRange& range : std::span(ranges).first(range_count)) {
+        range = {t.grid.begin[range.begin], t.grid.begin[range.end]};
+      }
+    }
+    std::size_t count = find_near(t, place, std::span(ranges).first(range_count), found);
     most = std::max(most, count);
     count = std::min(count, t.stride);
-    sort_ids(found, count);
     const std::size_t grain = static_cast<std::size_t>(t.offset_of_id[id]) / 4;
     std::int32_t* HWY_RESTRICT outer = t.outer + grain * t.stride;
-    for (std::size_t k = 0; k < count; ++k) outer[k] = t.offset_of_id[found[k]];
+    write_sorted(t, found, count, outer);
     for (std::size_t k = count; k % 8 != 0; ++k) outer[k] = t.padding;
     t.count[grain] = static_cast<std::uint16_t>(count);
   }
