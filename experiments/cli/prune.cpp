@@ -258,7 +258,7 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                    counted(chosen - records.size(), "checkpoint"));
     }
   }
-  return {outcome.measured, store.prune(records, last_too)};
+  return {outcome.measured.size(), store.prune(records, last_too)};
 }
 
 void add_prune(CLI::App& app, Context& context) {
