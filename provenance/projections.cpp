@@ -363,11 +363,14 @@ std::string try_apply(Database& database, const Event& event) {
     apply(database, event);
     const events::Any decoded = events::decode(event);
     const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-    if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
+    const auto is_of = [&](const std::string& stream, const auto& registered) {
+      return event.stream == stream && registered.sha256 == sha256_hex(registered.text);
+    };
+    if (manifest != nullptr && !is_of("manifest/" + manifest->sha256, *manifest)) {
       return "the manifest's text has another SHA-256";
     }
     const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
-    if (packing != nullptr && event.stream != packing_stream(sha256_hex(packing->text))) {
+    if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
       return "the text of the file of grains has another SHA-256";
     }
     return "";
