@@ -121,7 +121,10 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
         event_.recorded_at);
+    // A declaration that asks for nothing more puts the run in its place again.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
+        "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
+        "checkpoint_every, excluded.ordinal, ordinal), "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
         "checkpoint_phases = excluded.checkpoint_phases",
@@ -274,9 +277,9 @@ std::vector<Ask> query_memberships(const Database& database, const std::string& 
   return query.all([&](const Statement& row) {
     Ask m;
     std::string run, labels, until, phases;
-    std::uint64_t ordinal = 0, newest = 0;
+    std::uint64_t newest = 0;
     row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
-            m.checkpoint_every, ordinal, until, phases, newest);
+            m.checkpoint_every, m.ordinal, until, phases, newest);
     m.swept = parse(database, labels);
     m.until = parse(database, until);
     m.checkpoint_phases = numbers(database, phases);
@@ -409,6 +412,15 @@ std::map<std::string, TableRows> projection_rows(const Database& database) {
     std::sort(rows.begin(), rows.end());
   }
   return tables;
+}
+
+bool holds_place(const Database& database, std::string_view run, const Place& place) {
+  Statement last(database,
+                 "SELECT run FROM memberships AS m JOIN runs ON run = id WHERE m.seed = ? AND "
+                 "variant = ? AND manifest = ? AND scale = ? AND experiment = ? AND "
+                 "kind <> 'prepare' ORDER BY m.ordinal DESC LIMIT 1",
+                 place.seed, place.variant, place.manifest, place.scale, place.experiment);
+  return !last.step() || last.text(0) == run;
 }
 
 NotFound unknown_stage(std::string_view id) {

@@ -272,8 +272,10 @@ void Store::declare_stage(const Stage& declared) {
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
   for (const Ask& m : declared.asks) {
-    if (known && !adds_something(*known, m)) continue;
-    append(run_stream(declared.id), encode(events::RunDeclared{declared, m}), lock);
+    const NewEvent event = encode(events::RunDeclared{declared, m});
+    if (!known || adds_something(*known, m)) append(run_stream(declared.id), event, lock);
+    // A start that was changed, so that another run took the place, and changed back.
+    if (!holds_place(database_, declared.id, m)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
 }

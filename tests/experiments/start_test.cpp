@@ -385,6 +385,32 @@ TEST_F(FromAFile, TheStoreKeepsTheTextAndMergesIt) {
   EXPECT_TRUE(other.verify().ok());
 }
 
+TEST_F(FromAFile, AFileThatIsChangedBackIsShownAgain) {
+  const std::string base =
+      "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
+      "  fill_packing_fraction: 0.02\n  height_over_width: 1\n  cycles: 0\n";
+  const auto declare_with = [&](const std::string& grains) {
+    write_grains("x_d,y_d,z_d\n1,1,1\n" + grains);
+    const Manifest stated = manifest("", base);
+    const Plan plan = expand(stated);
+    declare(store_, stated, plan);
+    return plan.runs.front().stage.id;
+  };
+  const auto shown = [&] {
+    const NewestRuns newest = newest_runs(select_runs(store_, {}));
+    EXPECT_EQ(newest.runs.size(), 1U);
+    return newest.runs.front().stage.id;
+  };
+  for (const char* grains : {"3,1,1\n", "2.5,1,1\n", "3,1,1\n"}) {
+    const std::string declared = declare_with(grains);
+    EXPECT_EQ(shown(), declared) << grains;
+  }
+  const Head head = store_.head();
+  declare_with("3,1,1\n");
+  EXPECT_EQ(store_.head().seq, head.seq) << "it was declared already";
+  EXPECT_TRUE(store_.verify().ok());
+}
+
 TEST_F(FromAFile, TheIdHoldsTextUnitAndWhetherItSettles) {
   const auto id = [](const std::optional<StartFile>& file) {
     return prepare_stage({}, 1, file).id;
