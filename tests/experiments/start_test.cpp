@@ -215,6 +215,13 @@ TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
       expand(parse_manifest(tiny_manifest("  drag_kg_per_s: 2.0e-3\n", amplitudes), "tiny.yaml"));
   add_as_computed(newer, known);
   EXPECT_EQ(second("", amplitudes)[0].stage.parent, newer.runs[0].stage.id);
+  const std::string sparse = tiny_manifest("  cycles: 3\n", "checkpoints: {every_cycles: 2}\n");
+  known.clear();
+  add_as_computed(expand(parse_manifest(sparse, "tiny.yaml")), known);
+  EXPECT_NE(refused("").find("has no checkpoint of cycle 1. It has those of every 2 cycles and of "
+                             "cycle 3; name one of these"),
+            std::string::npos);
+  EXPECT_EQ(second("", "sweep: {grid: {start_cycle: [0, 2, 3]}}\n").size(), 3U);
 }
 
 TEST_F(Started, AnIdNamesTheRecordedRunAsWell) {
