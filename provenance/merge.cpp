@@ -296,10 +296,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   std::erase_if(streams, [&log](const auto& entry) {  // texts that are known
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
-  const auto take = [&](const Event& event) {
-    apply(into, log.append_copy(lock, event));
-    ++report.events;
-  };
+  const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
   for (const Event& event : source.events) {
     if (known.contains(content_key(event)) || !streams.contains(event.stream)) continue;
     if (run_of(event)) {
@@ -307,6 +304,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
       if (run == runs.end() || !run->second.wants(into, event)) continue;
     }
     take(event);
+    ++report.events;
   }
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);

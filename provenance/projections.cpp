@@ -121,7 +121,10 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
         event_.recorded_at);
+    // A declaration that asks for nothing more puts the run in its place again.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
+        "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
+        "checkpoint_every, excluded.ordinal, ordinal), "
         "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
         "checkpoint_phases = excluded.checkpoint_phases",
@@ -274,9 +277,9 @@ std::vector<Ask> query_memberships(const Database& database, const std::string& 
   return query.all([&](const Statement& row) {
     Ask m;
     std::string run, labels, until, phases;
-    std::uint64_t ordinal = 0, newest = 0;
+    std::uint64_t newest = 0;
     row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
-            m.checkpoint_every, ordinal, until, phases, newest);
+            m.checkpoint_every, m.ordinal, until, phases, newest);
     m.swept = parse(database, labels);
     m.until = parse(database, until);
     m.checkpoint_phases = numbers(database, phases);
@@ -363,11 +366,14 @@ std::string try_apply(Database& database, const Event& event) {
     apply(database, event);
     const events::Any decoded = events::decode(event);
     const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-    if (manifest != nullptr && event.stream != "manifest/" + sha256_hex(manifest->text)) {
+    const auto is_of = [&](const std::string& stream, const auto& registered) {
+      return event.stream == stream && registered.sha256 == sha256_hex(registered.text);
+    };
+    if (manifest != nullptr && !is_of("manifest/" + manifest->sha256, *manifest)) {
       return "the manifest's text has another SHA-256";
     }
     const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
-    if (packing != nullptr && event.stream != packing_stream(sha256_hex(packing->text))) {
+    if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
       return "the text of the file of grains has another SHA-256";
     }
     return "";
@@ -406,6 +412,15 @@ std::map<std::string, TableRows> projection_rows(const Database& database) {
     std::sort(rows.begin(), rows.end());
   }
   return tables;
+}
+
+bool holds_place(const Database& database, std::string_view run, const Place& place) {
+  Statement last(database,
+                 "SELECT run FROM memberships AS m JOIN runs ON run = id WHERE m.seed = ? AND "
+                 "variant = ? AND manifest = ? AND scale = ? AND experiment = ? AND "
+                 "kind <> 'prepare' ORDER BY m.ordinal DESC LIMIT 1",
+                 place.seed, place.variant, place.manifest, place.scale, place.experiment);
+  return !last.step() || last.text(0) == run;
 }
 
 NotFound unknown_stage(std::string_view id) {

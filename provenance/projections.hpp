@@ -51,6 +51,9 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
+/// Whether no other run was declared later in this place, which several packings may share.
+bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
+
 /// The stages whose ids have this prefix, in the order of their declaration.
 std::vector<Stage> query_stages(const sqlite::Database& database, std::string_view prefix = "");
 std::optional<Stage> query_stage(const sqlite::Database& database, std::string_view id);

@@ -31,6 +31,7 @@ struct Ask : Place {
   std::uint64_t target_cycles = 0;             ///< length
   nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
+  std::uint64_t ordinal = 0;                   ///< the event that put the stage in the place
   /// Whether the manifest is the last registered version among those that declared a stage at the
   /// scale. The store sets it; a list of runs that is to be combined may clear it.
   bool newest = true;

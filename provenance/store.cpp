@@ -10,6 +10,7 @@
 
 #include "provenance/events.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
 
@@ -118,7 +119,7 @@ void require_one(const char* what, std::string_view prefix, const auto& candidat
                              prefix, list, candidates.size() > most ? "\n  ..." : ""));
 }
 
-/// Checkpoints that are initial states of other stages.
+/// Checkpoints from which other stages started.
 std::set<std::string> initial_states(const EventLog& log) {
   std::set<std::string> found;
   for (const Event& event : log.events("", events::RunStarted::kType)) {
@@ -126,6 +127,12 @@ std::set<std::string> initial_states(const EventLog& log) {
     if (started.parent_checkpoint) found.insert(*started.parent_checkpoint);
   }
   return found;
+}
+
+/// The cycle of its parent, a shear, with whose state the stage begins.
+double start_cycle(const Stage& stage) {
+  const json cycle = member_of(member_of(stage.resolved, "parameters"), "start_cycle");
+  return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
 /// Settling has no cycles, so of its checkpoints only the first is one of cycle 0.
@@ -272,8 +279,10 @@ void Store::declare_stage(const Stage& declared) {
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
   for (const Ask& m : declared.asks) {
-    if (known && !adds_something(*known, m)) continue;
-    append(run_stream(declared.id), encode(events::RunDeclared{declared, m}), lock);
+    const NewEvent event = encode(events::RunDeclared{declared, m});
+    if (!known || adds_something(*known, m)) append(run_stream(declared.id), event, lock);
+    // A start that was changed, so that another run took the place, and changed back.
+    if (!holds_place(database_, declared.id, m)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
 }
@@ -530,8 +539,13 @@ void Store::rebuild() {
 std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
+  const std::vector<Stage> known = stages();
+  std::set<std::pair<std::string, double>> to_come;  // run and cycle where a stage will begin
+  for (const Stage& run : known) {
+    if (!run.parent.empty() && !has_ended(run.state)) to_come.emplace(run.parent, start_cycle(run));
+  }
   std::vector<CheckpointRecord> found;
-  for (const Stage& run : stages()) {
+  for (const Stage& run : known) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
     std::vector<CheckpointRecord> records = checkpoints(run.id);
@@ -542,6 +556,8 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
       records.pop_back();
     }
     for (CheckpointRecord& record : records) {
+      const bool settling = run.kind == "prepare" && record.step < run.step;
+      if (!settling && to_come.contains({run.id, record.cycle})) continue;
       if (kept_by_cadence(choice, record) || (!all && needed.contains(record.sha256))) continue;
       found.push_back(std::move(record));
     }

@@ -29,7 +29,7 @@ nlohmann::json facts(const ComputedFigure& result) {
           {"scale", result.scale},
           {"runs", result.runs},
           {"checkpoints", result.checkpoints},
-          {"measured", result.measured},
+          {"measured", result.measured.size()},
           {"files", json_list(result.files, [](const auto& file) { return file.string(); })},
           {"notes", result.notes},
           {"empty", result.empty},
@@ -70,7 +70,7 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   if (context.json) return;
   print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path, scale_name(result.scale),
              counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
-             result.measured);
+             result.measured.size());
   for (const auto& file : result.files) print_text("  {}\n", file.string());
   print_verdicts(result);
 }

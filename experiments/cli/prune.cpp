@@ -258,7 +258,7 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                    counted(chosen - records.size(), "checkpoint"));
     }
   }
-  return {outcome.measured, store.prune(records, last_too)};
+  return {outcome.measured.size(), store.prune(records, last_too)};
 }
 
 void add_prune(CLI::App& app, Context& context) {
@@ -277,13 +277,14 @@ void add_prune(CLI::App& app, Context& context) {
       *command, context,
       R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
 deletes nothing unless --yes is given. Keeps the newest checkpoint of a run and those that other
-stages started from, unless --last-too is given: then events and measures alone remain, small enough
-to publish, and figures, tables and merges still work. Never deletes checkpoints of LAMMPS.
+stages start from. --last-too keeps those of unfinished stages only: if all are finished, events and
+measures alone remain, small enough to publish, and figures, tables and merges still work. Never
+deletes checkpoints of LAMMPS.
 Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
 plots need, and what the figures of the store's manifests simulate. The results are in
 derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its
 file. Cycles that a run adds later lack measures over the pruned ones, as msd_10_cycles_d2.
-Records stay, and `regenerate` recomputes files.
+Records stay. `run` and `resume` recompute the files that they need, `regenerate` all others.
 Examples:
   shearcell prune --keep-every 10
   shearcell prune --last-too
@@ -302,7 +303,8 @@ void add_regenerate(CLI::App& app, Context& context) {
   add_threads_option(*command, options->threads, "Threads, for large cells");
   add_common_options(
       *command, context,
-      R"(Steps from the nearest earlier checkpoint. If the state or the file does not have the recorded
+      R"(Steps from the nearest earlier checkpoint; without one, also recomputes the file of the state that
+the stage begins with. If the state or the file does not have the recorded
 hash, writes nothing, records ReplayDiverged and ends with code 4.
 Examples:
   shearcell regenerate 2a2c47ca

@@ -74,10 +74,10 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   // The first checkpoint of a stage takes no steps, so others are preferred.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
   if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
-  const std::vector<CheckpointRecord> chosen = sample(all, options.replay, seed);
+  const std::size_t count = std::min(options.replay, all.size());
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
-  std::size_t left_out = 0;
+  std::size_t left_out = 0, skipped = 0;
   for (const Stage& run : store.stages()) {
     if (why_not_again(run)) left_out += store.checkpoints(run.id, Listed::and_pruned).size();
   }
@@ -85,20 +85,34 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     if (left_out > 0) {
       print_text("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
     }
-    print_text("replaying up to {} of {} checkpoints, --seed {}\n", chosen.size(), all.size(),
-               seed);
+    print_text("replaying up to {} of {} checkpoints, --seed {}\n", count, all.size(), seed);
   }
-  for (const CheckpointRecord& record : chosen) {
-    const Replay result = verify_by_replay(store, record, options.threads);
-    if (result.interrupted) {
-      fail(context, kInterrupted);
-      break;
+  for (const CheckpointRecord& record : sample(all, all.size(), seed)) {
+    if (list.size() == count) break;
+    try {
+      const Replay result = verify_by_replay(store, record, options.threads);
+      if (result.interrupted) {
+        fail(context, kInterrupted);
+        break;
+      }
+      if (result.divergence) fail(context, kStoreDamaged);
+      list.push_back(facts(result));
+      if (!context.json) print_text("{}\n", describe(result));
+    } catch (const FilePruned&) {
+      ++skipped;
     }
-    if (result.divergence) fail(context, kStoreDamaged);
-    list.push_back(facts(result));
-    if (!context.json) print_text("{}\n", describe(result));
   }
-  return {{"seed", seed}, {"candidates", all.size()}, {"left_out", left_out}, {"replayed", list}};
+  if (!context.json && skipped > 0) {
+    print_text(
+        "{} skipped: the states before them were pruned; `shearcell regenerate --all` "
+        "recomputes their files\n",
+        counted(skipped, "checkpoint"));
+  }
+  return {{"seed", seed},
+          {"candidates", all.size()},
+          {"left_out", left_out},
+          {"skipped", skipped},
+          {"replayed", list}};
 }
 
 nlohmann::json facts(const VerifyReport& report) {
@@ -202,7 +216,8 @@ describes (step, cycle, time, units, grains, observables, state); that each run 
 parameters and swept values of its id and began from a completed packing; that the tables follow
 from the events.
 --replay K recomputes K sampled checkpoints from the ones before, compares every bit of the
-state and of all that is recorded with it, and records the outcome. --measures K recomputes
+state and of all that is recorded with it, and records the outcome. It skips a checkpoint if all
+files before it were pruned. --measures K recomputes
 what derived.sqlite caches of K sampled checkpoints.
 Cannot prove: what is not sampled; when, where and how fast a run was computed; trajectories
 of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect the

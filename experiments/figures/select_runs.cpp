@@ -109,14 +109,16 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
       passes &=
           selection.states.empty() || std::ranges::count(selection.states, name_of(run.state)) > 0;
       if (!passes) continue;
-      if (!packing && m.newest) {
-        // The same manifest may have meant another run to another version of the program.
-        const Seed same = {experiment_scale(m), m.variant, m.seed};
-        const auto [known, first] = seeds.try_emplace(same, selected.size());
-        if (!first) selected[known->second].newest = false;
-        known->second = selected.size();
-      }
       selected.push_back({m, run});
+      if (packing || !m.newest) continue;
+      // The same manifest may have meant another run, with another start or to another version of
+      // the program.
+      const Seed same = {experiment_scale(m), m.variant, m.seed};
+      const std::size_t place = seeds.try_emplace(same, selected.size() - 1).first->second;
+      if (place == selected.size() - 1) continue;
+      Run &one = selected[place], &other = selected.back();
+      if (one.ordinal < other.ordinal) seeds[same] = selected.size() - 1;
+      (one.ordinal < other.ordinal ? one : other).newest = false;
     }
   }
   require_found("experiment", experiment);

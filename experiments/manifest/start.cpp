@@ -151,6 +151,19 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
            fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
            fmt::format("cycle {}", found.front()->cycle), "Extend it first.");
   }
+  const auto records_it = [&](const Ask& ask) {
+    return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
+           cycle == static_cast<double>(ask.target_cycles);
+  };
+  const std::vector<Ask>& asks = found.front()->asks;
+  if (found.front()->cycle > cycle && std::ranges::none_of(asks, records_it)) {
+    refuse(manifest.file, start.at, "start",
+           fmt::format("run {:.8} has no checkpoint of cycle {}", found.front()->id, cycle), "",
+           fmt::format("It has those of every {} cycles and of cycle {}; name one of these, or run "
+                       "its manifest again with `checkpoints: {{every_cycles: 1}}`.",
+                       std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
+                       found.front()->cycle));
+  }
   require_same_cell(manifest, scale, variant, *found.front());
   return *found.front();
 }

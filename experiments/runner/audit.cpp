@@ -83,18 +83,22 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 }
 
 /// A run must start from the state at which its packing was completed, or from the recorded one
-/// that it names: from one of `steps` of the stage before it. States that the store lacks are not
-/// checked: a merge leaves out files that another HDF5 library wrote.
+/// that it names: from one of `steps` of the stage before it. Of a merged store, states that it
+/// lacks are not checked: a merge leaves out files that another HDF5 library wrote.
 void check_beginning(const Store& store, const Stage& run, const std::set<std::uint64_t>& steps) {
+  const std::vector<CheckpointRecord> known = store.checkpoints(run.parent, Listed::all);
   for (const Event& event : store.events(run_stream(run.id), events::RunStarted::kType)) {
-    const auto started = std::get<events::RunStarted>(events::decode(event));
-    for (const CheckpointRecord& record : store.checkpoints(run.parent, Listed::all)) {
-      if (record.sha256 != started.parent_checkpoint || steps.contains(record.step)) continue;
-      throw StoreDamaged(fmt::format(
-          "event {} started it from checkpoint {:.12} (step {}) of run {:.12}, which is not the "
-          "state that it begins with; do not use its states, and compute it again in a new store",
-          event.seq, record.sha256, record.step, run.parent));
+    const auto from = std::get<events::RunStarted>(events::decode(event)).parent_checkpoint;
+    if (!from) continue;
+    const auto record = std::ranges::find(known, *from, &CheckpointRecord::sha256);
+    if (record == known.end() ? !store.events("", events::StoreMerged::kType).empty()
+                              : steps.contains(record->step)) {
+      continue;
     }
+    throw StoreDamaged(fmt::format(
+        "event {} started it from checkpoint {:.12}, which is not the state of run {:.12} that it "
+        "begins with; do not use its states, and compute it again in a new store",
+        event.seq, *from, run.parent));
   }
 }
 

@@ -260,8 +260,9 @@ class Campaign {
       note(job, &CampaignResult::blocked, error.what());
     } catch (const ProgramError& error) {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
-    } catch (const FilePruned& error) {
-      note(job, &CampaignResult::blocked, error.what());  // a checkpoint that decides its end
+    } catch (const NotFound& error) {
+      // A state that it begins with or that decides its end was pruned or never recorded.
+      note(job, &CampaignResult::blocked, error.what());
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
     } catch (const std::exception& error) {
@@ -301,6 +302,9 @@ class Campaign {
     StageOptions options{.parallel = parallel_};
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
+    };
+    options.restoring = [&](const std::string& what) {
+      progress_.say(fmt::format("{}: {}", job.name, what), true);
     };
     options.report = [&](const std::string& text) { progress_.update(job, text); };
     const StageOutcome outcome = run_stage(store_, job.id, options);

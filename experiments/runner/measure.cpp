@@ -83,7 +83,6 @@ class Measuring {
       throw;
     }
     flush();
-    outcome_.measured = todo_.size() - unread.damage.size() - unread.pruned.size();
     add_lines(unread_earlier_, outcome_);
     for (std::size_t k = 0; k < place_.size(); ++k) {
       read(*checkpoints_[k].checkpoint, results_[place_[k]]);
@@ -135,6 +134,7 @@ class Measuring {
       results_[i][p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
+    outcome_.measured.insert(record.sha256);
     add_lines(unread, unread_earlier_);
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
@@ -181,7 +181,7 @@ class Measuring {
 }  // namespace
 
 MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
-  measured += more.measured;
+  measured.insert(more.measured.begin(), more.measured.end());
   cached += more.cached;
   add_lines(more, *this);
   for (const auto& [run, steps] : more.earlier) earlier[run].insert(steps.begin(), steps.end());

@@ -41,8 +41,8 @@ struct UnreadCheckpoints {
 };
 
 struct MeasureOutcome : UnreadCheckpoints {
-  std::size_t measured = 0;  ///< checkpoints that were analysed now
-  std::size_t cached = 0;    ///< checkpoints whose results were in the cache
+  std::set<std::string> measured;  ///< SHA-256 of the checkpoints that were analysed now
+  std::size_t cached = 0;          ///< checkpoints whose results were in the cache
   /// SHA-256 of the earlier checkpoints that entered measures, by run and step.
   std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
   std::string cache_trouble;  ///< why results cannot be cached; "" if they can

@@ -129,8 +129,12 @@ struct Beginning {
   std::string parent_checkpoint = {};         ///< that the stage begins from, or ""
 };
 
+/// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options or the
+/// checkpoint's engine do not permit it.
+void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options);
+
 /// The recorded state of a shear that the stage's parameters name, with their noise.
-Beginning recorded_beginning(const Store& store, const ReadyStage& plan) {
+Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOptions& options) {
   const Parameters& p = plan.inputs.parameters;
   const auto record = recorded_start(store, plan.stage, p);
   const std::string what = fmt::format(
@@ -138,16 +142,14 @@ Beginning recorded_beginning(const Store& store, const ReadyStage& plan) {
       "starts, ",
       plan.stage.parent, p.start_cycle, plan.stage.id);
   if (!record) {
-    throw StoreDamaged(what +
-                       "was never recorded; name a cycle of its checkpoints, or ask for more "
-                       "of them");
+    throw NotFound(what +
+                   "was never recorded; name a cycle of its checkpoints, or ask for more of them");
   }
+  restore_if_pruned(store, *record, options);
   auto checkpoint = store.load_if_readable(*record);
   if (!checkpoint) {
-    throw StoreDamaged(
-        fmt::format("{}is pruned or damaged; `shearcell regenerate {:.12}` restores "
-                    "its file",
-                    what, record->sha256));
+    throw StoreDamaged(fmt::format("{}is damaged; `shearcell regenerate {:.12}` restores its file",
+                                   what, record->sha256));
   }
   checkpoint->state.step = 0;
   add_noise(checkpoint->state, p.start_noise_d, plan.inputs.seed);
@@ -157,8 +159,8 @@ Beginning recorded_beginning(const Store& store, const ReadyStage& plan) {
 /// The newest valid checkpoint before a step. Without one, the beginning of the stage. Throws
 /// Interrupted when a stop is requested during the filling. `damage` as in
 /// Store::newest_valid_checkpoint.
-Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::string>* damage,
-                       std::uint64_t before_step = UINT64_MAX) {
+Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions& options,
+                       std::vector<std::string>* damage, std::uint64_t before_step = UINT64_MAX) {
   const Stage& run = plan.stage;
   if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
@@ -177,17 +179,19 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, std::vector<std::st
     return {std::move(cell), std::move(state)};
   }
   const Stage ended = store.stage(run.parent);
-  if (ended.kind != name_of(StageKind::prepare)) return recorded_beginning(store, plan);
+  if (ended.kind != name_of(StageKind::prepare)) return recorded_beginning(store, plan, options);
+  const std::vector<CheckpointRecord> known = store.checkpoints(run.parent, Listed::and_pruned);
+  const bool recorded = ended.state == StageState::completed && !known.empty();
+  if (recorded) restore_if_pruned(store, known.back(), options);
   auto parent = store.newest_valid_checkpoint(run.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
   if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
-    const bool recorded = ended.state == StageState::completed && !ended.state_hash.empty();
     throw StoreDamaged(fmt::format(
         "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
         run.parent, run.id,
-        recorded ? fmt::format("`shearcell regenerate {:.12}` restores its file",
-                               store.checkpoints(run.parent, Listed::and_pruned).back().sha256)
-                 : "`shearcell resume` recomputes it first"));
+        recorded
+            ? fmt::format("`shearcell regenerate {:.12}` restores its file", known.back().sha256)
+            : "`shearcell resume` recomputes it first"));
   }
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
@@ -395,7 +399,9 @@ class StageAttempt {
 
   StageOutcome run() {
     std::vector<std::string> damage;
-    Beginning beginning = beginning_of(store_, plan_, &damage);
+    const std::vector<CheckpointRecord> known = store_.checkpoints(id(), Listed::and_pruned);
+    if (!known.empty()) restore_if_pruned(store_, known.back(), options_);
+    Beginning beginning = beginning_of(store_, plan_, options_, &damage);
     for (const std::string& what : damage) {
       if (options_.damaged) options_.damaged(what);
     }
@@ -430,7 +436,7 @@ class StageAttempt {
 
   // Records the checkpoints at these steps of a completed run, which lacks them.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
-    Beginning beginning = beginning_of(store_, plan_, nullptr, steps.front());
+    Beginning beginning = beginning_of(store_, plan_, options_, nullptr, steps.front());
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
@@ -627,17 +633,19 @@ void diverge(Replay& replay, std::uint64_t step, const std::string& message,
 }
 
 /// The state at the record's step; nothing when that was not reached.
-std::optional<Checkpoint> compute_again(Store& store, Replay& replay, std::size_t threads) {
+std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const StageOptions& options) {
   const CheckpointRecord& record = replay.record;
   const ReadyStage plan = ready_stage(store, store.stage(record.run));
   try {
-    Beginning beginning = beginning_of(store, plan, nullptr, record.step);
+    Beginning beginning = beginning_of(store, plan, options, nullptr, record.step);
     replay.from = beginning.from;
-    OwnEngine engine(plan, std::move(beginning), threads);
+    OwnEngine engine(plan, std::move(beginning), options.parallel.threads);
     const std::uint64_t first = engine.step();
     const StageProgress progress = advance_to(engine, record.step, [&](const StageProgress&) {
       replay.steps = engine.step() - first;
       give_up_if_requested();
+      if (!options.report) return;
+      options.report(fmt::format("restoring step {} of {}", engine.step(), record.step));
     });
     replay.steps = engine.step() - first;
     if (engine.step() == record.step) return engine.checkpoint(progress.cycle);
@@ -686,19 +694,19 @@ void compare_again(const Store& store, const Checkpoint& found, Replay& replay) 
   }
 }
 
-/// `restore`: also writes the file.
-Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads, bool restore) {
+/// Also writes the file if the options permit it.
+Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& options) {
   Replay result{.record = record};
-  const auto found = compute_again(store, result, threads);
+  const auto found = compute_again(store, result, options);
   if (found) compare_again(store, *found, result);
-  if (restore && found && !result.divergence) {
+  if (options.restores && found && !result.divergence) {
     try {
       store.restore_checkpoint(record, *found);
     } catch (const StoreDamaged& other_bytes) {
       diverge(result, record.step, other_bytes.what(), "file");
     }
   }
-  if (restore ? !result.divergence : result.interrupted) return result;
+  if (options.restores ? !result.divergence : result.interrupted) return result;
   nlohmann::json facts = {{"sha256", record.sha256}, {"step", record.step},
                           {"cycle", record.cycle},   {"state_hash", record.state_hash},
                           {"from", nullptr},         {"steps", result.steps},
@@ -707,6 +715,21 @@ Replay replay(Store& store, const CheckpointRecord& record, std::size_t threads,
   if (result.divergence) facts.update(to_json(*result.divergence));
   store.record_replay(record.run, !result.divergence, facts);
   return result;
+}
+
+void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options) {
+  if (record.state != CheckpointState::pruned) return;
+  if (!options.restores || why_not_again(store.stage(record.run))) {
+    store.load_checkpoint(record);  // throws, unless it was restored meanwhile
+    return;
+  }
+  const std::string what = fmt::format("checkpoint {:.12} of run {:.12} (cycle {:g})",
+                                       record.sha256, record.run, record.cycle);
+  if (options.restoring) options.restoring(what + " was pruned; its file is recomputed");
+  const Replay again = replay(store, record, options);
+  if (again.interrupted) throw Interrupted();
+  if (!again.divergence) return;
+  throw StoreDamaged(what + " cannot be recomputed: " + again.divergence->message);
 }
 
 }  // namespace
@@ -765,11 +788,11 @@ std::optional<std::string> why_not_again(const Stage& run) {
 }
 
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {
-  return replay(store, record, threads, false);
+  return replay(store, record, {.parallel = {.threads = threads}, .restores = false});
 }
 
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads) {
-  return replay(store, record, threads, true);
+  return replay(store, record, {.parallel = {.threads = threads}});
 }
 
 }  // namespace shearcell

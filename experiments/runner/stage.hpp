@@ -28,18 +28,23 @@ enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed
 
 struct StageOptions {
   Parallel parallel = {};
+  bool restores = true;  ///< whether it recomputes files of pruned states that it needs
   std::function<void(const std::string&)> damaged = {};  ///< called for each skipped checkpoint
   std::function<void()> begun = {};                      ///< called when an attempt is recorded
+  /// Called before a pruned state that the stage needs is recomputed.
+  std::function<void(const std::string&)> restoring = {};
   /// Called a few times a second with the progress: where the stage is, its rate, the time left.
   std::function<void(const std::string&)> report = {};
 };
 
 /// Computes the stage `id` until its target, then its missing checkpoints. Starts from the newest
-/// valid checkpoint; without one, from the last state of the parent, or a new filling. Between
+/// valid checkpoint; without one, from the last state of the parent, or a new filling. If the file
+/// of that state was pruned, it is recomputed first, as by regenerate_checkpoint(). Between
 /// chunks of steps of about 50 ms it checks stop_requested() and whether the store still holds the
 /// run. Throws, before an attempt is recorded: StoreDamaged when the parent is not completed, its
-/// last state cannot be read, or the recorded parameters do not give the id; GeometryError for a
-/// cell that cannot be filled; TooLittleMemory; ProgramError when the stage's engine is not
+/// last state cannot be read, or the recorded parameters do not give the id; NotFound when the
+/// state was never recorded, FilePruned when it was pruned and cannot be recomputed; GeometryError
+/// for a cell that cannot be filled; TooLittleMemory; ProgramError when the stage's engine is not
 /// installed. A stage that is interrupted while its cell is filled records nothing.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
@@ -78,12 +83,13 @@ std::optional<std::string> why_not_again(const Stage& run);
 
 /// Computes from the nearest earlier checkpoint that is kept, or from the beginning of the stage,
 /// up to the record's step. Compares the state and all that is recorded with it (cycle, time, tilt,
-/// observables), and records ReplayVerified or ReplayDiverged.
+/// observables), and records ReplayVerified or ReplayDiverged. Throws FilePruned if the state that
+/// the stage begins with was pruned and is needed.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// verify_by_replay() that also writes the file, so that a pruned, missing or damaged checkpoint is
-/// restored with the same SHA-256. If the bytes differ, ReplayDiverged is recorded and no file is
-/// written.
+/// restored with the same SHA-256. The state that the stage begins with is restored too, if it was
+/// pruned and is needed. If the bytes differ, ReplayDiverged is recorded and no file is written.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

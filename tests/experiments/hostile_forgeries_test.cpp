@@ -47,6 +47,17 @@ std::vector<Case> forged_events() {
       reported("file_elsewhere", "verify", 4, recorded("/file", "objects/../../x.h5"),
                "objects/../../x"),
       reported("grains", "verify", 4, member("/grains", 100), "grains"),
+      reported("beginning", "verify", 4,
+               event("RunStarted",
+                     [](json& b) {
+                       if (b["parent_checkpoint"].is_string()) {
+                         b["parent_checkpoint"] = std::string(64, 'a');
+                       }
+                     }),
+               "which is not the state of run"),
+      reported("sha256_of_a_manifest", "verify", 4,
+               event("ManifestRegistered", [](json& b) { b["sha256"] = std::string(64, 'a'); }),
+               "has another SHA-256"),
       reported("parent", "verify", 4, member("/parent", ""), "parent"),
       reported("kind", "verify", 4, member("/kind", "stiffen"), "stiffen"),
       reported("parameters", "verify", 4, member("/resolved/parameters/pressure_Pa", 10.0),

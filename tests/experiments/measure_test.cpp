@@ -57,10 +57,10 @@ class Measure : public DrawingTest {
 };
 
 TEST_F(Measure, IsMeasuredOnceAndGivesTheSameBytes) {
-  EXPECT_EQ(make("first").measured, 6U);
-  EXPECT_EQ(make("second").measured, 0U);
+  EXPECT_EQ(make("first").measured.size(), 6U);
+  EXPECT_EQ(make("second").measured.size(), 0U);
   std::filesystem::remove(cache());
-  EXPECT_EQ(make("third").measured, 6U);
+  EXPECT_EQ(make("third").measured.size(), 6U);
   for (const char* other : {"second", "third"}) EXPECT_EQ(csv(other), csv("first"));
   EXPECT_TRUE(store_.verify().findings.empty()) << "what is kept is no orphan";
 }
@@ -85,9 +85,9 @@ TEST_F(Measure, AMergeChecksAnUnpredictableSample) {
 TEST_F(Measure, OnlyNewCheckpointsAreMeasured) {
   make("short");
   compute(store_, tiny_manifest("", kBothFluids), {.cycles = 3});
-  EXPECT_EQ(make("long").measured, 2U);
+  EXPECT_EQ(make("long").measured.size(), 2U);
   std::filesystem::remove(cache());
-  EXPECT_EQ(make("again").measured, 8U);
+  EXPECT_EQ(make("again").measured.size(), 8U);
   EXPECT_EQ(csv("again"), csv("long"));
 }
 
@@ -166,7 +166,7 @@ TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
   std::size_t measured = 0;
   for (const WantedFigure& wanted : wanted_figures(store_).figures) {
     order.emplace_back(wanted.figure.name);
-    measured += draw("together", wanted).measured;
+    measured += draw("together", wanted).measured.size();
   }
   EXPECT_EQ(order, (std::vector<std::string>{"S7", "walls", "core", "fcc", "table1"}));
   EXPECT_EQ(measured, 6U) << "checkpoints, each once";
@@ -176,7 +176,7 @@ TEST_F(Measure, OneAnalysisServesAllFiguresMadeTogether) {
 TEST_F(Measure, RedrawingEveryExperimentMeasuresNothing) {
   compute(store_, renamed(tiny_manifest("", kBothFluids), "other"));
   const ComputedFigure table = draw("table", {*find_figure("table1"), ""});
-  EXPECT_EQ(table.measured, 0U);
+  EXPECT_EQ(table.measured.size(), 0U);
   EXPECT_EQ(table.runs, 2U * 2U);
   EXPECT_EQ(table.checkpoints, 2U * 2U) << "the last one of each";
   EXPECT_TRUE(table.verdicts.empty());
@@ -196,10 +196,10 @@ TEST_F(Measure, ATableNamesTheExperimentsThatItLeavesOut) {
 TEST_F(Measure, AChangedValueIsFoundAndReplaced) {
   make("first");
   sql("UPDATE derived SET (content, sha256) = (SELECT content, sha256 FROM derived LIMIT 1)");
-  EXPECT_EQ(make("second").measured, 5U) << "all but the one whose content it is";
+  EXPECT_EQ(make("second").measured.size(), 5U) << "all but the one whose content it is";
   EXPECT_EQ(csv("second"), csv("first"));
   sql("UPDATE derived SET version = version + 1");
-  EXPECT_EQ(make("third").measured, 6U) << "of another version";
+  EXPECT_EQ(make("third").measured.size(), 6U) << "of another version";
   EXPECT_EQ(csv("third"), csv("first"));
 }
 
@@ -215,7 +215,7 @@ TEST_F(Measure, VerifyNamesCachedValuesThatDiffer) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_TRUE(has(found[0].message, victim.sha256.substr(0, 12))) << found[0].message;
   std::filesystem::remove(cache());
-  EXPECT_EQ(make("again").measured, 6U);
+  EXPECT_EQ(make("again").measured.size(), 6U);
   EXPECT_EQ(csv("again"), csv("first"));
 }
 
@@ -226,7 +226,7 @@ TEST_F(Measure, WrongContentUnderARightHashIsRejected) {
   DerivedObject object{{records().at(0).sha256, provider("scalars").key(), analysis_version}, {}};
   object.content = {std::byte{0xff}, std::byte{0}};
   kept.put(std::span(&object, 1));
-  EXPECT_EQ(make("second").measured, 1U);
+  EXPECT_EQ(make("second").measured.size(), 1U);
   EXPECT_EQ(csv("second"), csv("first"));
   object.content = encode_result(nlohmann::json{{"phi", "dense"}});
   kept.put(std::span(&object, 1));
@@ -246,9 +246,9 @@ TEST_F(Measure, MeasuresHaveTheOrderOfTheRecordsWithAnyNumberOfWorkers) {
   const Measured many = measured(store_, all, two, {.workers = 4});
   const Measured kept = measured(store_, all, two, {.workers = 2});
   ASSERT_EQ(one.checkpoints.size(), all.size());
-  EXPECT_EQ(one.measured, all.size() - 1);
-  EXPECT_EQ(many.measured, all.size() - 1);
-  EXPECT_EQ(kept.measured, 0U);
+  EXPECT_EQ(one.measured.size(), all.size() - 1);
+  EXPECT_EQ(many.measured.size(), all.size() - 1);
+  EXPECT_EQ(kept.measured.size(), 0U);
   EXPECT_EQ(kept.cached, all.size() - 1);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measures& found = one.checkpoints[i].measures;
@@ -314,7 +314,7 @@ TEST_F(Measure, WorksWithoutAWritableCache) {
   const ComputedFigure figure = make("second");
   std::printf("%s\n", figure.cache_trouble.c_str());
   EXPECT_NE(figure.cache_trouble, "");
-  EXPECT_EQ(figure.measured, 6U);
+  EXPECT_EQ(figure.measured.size(), 6U);
   EXPECT_EQ(csv("second"), csv("first"));
 }
 

@@ -180,7 +180,8 @@ TEST_F(MergeTest, TheFurthestStateWins) {
     const std::string name = std::string(into) + "-and-" + from;
     copy(into, name);
     Store store = open(name);
-    store.merge({path(from)});
+    const MergeReport report = store.merge({path(from)}).at(0);
+    EXPECT_EQ(report.events, report.head.seq - 1) << "all but the declaration; " << name;
     const Stage run = store.stage(run_id(0));
     EXPECT_EQ(run.state, StageState::completed) << name;
     EXPECT_EQ(run.cycle, 3) << name;
