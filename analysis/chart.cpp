@@ -231,6 +231,10 @@ bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
   return !(chart.x.log && !(p.x > 0)) && !(chart.y.log && !(p.y > 0));
 }
 
+bool is_on_log_axes(const Chart& chart, const ReferenceLine& line) {
+  return line.at > 0 || !(line.vertical ? chart.x : chart.y).log;
+}
+
 std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
@@ -261,13 +265,16 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
         lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
     }
+    for (const ReferenceLine& line : chart.lines) {
+      add_once(lines, plain_text(line.title));
+      lost += is_on_log_axes(chart, line) ? 0 : 1;
+    }
     if (!chart.note.empty()) notes[chart.note].push_back(chart.letter);
     add_once(sources, chart.sources);
     if (lost > 0) {
       notes[fmt::format("Values that are not positive are not drawn: {}", lost)].push_back(
           chart.letter);
     }
-    for (const ReferenceLine& line : chart.lines) add_once(lines, plain_text(line.title));
   }
   for (const auto& [names, what] : panels) {
     const bool titled = names.size() > 3;  // more than "(a)"

@@ -180,8 +180,9 @@ std::string digits(double value);
 /// Without styles; "v_fluid" of a subscript.
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point: a logarithmic axis has positive values only.
+/// Whether the chart can draw the point or line: a logarithmic axis has positive values only.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
+bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 
 /// The caption of a figure: what each panel shows, what the errors are, and what the reference
 /// lines are. One paragraph that begins with `title`.

@@ -367,7 +367,8 @@ std::string published_in_words(const PublishedSpec& published) {
                      published.source);
 }
 
-/// What the claim says. `sides`: names of the variants.
+}  // namespace
+
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
   const bool waits = compares_waits(claim);
   const std::string name = quantity_of(claim);
@@ -390,6 +391,8 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
   }
   return {text, claim.is == Relation::lower ? -claim.margin : claim.margin, claim.is};
 }
+
+namespace {
 
 /// The verdict on runs of both sides, or of the first one with a published number.
 Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {

@@ -113,6 +113,9 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
+/// What the claim says. `sides`: names of the variants that it compares; "": there is only one.
+Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
+
 /// One sentence for each reason why the sides of a claim cannot be compared. `variants`: how many
 /// variants have the values of each side; `same`: whether both sides have the same runs.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim,

@@ -68,7 +68,7 @@ std::string label_of(const Axis& axis) {
   return label;
 }
 
-/// The range of the data along one axis, error bars included.
+/// The range of the data along one axis, error bars and reference lines included.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -155,6 +155,11 @@ class Script {
       }
       longest_ = std::max(longest_, points_.back().size());
     }
+    for (const ReferenceLine& line : chart_.lines) {
+      if (line.vertical || !is_on_log_axes(chart_, line)) continue;
+      y_.take(line.at, std::nullopt);
+      lines_ = true;
+    }
   }
 
   std::string text() {
@@ -173,7 +178,9 @@ class Script {
     ticks("x", chart_.x, x_);
     ticks("y", chart_.y, y_);
     ranges();
-    for (const ReferenceLine& line : chart_.lines) reference(line);
+    for (const ReferenceLine& line : chart_.lines) {
+      if (is_on_log_axes(chart_, line)) reference(line);
+    }
     for (std::size_t k = 0; k < points_.size(); ++k) data(k);
     // The key in the order of the series; the first series lies on top of the others.
     std::vector<std::string> plots;
@@ -227,29 +234,28 @@ class Script {
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
-  /// An end of an axis is either fixed, or left to gnuplot with some room beyond the data and the
-  /// horizontal lines.
+  /// An end of an axis is either fixed, or left to gnuplot with some room beyond the data. gnuplot
+  /// does not count horizontal lines: with these, the ends beyond data and lines are stated.
   void ranges() {
-    Extent lines;
-    for (const ReferenceLine& line : chart_.lines) {
-      if (!line.vertical) lines.take(line.at, std::nullopt);
-    }
-    const double room = lines.high > lines.low ? (lines.high - lines.low) / 4 : 0;
-    const bool any = lines.low <= lines.high;
+    const Axis &x = chart_.x, &y = chart_.y;
+    const auto outside = [&](double at, double share) {
+      const double room = share * (y.log ? std::log(y_.high / y_.low) : y_.high - y_.low);
+      return digits(y.log ? at * std::exp(room) : at + room);
+    };
+    const std::string above = outside(y_.high, 0.05), below = outside(y_.low, -0.05);
+    const bool stated = lines_ && above != below;
     struct End {
       std::string range, offset;
     };
-    const auto end = [](const std::optional<double>& fixed, bool holds,
-                        const std::string& otherwise, const char* beyond) {
-      return fixed && holds ? End{digits(*fixed), "0"} : End{otherwise, beyond};
+    const auto end = [](const std::optional<double>& fixed, bool holds, std::string otherwise,
+                        const char* beyond) {
+      if (fixed && holds) otherwise = digits(*fixed);
+      return End{otherwise, otherwise == "*" ? beyond : "0"};
     };
-    const Axis &x = chart_.x, &y = chart_.y;
     const End left = end(x.low, x.clip || x_.low >= x.low, "*", "graph 0.03");
     const End right = end(x.high, x.clip || x_.high <= x.high, "*", "graph 0.03");
-    const End top = end(y.high, y.clip || y_.high <= y.high,
-                        any ? digits(lines.high + room) + "<*" : "*", "graph 0.05");
-    const End bottom = end(y.low, y.clip || y_.low >= y.low,
-                           any ? "*<" + digits(lines.low - room) : "*", "graph 0.05");
+    const End top = end(y.high, y.clip || y_.high <= y.high, stated ? above : "*", "graph 0.05");
+    const End bottom = end(y.low, y.clip || y_.low >= y.low, stated ? below : "*", "graph 0.05");
     add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left.range,
         right.range, bottom.range, top.range, left.offset, right.offset, top.offset, bottom.offset);
   }
@@ -361,6 +367,7 @@ class Script {
   std::size_t longest_ = 0;                      ///< most points of a series
   Extent x_;
   Extent y_;
+  bool lines_ = false;  ///< y_ holds horizontal lines
   std::string text_;
 };
 

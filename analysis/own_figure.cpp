@@ -448,7 +448,7 @@ FigureTable draw(const PlotSpec& plot, std::vector<FigureRun> given, const NameV
   return against_measure(plot, curves);
 }
 
-/// Gives all panels the ranges of all their data.
+/// Gives all panels the ranges of all their data and published lines.
 void share_ranges(std::vector<FigureTable>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const FigureTable& table : tables) {
@@ -459,6 +459,11 @@ void share_ranges(std::vector<FigureTable>& tables) {
         low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
         high = {std::max(high[0], p.x), std::max(high[1], p.y + error)};
       }
+    }
+    for (const ReferenceLine& line : table.chart.lines) {
+      if (!is_on_log_axes(table.chart, line)) continue;
+      low[1] = std::min(low[1], line.at);
+      high[1] = std::max(high[1], line.at);
     }
   }
   for (FigureTable& table : tables) {

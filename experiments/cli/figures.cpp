@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
+#include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -75,6 +78,33 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
+/// What was drawn of an experiment.
+struct Drawn {
+  std::vector<std::string> figures, primary, claims;
+
+  void add(const ComputedFigure& result) {
+    figures.push_back(result.name);
+    primary = result.primary;
+    for (const Verdict& verdict : result.verdicts) claims.push_back(verdict.claim);
+  }
+};
+
+/// Warns of primary claims that no figure has, where all figures of all runs were drawn.
+void warn_of_primary(const Store& store, const RunSelection& runs,
+                     const std::map<std::string, Drawn>& drawn) {
+  if (!runs.variants.empty() || !runs.seeds.empty()) return;
+  for (const auto& [experiment, of] : drawn) {
+    if (experiment.empty() || of.primary.empty()) continue;
+    const auto is_drawn = [&](const WantedFigure& wanted) {
+      return std::ranges::count(of.figures, wanted.figure.name) > 0;
+    };
+    if (!std::ranges::all_of(wanted_figures(store, {}, {experiment}).figures, is_drawn)) continue;
+    for (const std::string& problem : unsaid(of.primary, of.claims)) {
+      print_stderr("warning: {}: {}\n", experiment, problem);
+    }
+  }
+}
+
 void figures(FigureArguments& options, Context& context) {
   Store store(context.store, Access::write);
   if (options.all) options.names.clear();
@@ -98,10 +128,12 @@ void figures(FigureArguments& options, Context& context) {
   how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
+  std::map<std::string, Drawn> drawn;  // by experiment
   for (const WantedFigure& figure : wanted.figures) {
     try {
       const ComputedFigure result = draw_figure(store, figure, how);
       list.push_back(facts(result));
+      drawn[result.experiment].add(result);
       print(result, figure.path(), told, context);
     } catch (const UsageError& problem) {
       complain_of(problem.what());
@@ -111,6 +143,7 @@ void figures(FigureArguments& options, Context& context) {
       complain_of(refused.what());
     }
   }
+  warn_of_primary(store, how.runs, drawn);
   if (context.json) print_json({{"figures", list}});
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -173,8 +174,8 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
-/// Sets Verdict::primary as the newest manifest states at the scale, of a figure of all experiments
-/// as any of them does.
+/// Sets ComputedFigure::primary and Verdict::primary as the newest manifest states at the scale, of
+/// a figure of all experiments as any of them does.
 void mark_primary(const Store& store, ComputedFigure& figure) {
   for (const RegisteredManifest& registered : newest_manifests(store)) {
     if (!figure.experiment.empty() && registered.experiment != figure.experiment) continue;
@@ -182,10 +183,11 @@ void mark_primary(const Store& store, ComputedFigure& figure) {
     if (!manifest) continue;
     for (const Scale& scale : scales_of(*manifest)) {
       if (scale.name != figure.scale) continue;
-      for (Verdict& verdict : figure.verdicts) {
-        if (std::ranges::count(scale.primary, verdict.claim) > 0) verdict.primary = true;
-      }
+      std::ranges::copy(scale.primary, std::back_inserter(figure.primary));
     }
+  }
+  for (Verdict& verdict : figure.verdicts) {
+    verdict.primary = std::ranges::count(figure.primary, verdict.claim) > 0;
   }
 }
 

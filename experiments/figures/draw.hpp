@@ -29,6 +29,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
+  std::vector<std::string> primary;          ///< claims that the manifest lists under `primary`
   std::vector<std::string> empty;            ///< names of tables without a value to draw
   nlohmann::json lineage;                    ///< the figure's record; `outputs` of draw_figure()
   std::vector<std::filesystem::path> files;  ///< of draw_figure(): CSV, SVG, PDF of each panel, ...

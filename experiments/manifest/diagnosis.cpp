@@ -13,6 +13,7 @@
 
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
+#include "analysis/figures/figures.hpp"
 #include "analysis/own_figure.hpp"
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
@@ -644,6 +645,40 @@ void warn_of_stated(const Manifest& stated, const string& figure, const Manifest
   }
 }
 
+// Warns of primary claims that no figure has. What computed figures claim depends on the runs.
+void warn_of_primary(const Manifest& manifest, const Scale& scale,
+                     std::span<const Variant> variants, std::vector<string>& warnings) {
+  if (scale.primary.empty()) return;
+  std::vector<json> swept;
+  for (const Variant& variant : variants) swept.push_back(variant.swept);
+  const auto names = variant_names(swept, manifest.labels);
+  std::vector<string> said;
+  const auto add = [&](const ClaimSpec& claim) {
+    std::array<string, 2> sides;
+    for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
+      const json& where = claim.between[k];
+      const auto side = std::ranges::find_if(
+          variants, [&](const Variant& variant) { return has_values(variant, where); });
+      sides[k] = where.empty()            ? ""
+                 : side == variants.end() ? words_of(where)
+                                          : names.at(side->swept);
+    }
+    said.push_back(stated(claim, sides).text);
+  };
+  std::ranges::for_each(manifest.claims, add);
+  for (const string& figure : manifest.figures) {
+    if (find_named(computed_figures(), figure) != nullptr) return;
+    for (const Manifest& shipped : shipped_manifests()) {
+      for (const auto& claim : shipped.claims) {
+        if ((claim.figure.empty() ? claim.name : claim.figure) == figure) add(claim);
+      }
+    }
+  }
+  for (const string& problem : unsaid(scale.primary, said)) {
+    warnings.push_back(format("{}: {}", manifest.file, problem));
+  }
+}
+
 void warn_of_figures(const Manifest& manifest, const Scale& scale,
                      std::span<const Variant> variants, std::size_t seeds,
                      std::vector<string>& warnings) {
@@ -671,6 +706,18 @@ string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
   if (p.engine != EngineKind::lammps) return "";
   if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
   return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
+}
+
+std::vector<string> unsaid(const std::vector<string>& primary, std::vector<string> said) {
+  // The summary is of all experiments: the manifest of any of them may list its claims.
+  for (const Verdict& verdict : figure_summary({}).verdicts) said.push_back(verdict.claim);
+  const std::vector<string_view> known(said.begin(), said.end());
+  std::vector<string> problems;
+  for (const string& claim : primary) {
+    if (std::ranges::count(said, claim) > 0) continue;
+    problems.push_back(with_nearest(format("primary: no claim says '{}'", claim), claim, known));
+  }
+  return problems;
 }
 
 void check_variants(const Manifest& manifest) {
@@ -724,6 +771,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
   std::vector<string> warnings;
   warn_of_parameters(manifest, scale, planned, warnings);
   warn_of_figures(manifest, scale, all, seeds, warnings);
+  warn_of_primary(manifest, scale, all, warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;
 }

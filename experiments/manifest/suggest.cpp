@@ -14,7 +14,7 @@ namespace {
 
 using std::string_view;
 
-constexpr std::size_t kLongestGuess = 64;
+constexpr std::size_t kLongestGuess = 300;
 
 // Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
 std::size_t edit_distance(string_view a, string_view b) {

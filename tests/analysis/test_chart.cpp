@@ -84,7 +84,7 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
   const std::string script = gnuplot_script(table);
   for (const char* part :
        {"set xlabel 'shear cycle  {/:Italic n}'\n", "set xtics 1\n", "set ylabel 'a\\_b  [%]'\n",
-        "set yrange [0:0.1<*]\n", "$series0 << EOD\n1,0.5,,0.1\nEOD\n",
+        "set yrange [0:0.625]\n", "$series0 << EOD\n1,0.5,,0.1\nEOD\n",
         "$series1 << EOD\n1.5,0.25,,\nEOD\n",
         "$series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads",
         "title '{/:Italic ϕ}_{u}'", "$series1 every 1 using 1:2 with points lc rgb '#654321'",
@@ -115,6 +115,25 @@ TEST(GnuplotScript, TicksHaveOneNumberOfDecimals) {
   EXPECT_TRUE(has(script_for(0.64, 0.71), "set xtics 0.01\nset format x '%.2f'"));
   EXPECT_TRUE(has(script_for(0.6, 0.9), "set xtics 0.05\nset format x '%.2f'"));
   EXPECT_TRUE(has(script_for(0, 20), "set xtics 5\nset format x '%.0f'"));
+}
+
+TEST(GnuplotScript, RangesAndTicksHoldHorizontalLines) {
+  const auto script_for = [](std::vector<ReferenceLine> lines, bool log) {
+    return gnuplot_script({.name = "t",
+                           .columns = {},
+                           .rows = {},
+                           .chart = {.y = {.log = log},
+                                     .series = {{.points = {{1, 0.62}, {2, 0.63}}}},
+                                     .lines = std::move(lines)}});
+  };
+  const std::string linear = script_for({{0.739}, {0.741}}, false);
+  EXPECT_TRUE(has(linear, "set ytics 0.02\nset format y '%.2f'")) << linear;
+  EXPECT_TRUE(has(linear, "set yrange [0.61395:0.74705]")) << linear;
+  const std::string log = script_for({{0.03}, {-1}}, true);
+  EXPECT_TRUE(has(log, "set yrange [0.02576")) << log;
+  EXPECT_TRUE(has(log, "set ytics (0.05,0.1,0.2,0.5)")) << log;
+  EXPECT_FALSE(has(log, "first -1")) << log;
+  EXPECT_TRUE(has(script_for({}, true), "set yrange [*:*]\nset offsets graph 0.03"));
 }
 
 // A label takes 6 pixels a letter and a gap of 8, and the frame has 260.

@@ -256,6 +256,11 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
   EXPECT_NO_THROW(
       plot_figure({.name = "own", .y = "phi", .by = "amplitude_rad", .panel = "period_s"})
           .make(runs_of_sweep()));
+  PlotSpec compared = plot;
+  compared.published = {{.label = "Jin", .source = "S C", .value = 0.74}};
+  for (const FigureTable& table : plot_figure(compared).make(runs_of_sweep()).tables) {
+    EXPECT_GT(table.chart.y.high, 0.74) << "published lines are in the range";
+  }
 }
 
 TEST(OwnPlot, OfOneFigureAreItsPanels) {

@@ -175,6 +175,25 @@ TEST(FigureWarnings, OfListedFigures) {
   })) << fmt::format("{}", fmt::join(short_runs, "\n"));
 }
 
+// A label is part of what a claim says.
+TEST(FigureWarnings, OfPrimaryClaimsThatNothingStates) {
+  const auto found = [](const std::string& primary, const std::string& more) {
+    return warnings(4,
+                    claim("compare: phi, at_cycle: 4") + "primary: ['" + primary + "']\n" + more);
+  };
+  const std::string says = "own: phi at cycle 4 is the same for fluid=still and fluid=cell";
+  const std::string label = "labels: {\"fluid=still\": water}\n";
+  EXPECT_EQ(found(says, ""), Strings{});
+  EXPECT_EQ(found("own: phi at cycle 4 is the same for water and fluid=cell", label), Strings{});
+  const Strings renamed = found(says, label);
+  ASSERT_EQ(renamed.size(), 1U);
+  EXPECT_TRUE(has(renamed[0], "primary: no claim says '" + says + "', the nearest is own: phi at " +
+                                  "cycle 4 is the same for water and fluid=cell"));
+  for (const std::string& other : found("C: the size", "figures: [C]\n")) {
+    EXPECT_FALSE(has(other, "primary")) << "known only from runs";
+  }
+}
+
 TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {
   for (const auto& [bad, says] :
        {std::pair{plot("y: phi*msd_10_cycles_d2"), "so phi*msd_10_cycles_d2 has no value"},
