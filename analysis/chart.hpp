@@ -106,7 +106,8 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
-  /// Number of runs of a curve with the same runs at each point; 0 for other series.
+  /// Of a curve with the same runs at each point: how many these are, those of one packing as one;
+  /// 0 for other series.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that equal x do not hide each other
 };

@@ -352,7 +352,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
       add_values(over, row);
       row.emplace_back(over.runs);
       if (!of_whole_run) row.emplace_back(cycle);
-      with_value += over.runs;
+      with_value += values.runs.size();
     }
   }
   table.chart.series = series_of(curves, columns_against(x, y));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure committor: the probability that a crystallite of n grains grows, from clones of states. A
 // run is a clone: its cycle 0 is a recorded state with noise of its own. The clones of one state
-// have the same variant. Not in the supplement.
+// have the same variant and the same stage before them. Not in the supplement.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,9 +122,9 @@ std::vector<Amplitude> amplitudes_of(std::span<const FigureRun> runs) {
                                              .colour = safe_colours[k % safe_colours.size()],
                                              .point = curve_symbol(k)},
                                    .published = published_nearest(amplitude).critical_size});
-    std::map<std::string, std::vector<const FigureRun*>> states;
-    for (const FigureRun* run : members) states[run->variant].push_back(run);
-    for (const auto& [variant, clones] : states) add_state(clones, one);
+    std::map<std::pair<std::string, std::string>, std::vector<const FigureRun*>> states;
+    for (const FigureRun* run : members) states[{run->variant, run->stage.parent}].push_back(run);
+    for (const auto& [state, clones] : states) add_state(clones, one);
   }
   return all;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/binning.hpp"
+#include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/published.hpp"
 
@@ -296,7 +297,7 @@ std::vector<Series> series_of(std::span<const Curve> curves, const SeriesColumns
                       .band = true,
                       .columns = columns,
                       .filter = {"variant", curve.variant},
-                      .runs = curve.runs.size()});
+                      .runs = by_packing(curve.runs).size()});
   }
   return series;
 }

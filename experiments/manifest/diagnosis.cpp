@@ -382,7 +382,8 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
 
 // Advice on several variants is one warning.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
-                        std::span<const Variant> variants, std::vector<string>& warnings) {
+                        std::span<const Variant> variants, std::size_t seeds,
+                        std::vector<string>& warnings) {
   const Start& start = scale.start;
   const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
   std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
@@ -392,6 +393,16 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
       if (known == advice.end()) known = advice.insert(known, {one, {}});
       known->second.push_back(variant.name);
     }
+  }
+  const auto draws = [&](const Variant& variant) {  // something by the seed
+    return start.is_recorded()
+               ? variant.parameters.start_noise_d > 0
+               : start.file.empty() || variant.parameters.walls == WallTexture::rough;
+  };
+  if (seeds > 1 && std::ranges::none_of(variants, draws)) {
+    warnings.push_back(format(
+        "{}:{}:{}: start: all {} seeds give the same run. State {}`seeds: 1`.", manifest.file,
+        start.at.line, start.at.column, seeds, start.is_recorded() ? "`noise_d`, or " : ""));
   }
   for (const auto& [one, of] : advice) {
     warnings.push_back(format("{}: variant{} {}: {}", manifest.file, of.size() == 1 ? "" : "s",
@@ -769,7 +780,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::span<const Variant> all, std::span<const Variant> planned,
                                 std::size_t seeds) {
   std::vector<string> warnings;
-  warn_of_parameters(manifest, scale, planned, warnings);
+  warn_of_parameters(manifest, scale, planned, seeds, warnings);
   warn_of_figures(manifest, scale, all, seeds, warnings);
   warn_of_primary(manifest, scale, all, warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
