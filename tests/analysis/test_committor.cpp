@@ -188,6 +188,9 @@ TEST(CommittorFigure, FindsTheSizeOfAKnownProbability) {
   Clones clones(0.0833);
   add_states(clones, [](auto size) { return share_that_grows(size, 8); });
   add_controls(clones, 0);
+  std::vector<FigureRun> others = clones.runs();  // seeds that settle packings of their own
+  for (FigureRun& run : others) run.stage.parent = fmt::format("packing of {}", run.stage.id);
+  EXPECT_EQ(number_at(figure_of(others), 0.0833, 2, "states"), 4 * 280) << "no clones";
   const FigureResult figure = figure_of(clones.runs());
   const auto at = [&](const char* column) { return number_at(figure, 0.0833, 2, column); };
   EXPECT_NEAR(at("half_size_grains"), 8, 0.8);

@@ -101,6 +101,9 @@ TEST(Curves, TheKeySaysWhereTheNumberOfRunsChanges) {
   for (const Key& key : keys(runs)) {
     for (const std::string& title : key) EXPECT_FALSE(has(title, "runs")) << title;
   }
+  std::vector<FigureRun> clones = runs;  // a mean over one packing
+  for (FigureRun& run : clones) run.packing = "of all";
+  for (const std::string& title : key_of(s2(clones)[0])) EXPECT_FALSE(has(title, "runs")) << title;
   for (const std::size_t k : {0U, 1U}) {
     remove_where(runs[k], [](double cycle) { return cycle >= 3 && cycle <= 5; });
   }

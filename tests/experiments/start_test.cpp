@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/filling.hpp"
@@ -140,6 +141,14 @@ TEST_F(Started, EachSeedDrawsNoiseOfItsOwn) {
   compute_here(tiny_manifest());
   const std::string text = clones(", noise_d: 1.0e-6", "", "seeds: 2\n");
   EXPECT_EQ(compute_here(text).completed, 2U);
+  const std::vector<Stage> known = store_.stages();
+  const auto is_warned = [&](const std::string& planned) {
+    return std::ranges::any_of(
+        expand(parse_manifest(planned, "tiny.yaml"), {.known = known}).warnings,
+        [](const std::string& w) { return has(w, "start: all 2 seeds give the same run."); });
+  };
+  EXPECT_FALSE(is_warned(text));
+  EXPECT_TRUE(is_warned(clones("", "", "seeds: 2\n")));
   const auto two = runs_of("clones");
   const Checkpoint from = state_at(runs_of("tiny").at(0), 1);
   const Eigen::Matrix3Xd first = state_at(two[0], 0).state.position - from.state.position;
