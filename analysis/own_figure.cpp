@@ -448,6 +448,17 @@ FigureTable draw(const PlotSpec& plot, std::vector<FigureRun> given, const NameV
   return against_measure(plot, curves);
 }
 
+/// Adds the value of the panel's parameter to each row, after the variant.
+void add_panel_column(const std::string& parameter, const nlohmann::json& value,
+                      FigureTable& table) {
+  if (std::ranges::count(table.columns, parameter) > 0) return;
+  table.columns.insert(table.columns.begin() + 1, parameter);
+  for (TableRow& row : table.rows) {
+    row.insert(row.begin() + 1,
+               value.is_number() ? TableValue(value.get<double>()) : TableValue(value_text(value)));
+  }
+}
+
 /// Gives all panels the ranges of all their data and published lines.
 void share_ranges(std::vector<FigureTable>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
@@ -512,6 +523,7 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
     const nlohmann::json where = {{plot.panel, value}};
     wheres.push_back(where);
     table.chart.title = words_of(where);
+    add_panel_column(plot.panel, value, table);
   }
   if (names && !wheres.empty()) {
     const auto named = names(wheres);

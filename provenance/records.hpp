@@ -47,7 +47,7 @@ struct Ask : Place {
   }
 };
 
-/// The name to show: "base" if the manifest has no scales.
+/// The name to show, also as JSON: "base" if the manifest has no scales. Events hold "".
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }

@@ -29,7 +29,7 @@ struct FigureArguments {
 nlohmann::json facts(const ComputedFigure& result) {
   return {{"figure", result.name},
           {"experiment", result.experiment},
-          {"scale", result.scale},
+          {"scale", scale_name(result.scale)},
           {"runs", result.runs},
           {"checkpoints", result.checkpoints},
           {"measured", result.measured.size()},

@@ -157,7 +157,9 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
 }
 
 nlohmann::json experiment_facts(const Plan& plan) {
-  return {{"experiment", plan.experiment}, {"scale", plan.scale}, {"runs", plan.runs.size()}};
+  return {{"experiment", plan.experiment},
+          {"scale", scale_name(plan.scale)},
+          {"runs", plan.runs.size()}};
 }
 
 Facts facts(const Line& line, bool of_several_experiments) {
@@ -227,7 +229,7 @@ void plan(const PlanOptions& options, Context& context) {
       rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", expanded.experiment},
-                       {"scale", expanded.scale},
+                       {"scale", scale_name(expanded.scale)},
                        {"experiments", json_list(plans, experiment_facts)},
                        {"notes", notes},
                        {"warnings", context.warnings},

@@ -118,7 +118,7 @@ Facts facts_of(const Store& store, const Stage& run) {
   for (const Ask& m : run.asks) {
     const nlohmann::json overrides = overrides_of(store, run, m);
     places.push_back({{"experiment", m.experiment},
-                      {"scale", m.scale},
+                      {"scale", scale_name(m.scale)},
                       {"variant", m.variant},
                       {"seed", m.seed},
                       {"target_cycles", m.target_cycles},

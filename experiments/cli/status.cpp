@@ -85,8 +85,12 @@ Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
   const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
   const std::string name = view.names.of(run, place);
   const auto place_facts = [&](const Ask& m) -> nlohmann::json {
-    return {{"experiment", m.experiment},    {"scale", m.scale}, {"variant", m.variant},
-            {"name", view.names.of(run, m)}, {"seed", m.seed},   {"newest", m.newest},
+    return {{"experiment", m.experiment},
+            {"scale", scale_name(m.scale)},
+            {"variant", m.variant},
+            {"name", view.names.of(run, m)},
+            {"seed", m.seed},
+            {"newest", m.newest},
             {"manifest", m.manifest}};
   };
   Facts all = {{"id", run.id, "run", run.id.substr(0, 8)},
@@ -103,7 +107,7 @@ Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
                {"wall_seconds", run.wall_seconds, "time", format_duration(run.wall_seconds)},
                {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
                {"experiment", place.experiment},
-               {"scale", place.scale},
+               {"scale", scale_name(place.scale)},
                {"variant", place.variant},
                {"kind", run.kind},
                {"parent", run.parent},

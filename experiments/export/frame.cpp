@@ -49,7 +49,7 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
                Frame& frame) {
   frame.run = {{"run", selected.stage.id},
                {"experiment", selected.experiment},
-               {"scale", selected.scale},
+               {"scale", scale_name(selected.scale)},
                {"variant", selected.variant},
                {"seed", selected.seed}};
   frame.checkpoint = record.sha256;

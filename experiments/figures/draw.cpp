@@ -161,7 +161,7 @@ std::string verdict_text(const ComputedFigure& figure) {
   verdict["runs"] = figure.runs_by_variant;
   verdict["figure"] = figure.name;
   if (!figure.experiment.empty()) verdict["experiment"] = figure.experiment;
-  verdict["scale"] = figure.scale;
+  verdict["scale"] = scale_name(figure.scale);
   return verdict.dump(1) + "\n";
 }
 

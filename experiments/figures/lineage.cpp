@@ -286,7 +286,7 @@ json to_json(const FigureLineage& lineage) {
           {"experiment", experiment.empty() ? json() : json(experiment)},
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
-          {"scale", lineage.scale},
+          {"scale", scale_name(lineage.scale)},
           {"analysis_version", lineage.analysis_version},
           {"made", lineage.made},
           {"outputs", lineage.outputs},

@@ -242,6 +242,8 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
             (std::vector<std::string>{"<amplitude_rad=0.02>", "<amplitude_rad=0.04>",
                                       "<amplitude_rad=0.08>"}));
   EXPECT_EQ(result.tables[0].rows.size(), 12U);
+  EXPECT_TRUE(to_csv(result.tables[1]).starts_with("variant,period_s,cycle,phi_mean,")) << "CSV";
+  EXPECT_EQ(result.tables[1].rows.at(0).at(1), TableValue(2.0));
   for (const FigureTable& table : result.tables) {  // from 0.0205 to 0.082, and some room
     const double low = table.chart.y.low.value(), high = table.chart.y.high.value();
     EXPECT_TRUE(low < 0.0205 && low > 0.015) << low;

@@ -58,6 +58,8 @@ TEST_F(Scales, NeverOverwriteEachOther) {
 TEST_F(Scales, WithoutScalesTheFolderIsBase) {
   campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
   expect(0, {"figures", "--out", "out"}, {"out/tiny/base/S2a.csv", "base scale"});
+  EXPECT_EQ(json({"figures", "S2", "--json"}).at("figures").at(0).at("scale"), "base");
+  EXPECT_EQ(json({"status", "--json"}).at("runs").at(0).at("scale"), "base");
   EXPECT_TRUE(std::filesystem::exists(path("out/base/table1.csv")));
   EXPECT_EQ(json({"show", "tiny/base/S2", "--json"}), json({"show", "S2", "--json"}));
   expect(0, {"status", "--scale", "base"});

@@ -197,7 +197,7 @@ class Run:
         self.facts = facts
         self.id: str = facts["id"]
         self.experiment: str = facts["experiment"]
-        self.scale: str = facts["scale"] or "base"
+        self.scale: str = facts["scale"]
         self.variant: str = facts["variant"]
         self.seed: int = facts["seed"]
         self.state: str = facts["state"]
