@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/aligned.hpp"
 #include "core/kernel.hpp"
 #include "core/simd_vectors-inl.hpp"
 
@@ -36,16 +37,19 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
 }
 
 // Writes the offsets of the ids to `outer` in ascending id, each at its rank: the number of smaller
-// ids, counted one vector at a time.
+// ids. Two vectors hold nearly every list, and a loop that always has two is predicted; `ids` has
+// room for them behind its end.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
   const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t k = count; k % lanes != 0; ++k) ids[k] = INT32_MAX;
+  for (std::size_t v = 0; v < 2; ++v) hn::StoreU(hn::Set(d, INT32_MAX), d, ids + count + v * lanes);
+  const auto first = hn::LoadU(d, ids);
+  const auto second = hn::LoadU(d, ids + lanes);
   for (std::size_t k = 0; k < count; ++k) {
     const auto key = hn::Set(d, ids[k]);
-    std::size_t rank = 0;
-    for (std::size_t v = 0; v < count; v += lanes) {
+    std::size_t rank = hn::CountTrue(d, hn::Lt(first, key)) + hn::CountTrue(d, hn::Lt(second, key));
+    for (std::size_t v = 2 * lanes; HWY_UNLIKELY(v < count); v += lanes) {
       rank += hn::CountTrue(d, hn::Lt(hn::LoadU(d, ids + v), key));
     }
     outer[rank] = t.offset_of_id[ids[k]];
@@ -58,53 +62,89 @@ HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   return hn::Mul(cutoff, cutoff);
 }
 
-// Finds the sites in these ranges of places that are near the one at `place`, without itself, in
-// any order; returns their number.
-HWY_INLINE std::size_t find_near(const SearchTask& t, std::size_t place,
-                                 std::span<const CellRange> ranges,
-                                 std::int32_t* HWY_RESTRICT found) {
-  const V depth = hn::Set(kD, t.depth);
-  const V per_depth = hn::Set(kD, t.per_depth);
-  const Vectors own{hn::Set(kD, t.grid.position[0][place]), hn::Set(kD, t.grid.position[1][place]),
-                    hn::Set(kD, t.grid.position[2][place])};
-  const V own_margin = hn::Set(kD, t.grid.margin[place]);
-  // Compared as doubles, which represent every id exactly and have masks of the right size.
-  const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
-  std::size_t count = 0;
-  for (const auto& [begin, end] : ranges) {
-    for (std::size_t p = begin; p < end; p += kLanes) {
-      const Vectors other{hn::LoadU(kD, t.grid.position[0] + p),
-                          hn::LoadU(kD, t.grid.position[1] + p),
-                          hn::LoadU(kD, t.grid.position[2] + p)};
-      const Vectors dr = separation(own, other, depth, per_depth);
-      const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
-      const V cutoff = square_cutoff(own_margin, hn::LoadU(kD, t.grid.margin + p));
-      const auto ids = hn::LoadU(kOffsets, t.grid.id + p);
-      const auto near =
-          hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
-                  hn::FirstN(kD, end - p));
-      count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
+// The sites in and around one cell, copied so that a grain's search is one long loop: the end of
+// each of nine short ones would be mispredicted.
+class Surroundings {
+ public:
+  void copy(const CellGrid& grid, std::uint32_t cell) {
+    std::array<CellRange, 9> ranges;
+    const std::size_t range_count = grid.cells.surrounding(cell, ranges);
+    size_ = 0;
+    for (const CellRange& cells : std::span(ranges).first(range_count)) {
+      const std::size_t begin = grid.begin[cells.begin];
+      const std::size_t count = grid.begin[cells.end] - begin;
+      make_room(size_ + count + kLanes);
+      for (std::size_t k = 0; k < count; k += kLanes) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          copy_vector(kD, grid.position[axis] + begin + k, position_[axis].data() + size_ + k);
+        }
+        copy_vector(kD, grid.margin + begin + k, margin_.data() + size_ + k);
+        copy_vector(kOffsets, grid.id + begin + k, id_.data() + size_ + k);
+      }
+      size_ += count;
     }
   }
-  return count;
-}
+
+  // Finds the sites near the one at `place`, without itself, in any order; returns their number.
+  std::size_t find_near(const SearchTask& t, std::size_t place,
+                        std::int32_t* HWY_RESTRICT found) const {
+    const V depth = hn::Set(kD, t.depth);
+    const V per_depth = hn::Set(kD, t.per_depth);
+    const Vectors own{hn::Set(kD, t.grid.position[0][place]),
+                      hn::Set(kD, t.grid.position[1][place]),
+                      hn::Set(kD, t.grid.position[2][place])};
+    const V own_margin = hn::Set(kD, t.grid.margin[place]);
+    // Compared as doubles, which represent every id exactly and have masks of the right size.
+    const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < size_; k += kLanes) {
+      const Vectors other{hn::LoadU(kD, position_[0].data() + k),
+                          hn::LoadU(kD, position_[1].data() + k),
+                          hn::LoadU(kD, position_[2].data() + k)};
+      const Vectors dr = separation(own, other, depth, per_depth);
+      const V square = hn::MulAdd(dr.x, dr.x, hn::MulAdd(dr.y, dr.y, hn::Mul(dr.z, dr.z)));
+      const V cutoff = square_cutoff(own_margin, hn::LoadU(kD, margin_.data() + k));
+      const auto ids = hn::LoadU(kOffsets, id_.data() + k);
+      const auto near =
+          hn::And(hn::And(hn::Lt(square, cutoff), hn::Ne(hn::PromoteTo(kD, ids), own_id)),
+                  hn::FirstN(kD, size_ - k));
+      count = std::min(count + store_selected(ids, near, found + count), kMostNeighbours);
+    }
+    return count;
+  }
+
+ private:
+  template <class Tag, class T>
+  static HWY_INLINE void copy_vector(Tag tag, const T* from, T* to) {
+    hn::StoreU(hn::LoadU(tag, from), tag, to);
+  }
+
+  void make_room(std::size_t sites) {
+    if (id_.size() >= sites) return;
+    for (auto& axis : position_) axis.resize(2 * sites);
+    margin_.resize(2 * sites);
+    id_.resize(2 * sites);
+  }
+
+  std::size_t size_ = 0;
+  std::array<AlignedVector<double>, 3> position_;
+  AlignedVector<double> margin_;
+  AlignedVector<std::int32_t> id_;
+};
 
 std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   std::int32_t found[kMostNeighbours + 64];
-  std::array<CellRange, 9> ranges;  // of places around the cell of the grain before
-  std::size_t most = 0, range_count = 0;
+  Surroundings around;
+  std::size_t most = 0;
   std::uint32_t cell = UINT32_MAX;
   for (std::size_t place = first; place < last; ++place) {
     const std::int32_t id = t.grid.id[place];
     if (id < t.first_grain) continue;
     if (t.grid.cell[place] != cell) {
       cell = t.grid.cell[place];
-      range_count = t.grid.cells.surrounding(cell, ranges);
-      for (CellRange& range : std::span(ranges).first(range_count)) {
-        range = {t.grid.begin[range.begin], t.grid.begin[range.end]};
-      }
+      around.copy(t.grid, cell);
     }
-    std::size_t count = find_near(t, place, std::span(ranges).first(range_count), found);
+    std::size_t count = around.find_near(t, place, found);
     most = std::max(most, count);
     count = std::min(count, t.stride);
     const std::size_t grain = static_cast<std::size_t>(t.offset_of_id[id]) / 4;
@@ -215,9 +255,11 @@ HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RE
   const auto padding = hn::Set(kOffsets, t.padding);
   const std::int32_t* from[kLanes];
   for (std::size_t l = 0; l < kLanes; ++l) {
-    for (std::size_t k = kept.count[l]; k < kept.wall[l] + kept.other_slots; k += kLanes) {
+    std::size_t k = kept.count[l];
+    do {  // one vector is nearly always enough, and the branch is predicted
       hn::StoreU(padding, kOffsets, kept.rows[l] + k);
-    }
+      k += kLanes;
+    } while (k < kept.wall[l] + kept.other_slots);
     from[l] = kept.rows[l] + kept.wall[l];
   }
   for (std::size_t k = 0; k < kept.other_slots; ++k) {
