@@ -105,8 +105,19 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
   }
 }
 
+/// Opens the store. One that this user cannot write to, as an archived one, is only read.
+Store open_store(const std::string& folder, FigureOptions& how) {
+  try {
+    return Store(folder, Access::write);
+  } catch (const MachineError& why) {
+    print_stderr("figures are drawn, but not recorded in the store: {}\n", why.what());
+  }
+  how.recorded = false;
+  return Store(folder, Access::read);
+}
+
 void figures(FigureArguments& options, Context& context) {
-  Store store(context.store, Access::write);
+  Store store = open_store(context.store, options.how);
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
