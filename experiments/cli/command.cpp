@@ -52,7 +52,17 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 }
 
 std::string unnamed(const std::string& path) {
-  return path.empty() ? "names no file or folder" : "";
+  namespace fs = std::filesystem;
+  if (path.empty()) return "names no file or folder";
+  std::error_code ignored;
+  // `verify` would take what is written there for what a crash has left.
+  for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
+       at = at.parent_path()) {
+    const fs::path log = at.parent_path() / "store.sqlite";
+    if (at.filename() != "objects" || !fs::exists(log, ignored)) continue;
+    return at.string() + " is where a store keeps its checkpoints; name another place";
+  }
+  return "";
 }
 
 void add_json_option(CLI::App& command, Context& context) {

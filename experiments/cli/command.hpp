@@ -69,7 +69,7 @@ struct Freed {
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
 
-/// An error message if the path is empty; else "".
+/// An error message if the path is empty or among the checkpoint files of a store; else "".
 std::string unnamed(const std::string& path);
 
 /// --json.
