@@ -169,7 +169,8 @@ DIR/SCALE; without names, table1 is drawn if a manifest lists any of these figur
 several experiments have its parts. Where the number of runs of a mean changes along a curve, the key
 of the drawing names the fewest and the most (the caption, if all curves have the same). Caches
 measures in the store's derived.sqlite. If you delete that file, they are measured again, except those
-of pruned checkpoints (see `regenerate`).
+of pruned checkpoints (see `regenerate`). A store that cannot be written to, such as an archive, is
+only read: figures are not recorded, and new measures are not kept.
 Figures and the keys that they compare (some have a curve for each value of other keys too):)";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("\n  {:<10} {}", figure.name, figure.title);
