@@ -52,7 +52,17 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 }
 
 std::string unnamed(const std::string& path) {
-  return path.empty() ? "names no file or folder" : "";
+  namespace fs = std::filesystem;
+  if (path.empty()) return "names no file or folder";
+  std::error_code ignored;
+  // `verify` would take what is written there for what a crash has left.
+  for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
+       at = at.parent_path()) {
+    const fs::path log = at.parent_path() / "store.sqlite";
+    if (at.filename() != "objects" || !fs::exists(log, ignored)) continue;
+    return at.string() + " is where a store keeps its checkpoints; name another place";
+  }
+  return "";
 }
 
 void add_json_option(CLI::App& command, Context& context) {
@@ -194,6 +204,29 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
+// Puts a manifest whose runs another one starts from before it.
+void order_by_start(std::vector<Manifest>& manifests, Context& context) {
+  std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
+  for (auto next = manifests.begin(); next != manifests.end(); ++next) {
+    const auto waits_for = [](const Manifest& one, const Manifest& other) {
+      return &one != &other && std::ranges::any_of(scales_of(one), [&](const Scale& scale) {
+        return scale.start.experiment == other.experiment;
+      });
+    };
+    const auto ready = std::find_if(next, manifests.end(), [&](const Manifest& one) {
+      return std::none_of(next, manifests.end(),
+                          [&](const Manifest& other) { return waits_for(one, other); });
+    });
+    if (ready == manifests.end()) {
+      return warn(context,
+                  fmt::format("{}: its `start` and those of other manifests name each other's "
+                              "runs: the store must have the first of them",
+                              next->file));
+    }
+    std::rotate(next, ready, ready + 1);
+  }
+}
+
 // Figures show the newest version of those that have runs at the scale.
 void warn_of_other_version(const Manifest& manifest, const Plan& plan,
                            const std::vector<Stage>& known, Context& context) {
@@ -226,7 +259,7 @@ LoadedManifests load_manifests(const std::vector<std::string>& paths, const Expa
     if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
   }
   warn_of_equal_names(loaded.manifests, context);
-  std::ranges::stable_partition(loaded.manifests, std::not_fn(starts_from_a_run));
+  order_by_start(loaded.manifests, context);
   const std::vector<Stage> stored = known_runs(context);
   std::vector<Stage> known = stored;
   ExpandOptions with_known = options;

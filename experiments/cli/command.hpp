@@ -69,7 +69,7 @@ struct Freed {
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
 
-/// An error message if the path is empty; else "".
+/// An error message if the path is empty or among the checkpoint files of a store; else "".
 std::string unnamed(const std::string& path);
 
 /// --json.
@@ -96,9 +96,9 @@ struct LoadedManifests {
   std::vector<Plan> plans;  ///< one for each manifest
 };
 
-/// Reads and expands each manifest once, those whose `start` names a run last: another manifest may
-/// have the run. warn() gets the warnings, also about runs of the store and about two different
-/// manifests of one `experiment`.
+/// Reads and expands each manifest once, those whose `start` names a run of another one after it.
+/// warn() gets the warnings, also about runs of the store and about two different manifests of one
+/// `experiment`.
 LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
                                Context& context);
 

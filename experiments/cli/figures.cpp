@@ -105,8 +105,19 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
   }
 }
 
+/// Opens the store. One that this user cannot write to, as an archived one, is only read.
+Store open_store(const std::string& folder, FigureOptions& how) {
+  try {
+    return Store(folder, Access::write);
+  } catch (const MachineError& why) {
+    print_stderr("figures are drawn, but not recorded in the store: {}\n", why.what());
+  }
+  how.recorded = false;
+  return Store(folder, Access::read);
+}
+
 void figures(FigureArguments& options, Context& context) {
-  Store store(context.store, Access::write);
+  Store store = open_store(context.store, options.how);
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
@@ -158,7 +169,8 @@ DIR/SCALE; without names, table1 is drawn if a manifest lists any of these figur
 several experiments have its parts. Where the number of runs of a mean changes along a curve, the key
 of the drawing names the fewest and the most (the caption, if all curves have the same). Caches
 measures in the store's derived.sqlite. If you delete that file, they are measured again, except those
-of pruned checkpoints (see `regenerate`).
+of pruned checkpoints (see `regenerate`). A store that cannot be written to, such as an archive, is
+only read: figures are not recorded, and new measures are not kept.
 Figures and the keys that they compare (some have a curve for each value of other keys too):)";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("\n  {:<10} {}", figure.name, figure.title);

@@ -333,7 +333,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   }
   write(".lineage.json", lineage_text(made.lineage));
 
-  if (made.undrawn.empty() || !find_program("gnuplot")) {
+  if (options.recorded && (made.undrawn.empty() || !find_program("gnuplot"))) {
     record(store, place + "/" + made.name, made.lineage);
   }
   return made;

@@ -16,7 +16,8 @@ namespace shearcell {
 struct FigureOptions : MeasureOptions {
   std::filesystem::path folder;  ///< files go into FOLDER/EXPERIMENT/SCALE, created if missing
   RunSelection runs = {};
-  bool wide = false;  ///< drawn as wide as two columns of a journal
+  bool wide = false;     ///< drawn as wide as two columns of a journal
+  bool recorded = true;  ///< in the log of the store
 };
 
 /// A figure: its panels, its verdicts, and what was left out.
@@ -48,8 +49,9 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// experiments), where SCALE is scale_name(): PANEL.csv, .svg and, with librsvg, .pdf of each
 /// panel, NAME.caption.txt if something is drawn, NAME.verdict.json and NAME.verdict.csv (what
 /// entered it) if there are claims, and NAME.lineage.json. Deletes a caption or verdict of an older
-/// figure that the new one lacks. Records a FigureGenerated event with host and build, unless the
-/// newest event of this figure says the same or a drawing failed (gnuplot may be missing). The same
+/// figure that the new one lacks. Records a FigureGenerated event with host and build, unless
+/// options.recorded is false, the newest event of this figure says the same or a drawing failed
+/// (gnuplot may be missing). The same
 /// checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
 ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -17,6 +18,7 @@
 #include "experiments/manifest/start.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
@@ -174,7 +176,20 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
-        placed(*plan.file, run.packing, seed);  // or says why it cannot
+        const PlacedGrains grains = placed(*plan.file, run.packing, seed);  // or says why it cannot
+        const Cell& cell = grains.cell;
+        const double height = std::fabs(grains.state.wall_height -
+                                        (cell.moving == MovingWall::top ? cell.bottom : cell.top));
+        const double time =
+            pressing_time(settle_scene(run.packing), height,
+                          static_cast<double>(run.packing.grains) / (cell.width * cell.depth));
+        if (plan.file->file.settles && time > run.packing.settle_time_limit_s) {
+          plan.warnings.push_back(fmt::format(
+              "{}: it is {:.6g} d high, which the moving wall presses together in about "
+              "{:.2g} s, so settling fails at settle_time_limit_s ({:g} s). Cut off "
+              "the empty space, or raise that limit.",
+              plan.file->path, height, time, run.packing.settle_time_limit_s));
+        }
       }
 
       const std::string& same = variant_of.emplace(run.stage.id, run.variant).first->second;

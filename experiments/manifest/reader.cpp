@@ -268,7 +268,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.published,
         {.name = "published",
          .doc = "instead of `between`: the mean over the runs less this number; "
-                "with `is: lower` or `higher` and no margin, the number is a bound",
+                "with `is: lower` or `higher` and no margin, the number is a bound. The verdict "
+                "does not use `error`, so state a margin that includes it",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
                            .doc = "with `published`: swept values that single out the variant",

@@ -257,6 +257,9 @@ json figure_json(const WantedFigure& wanted, Content& content) {
   content.report.damage.insert(figure.damage.begin(), figure.damage.end());
   content.report.notes.insert(figure.pruned.begin(), figure.pruned.end());
   content.report.notes.insert(figure.notes.begin(), figure.notes.end());
+  if (!figure.cache_trouble.empty()) {
+    content.report.notes.insert("measures cannot be cached: " + figure.cache_trouble);
+  }
   return {{"id", prefix + wanted.figure.name},
           {"name", figure.name},
           {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,

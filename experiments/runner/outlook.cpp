@@ -187,16 +187,25 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
     std::erase_if(lacking, [&](std::uint64_t step) { return known.contains(step); });
     (engine == EngineKind::shearcell ? look.missing : look.lost) = std::move(lacking);
   }
-  if (!look.missing.empty()) {
-    std::uint64_t from = 0;
-    look.from = 0;
+  // The last checkpoint before a step that has a file; nothing to begin with the stage.
+  const auto recorded_before = [&](std::uint64_t step) {
+    const CheckpointRecord* last = nullptr;
     for (const CheckpointRecord& record : checkpoints) {
-      if (record.state != CheckpointState::recorded || record.step >= look.missing.front())
-        continue;
-      look.from = record.cycle;
-      from = record.step;
+      if (record.state == CheckpointState::recorded && record.step < step) last = &record;
     }
-    steps += static_cast<double>(look.missing.back() - from);
+    return last;
+  };
+  const auto steps_to = [&](std::uint64_t step, const CheckpointRecord* from) {
+    return static_cast<double>(step - (from != nullptr ? from->step : 0));
+  };
+  const bool pruned = !checkpoints.empty() && checkpoints.back().state == CheckpointState::pruned;
+  if (length > now && pruned) {  // first the state from which it continues is recomputed
+    steps += steps_to(checkpoints.back().step, recorded_before(checkpoints.back().step));
+  }
+  if (!look.missing.empty()) {
+    const CheckpointRecord* from = recorded_before(look.missing.front());
+    look.from = from != nullptr ? from->cycle : 0;
+    steps += steps_to(look.missing.back(), from);
     look.checkpoints += static_cast<double>(look.missing.size());
   }
   look.particle_steps = static_cast<double>(stage.grains) * steps;

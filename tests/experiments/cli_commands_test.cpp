@@ -237,6 +237,22 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
   EXPECT_EQ(json({"plan", "m.yaml", "m.yaml", "--json"}).at("experiment"), "tiny");
 }
 
+/// A manifest may start from runs of one that is named after it.
+TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
+  const auto after = [](const std::string& name, const std::string& other) {
+    return renamed(tiny_manifest("", "start: {experiment: " + other + ", seed: 1, cycle: 1}\n"),
+                   name);
+  };
+  write("a.yaml", after("a", "b"));
+  write("b.yaml", after("b", "tiny"));
+  write("m.yaml", tiny_manifest());
+  expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
+  write("b.yaml", after("b", "a"));
+  expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
+         {"warning: a.yaml: its `start` and those of other manifests name each other's runs",
+          "the store has no run of b"});
+}
+
 class SharedStore : public Commands {
  protected:
   static std::string many_runs() {

@@ -301,6 +301,13 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   // More cycles need the last states, which are recomputed.
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
+  for (const auto& stage : json({"plan", "m.yaml", "--cycles", "6", "--json"}).at("stages")) {
+    if (stage.at("stage") != "shear") continue;
+    EXPECT_EQ(stage.at("particle_steps_left"),
+              stage.at("N").get<double>() * (5 + 1) *
+                  stage.at("parameters").at("steps_per_cycle").get<double>())
+        << "the five cycles whose last state is recomputed, and the new one";
+  }
   expect(0, {"run", "m.yaml", "--cycles", "6"}, {"was pruned; its file is recomputed"});
   EXPECT_EQ(objects(), 4U * 2 + 2) << "two packings, and cycles 5 and 6 of four runs";
   expect(0, {"regenerate", "--all"}, {"the same bytes"});

@@ -221,6 +221,32 @@ TEST_F(Outputs, AFullFolderForTemporaryFilesLeavesNoCutDrawing) {
   }
 }
 
+/// An archived store gives its figures: cached measures are read, others are measured and not kept.
+TEST_F(Outputs, FiguresOfAReadOnlyStoreAreThoseOfAWritableOne) {
+  const std::string read_only =
+      "export program=\"$0\"\nunshare -m true || exit 77\nexec unshare -m sh -c '"
+      "mount --bind shearcell-store shearcell-store || exit 77; "
+      "mount -o remount,bind,ro shearcell-store || exit 77; "
+      "exec \"$program\" figures S2 --out ";
+  const Outcome measured = shell(read_only + "measured'");
+  if (measured.code == 77) GTEST_SKIP() << "only root mounts";
+  EXPECT_EQ(measured.code, 0) << measured.err;
+  EXPECT_TRUE(has(measured.err, "not recorded in the store: shearcell-store/store.sqlite: "));
+  EXPECT_TRUE(has(measured.err, "measures cannot be cached: ")) << measured.err;
+  EXPECT_FALSE(has(expect(0, {"log"}).out, "FigureGenerated"));
+  expect(0, {"figures", "S2", "--out", "out"});
+  const Outcome cached = shell(read_only + "cached'");
+  EXPECT_EQ(cached.code, 0) << cached.err;
+  EXPECT_FALSE(has(cached.err, "measures cannot be cached")) << cached.err;
+  for (const char* file : {"S2a.csv", "S2.verdict.json", "S2.lineage.json"}) {
+    for (const char* folder : {"measured", "cached"}) {
+      EXPECT_EQ(read_bytes(path(std::string(folder) + "/tiny/base/" + file)),
+                read_bytes(path(std::string("out/tiny/base/") + file)))
+          << file;
+    }
+  }
+}
+
 class HostileMachine : public ProgramTest {};
 
 TEST_F(HostileMachine, WithTooFewThreadsGivesTheSameBits) {

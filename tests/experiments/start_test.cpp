@@ -500,6 +500,25 @@ TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
             std::string::npos);
 }
 
+TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
+  const std::string two =
+      "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
+      "  fill_packing_fraction: 0.02\n  height_over_width: 1\n";
+  for (const auto& [y, rest, warned] : {std::tuple("90000", "settle: {}\n", true),
+                                        {"3", "settle: {}\n", false},
+                                        {"90000", "", false}}) {
+    write_grains(std::string("x_d,y_d,z_d\n1,1,1\n1,") + y + ",1\n");
+    const std::vector<std::string> warnings = expand(manifest(rest, two)).warnings;
+    EXPECT_EQ(std::ranges::count_if(warnings,
+                                    [](const std::string& one) {
+                                      return one.find("grains.csv: it is 90000 d high, ") !=
+                                             one.npos;
+                                    }),
+              warned ? 1 : 0)
+        << y << rest;
+  }
+}
+
 TEST(Noise, DependsOnSeedAndGrainAlone) {
   State few, many;
   few.position = Eigen::Matrix3Xd::Zero(3, 2);

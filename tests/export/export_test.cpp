@@ -437,15 +437,14 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
   }
 }
 
-TEST(Export, LeavesEmptyTextsOutOfExtendedXyz) {
+TEST(Export, CallsTheScaleOfAManifestWithoutScalesBase) {
   const TemporaryFolder folder;
   shearcell::Run run = about();
   run.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz",
                 Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
-  EXPECT_FALSE(has(text, "scale="));
-  EXPECT_TRUE(has(text, " experiment=\"drag\" variant="));
+  EXPECT_TRUE(has(text, " experiment=\"drag\" scale=\"base\" variant="));
 }
 
 TEST(Export, HasOnlyKeysOfAManifest) {
