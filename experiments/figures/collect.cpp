@@ -109,10 +109,15 @@ bool asks_for_one(const Figure& figure, const FigureRun& run) {
 }
 
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
-void leave_out_not_begun(const Figure& figure, CollectedRuns& collected) {
+void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
+  const std::set<std::string> waiting = waiting_for_failed(store.stages());
   std::set<std::string> not_begun, never, going_on;
   for (const FigureRun& run : collected.runs) {
-    const std::string name = fmt::format("{} seed {}", run.name, run.seed);
+    const std::string name =
+        fmt::format("{} seed {}{}", run.name, run.seed,
+                    run.stage.state == StageState::failed || waiting.contains(run.stage.id)
+                        ? " (failed)"
+                        : "");
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
     } else if (run.stage.state != StageState::completed &&
@@ -378,7 +383,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     add_checkpoints(store, wanted.figure, run);
   }
   if (measured) {
-    leave_out_not_begun(wanted.figure, collected);
+    leave_out_not_begun(store, wanted.figure, collected);
     if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
     note_never_made(store, wanted.figure, collected);
   }
