@@ -37,25 +37,29 @@ def by_packing(rows):
 
 
 def estimate(claim, rows):
-    """The estimate and half the length of its interval."""
+    """The estimate and its interval."""
     groups = [by_packing([row for row in rows if row["group"] == name]) for name in dict.fromkeys(r["group"] for r in rows)]
     relative = "relative" in claim["quantity"]
     if len(groups) == 1:
         published = re.search(r"(?:less|from) (\d[\d.e-]*)", claim["quantity"])
         values = np.array(list(groups[0].values())) - (float(published[1]) if published else 0)
-        scale = float(published[1]) if published and "relative difference from" in claim["quantity"] else 1
+        if published and "relative difference from" in claim["quantity"]:
+            values = values / float(published[1])
     else:
+        if relative:  # a difference of logarithms
+            groups = [{packing: np.log(value) for packing, value in group.items()} for group in groups]
         a, b = groups
-        scale = np.mean(list(b.values())) if relative else 1
         shared = [packing for packing in a if packing in b]
+        values = np.array([a[packing] - b[packing] for packing in shared])
         if not shared:  # Welch
             a, b = (np.array(list(group.values())) for group in groups)
             va, vb = a.var(ddof=1) / len(a), b.var(ddof=1) / len(b)
             freedom = (va + vb) ** 2 / (va**2 / (len(a) - 1) + vb**2 / (len(b) - 1))
-            return (a.mean() - b.mean()) / scale, t_quantile(freedom) * np.sqrt(va + vb) / scale
-        values = np.array([a[packing] - b[packing] for packing in shared])
-    values = values / scale
-    return values.mean(), t_quantile(len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values))
+            mean, half = a.mean() - b.mean(), t_quantile(freedom) * np.sqrt(va + vb)
+    if len(groups) == 1 or shared:
+        mean, half = values.mean(), t_quantile(len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values))
+    ends = np.array([mean, mean - half, mean + half])
+    return np.expm1(ends) if len(groups) == 2 and relative else ends
 
 
 def bootstrap(statistic, parts):
@@ -181,8 +185,7 @@ def expected(claim, rows):
         least = max(max(low, -high, 0) for low, high in ends)
         return max(abs(float(row["difference"])) for row in rows), least, max(max(-low, high) for low, high in ends), 1e-5
     if "value" in columns:
-        value, half = estimate(claim, rows)
-        return value, value - half, value + half, 1e-3 * (high - low)
+        return *estimate(claim, rows), 1e-3 * (high - low)
     return None
 
 
