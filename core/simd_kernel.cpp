@@ -20,13 +20,24 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// contact_factor(s) up to the end of the series.
-HWY_INLINE V series_factors(V s) {
-  V series = hn::Set(kD, kContactSeries.back());
+// Neighbours of a lane whose factors are computed side by side, since each operation of the series
+// waits for the one before. Four fit in 32 registers if the coefficients are not kept there.
+constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
+
+// contact_factor(s) of kCount numbers up to the end of the series.
+template <std::size_t kCount>
+HWY_INLINE void series_factors(const V* s, V* factor) {
+  const double* coefficient = kContactSeries.data() + kContactSeries.size() - 1;
+  if constexpr (kSlots > 1) asm("" : "+r"(coefficient));  // so they are loaded each time
+  HWY_UNROLL(4)
+  for (std::size_t k = 0; k < kCount; ++k) factor[k] = hn::Set(kD, *coefficient);
   for (std::size_t n = kContactSeries.size() - 1; n-- > 0;) {
-    series = hn::MulAdd(series, s, hn::Set(kD, kContactSeries[n]));
+    const V next = hn::Set(kD, *--coefficient);
+    HWY_UNROLL(4)
+    for (std::size_t k = 0; k < kCount; ++k) factor[k] = hn::MulAdd(factor[k], s[k], next);
   }
-  return hn::Mul(s, series);
+  HWY_UNROLL(4)
+  for (std::size_t k = 0; k < kCount; ++k) factor[k] = hn::Mul(s[k], factor[k]);
 }
 
 // contact_factor(s), given `series` for s up to the end of the series.
@@ -36,15 +47,13 @@ HWY_INLINE V exact_beyond(V s, V series) {
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// Neighbours of a lane whose factors are computed side by side: more need more than 16 registers.
-constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 2 : 1;
-
 // Adds (1/r - 1) dr over the touching ones of kCount neighbours of each lane, one after the other.
 template <bool kSeam, std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                           const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
   V x[kCount], y[kCount], z[kCount], s[kCount], factor[kCount];
   V deepest = hn::Zero(kD);
+  HWY_UNROLL(4)
   for (std::size_t k = 0; k < kCount; ++k) {
     V margin;
     const Vectors other = load_rows(
@@ -55,12 +64,14 @@ HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RE
     s[k] = hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0)));
     s[k] = hn::NegMulAdd(dr.z, dr.z, s[k]);
     s[k] = hn::Max(s[k], hn::Zero(kD));  // not touching: the factor is 0
-    factor[k] = series_factors(s[k]);
     deepest = k == 0 ? s[k] : hn::Max(deepest, s[k]);
   }
+  series_factors<kCount>(s, factor);
   if (HWY_UNLIKELY(!hn::AllFalse(kD, hn::Gt(deepest, hn::Set(kD, kSeriesEnd))))) {
+    HWY_UNROLL(4)
     for (std::size_t k = 0; k < kCount; ++k) factor[k] = exact_beyond(s[k], factor[k]);
   }
+  HWY_UNROLL(4)
   for (std::size_t k = 0; k < kCount; ++k) {
     sum.x = hn::MulAdd(factor[k], x[k], sum.x);
     sum.y = hn::MulAdd(factor[k], y[k], sum.y);
@@ -76,7 +87,9 @@ HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY
   for (; slots >= kSlots; slots -= kSlots, list += kSlots * kLanes) {
     add_slots<kSeam, kSlots>(sum, own, rows, list, depth, per_depth);
   }
-  if (slots > 0) add_slots<kSeam, 1>(sum, own, rows, list, depth, per_depth);
+  for (; slots > 0; --slots, list += kLanes) {
+    add_slots<kSeam, 1>(sum, own, rows, list, depth, per_depth);
+  }
 }
 
 HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& plane) {
