@@ -108,7 +108,6 @@ scales:
 
 /// Links a complete temporary file, so the file is complete and replaces no other.
 void write_new(const std::filesystem::path& file, const std::string& text) {
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
   std::error_code failed, ignored;
   try {

@@ -134,6 +134,8 @@ void require_ours(const fs::path& path, const Recognize& ours) {
 
 void write_output(const fs::path& path, std::string_view bytes) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code ignored;  // open() says what is wrong
+  fs::create_directories(parent, ignored);
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");
   replace_file(folder, path, bytes_of(bytes), '.' + path.filename().string() + ".tmp-",

@@ -70,7 +70,8 @@ using Recognize = std::function<bool(std::string_view beginning)>;
 /// std::system_error when this user may not read the file.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
-/// Writes a whole file under a temporary name beside `path` and renames it (replace_file).
+/// Writes a whole file under a temporary name beside `path`, whose folder is created if it is
+/// missing, and renames it (replace_file).
 void write_output(const std::filesystem::path& path, std::string_view bytes);
 
 /// A new file that is written in parts; an existing file is never overwritten. If writing fails,

@@ -121,6 +121,12 @@ TEST(TemporaryFolder, NamesTheMissingFolder) {
   EXPECT_EQ(beside.path().parent_path(), place.path());
 }
 
+TEST(Output, CreatesItsFolder) {
+  const TemporaryFolder place;
+  write_output(place.path() / "new" / "a.csv", "x\n");
+  EXPECT_EQ(read_bytes(place.path() / "new" / "a.csv"), "x\n");
+}
+
 TEST(Output, ToAnUnreadableFolderIsRejected) {
   if (geteuid() == 0) GTEST_SKIP() << "root reads everything";
   const TemporaryFolder folder;
