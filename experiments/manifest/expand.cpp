@@ -219,32 +219,6 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
   }
 }
 
-Plan joined(std::span<const Plan> plans) {
-  std::vector<std::string> experiments, scales;
-  Plan all;
-  std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
-  for (const Plan& plan : plans) {
-    if (std::ranges::count(experiments, plan.experiment) == 0) {
-      experiments.push_back(plan.experiment);
-    }
-    if (std::ranges::count(scales, scale_name(plan.scale)) == 0) {
-      scales.push_back(scale_name(plan.scale));
-    }
-    for (const PlannedRun& run : plan.runs) {
-      const auto [place, fresh] = places.try_emplace(run.stage.id, all.runs.size());
-      if (fresh) {
-        all.runs.push_back(run);
-        continue;
-      }
-      std::vector<Ask>& asks = all.runs[place->second].stage.asks;
-      std::ranges::copy(run.stage.asks, std::back_inserter(asks));
-    }
-  }
-  all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
-  all.scale = scales.size() == 1 ? plans.front().scale : fmt::format("{}", fmt::join(scales, ", "));
-  return all;
-}
-
 bool asks_for_lammps(const Plan& plan) {
   return std::ranges::any_of(
       plan.runs, [](const PlannedRun& run) { return run.parameters.engine == EngineKind::lammps; });
