@@ -521,7 +521,7 @@ std::vector<Experiment> experiments_of(const Store& store, const std::vector<std
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
-    const std::optional<Manifest> known = parsed(manifest);
+    const std::optional<Manifest> known = recorded_manifest(manifest.text);
     Experiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();
