@@ -602,11 +602,11 @@ ClaimProblems problems_of(const ClaimSpec& claim, std::span<const FigureRun> run
   return found;
 }
 
-/// Warns of the plots and claims that `stated` states: of its own ones if `figure` is "", else of
-/// those of a figure that the manifest lists.
-void warn_of_stated(const Manifest& stated, const string& figure, const Manifest& manifest,
+/// Warns of the plots and claims that `source` states: of its own ones if `figure` is "", else of
+/// those of a figure that the manifest lists. Adds to `said` what the claims say.
+void warn_of_stated(const Manifest& source, const string& figure, const Manifest& manifest,
                     const Scale& scale, std::span<const FigureRun> runs, std::size_t seeds,
-                    std::vector<string>& warnings) {
+                    std::vector<string>& said, std::vector<string>& warnings) {
   const auto is_of = [&](const auto& one) {
     return figure.empty() || (one.figure.empty() ? one.name : one.figure) == figure;
   };
@@ -619,11 +619,12 @@ void warn_of_stated(const Manifest& stated, const string& figure, const Manifest
         warnings.push_back(format("{}: {} {}: {}", place, kind, one.name, problem));
     }
   };
-  for (const auto& plot : stated.plots) {
+  for (const auto& plot : source.plots) {
     if (is_of(plot)) warn_of("plot", plot, problems_of(plot, manifest, scale, runs));
   }
-  for (const auto& claim : stated.claims) {
+  for (const auto& claim : source.claims) {
     if (!is_of(claim)) continue;
+    said.push_back(stated(claim, sides_of(claim, runs).names).text);
     const ClaimProblems here = problems_of(claim, runs, seeds);
     if (claim.listed && !here.refusals.empty()) continue;  // of variants that it does not have
     warn_of("claim", claim, here.refusals);
@@ -635,28 +636,6 @@ void warn_of_stated(const Manifest& stated, const string& figure, const Manifest
       return there.refusals.empty() && there.lacks.empty();
     });
     if (!decided) warn_of("claim", claim, here.lacks);
-  }
-}
-
-// Warns of primary claims that no figure has. What computed figures claim depends on the runs.
-void warn_of_primary(const Manifest& manifest, const Scale& scale, std::span<const FigureRun> runs,
-                     std::vector<string>& warnings) {
-  if (scale.primary.empty()) return;
-  std::vector<string> said;
-  const auto add = [&](const ClaimSpec& claim) {
-    said.push_back(stated(claim, sides_of(claim, runs).names).text);
-  };
-  std::ranges::for_each(manifest.claims, add);
-  for (const string& figure : manifest.figures) {
-    if (find_named(computed_figures(), figure) != nullptr) return;
-    for (const Manifest& shipped : shipped_manifests()) {
-      for (const auto& claim : shipped.claims) {
-        if ((claim.figure.empty() ? claim.name : claim.figure) == figure) add(claim);
-      }
-    }
-  }
-  for (const string& problem : unsaid(scale.primary, said)) {
-    warnings.push_back(format("{}: {}", manifest.file, problem));
   }
 }
 
@@ -672,12 +651,19 @@ void warn_of_figures(const Manifest& manifest, const Scale& scale, std::span<con
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
+  std::vector<string> said;
+  bool known = true;  // what is said; what computed figures claim depends on the runs
   for (const string& figure : manifest.figures) {
+    known = known && find_named(computed_figures(), figure) == nullptr;
     for (const Manifest& shipped : shipped_manifests()) {
-      warn_of_stated(shipped, figure, manifest, scale, runs, seeds, warnings);
+      warn_of_stated(shipped, figure, manifest, scale, runs, seeds, said, warnings);
     }
   }
-  warn_of_stated(manifest, "", manifest, scale, runs, seeds, warnings);
+  warn_of_stated(manifest, "", manifest, scale, runs, seeds, said, warnings);
+  if (!known) return;
+  for (const string& problem : unsaid(scale.primary, said)) {
+    warnings.push_back(format("{}: {}", manifest.file, problem));
+  }
 }
 
 }  // namespace
@@ -750,9 +736,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::size_t seeds) {
   std::vector<string> warnings;
   warn_of_parameters(manifest, scale, planned, seeds, warnings);
-  const std::vector<FigureRun> runs = runs_of(manifest, scale, all);
-  warn_of_figures(manifest, scale, runs, seeds, warnings);
-  warn_of_primary(manifest, scale, runs, warnings);
+  warn_of_figures(manifest, scale, runs_of(manifest, scale, all), seeds, warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;
 }
