@@ -166,7 +166,7 @@ std::string joined(const std::vector<Plan>& plans, std::string (*name)(const Pla
 }
 
 nlohmann::json experiment_facts(const Plan& plan) {
-  return {{"experiment", plan.experiment},
+  return {{"experiment", plan.manifest.experiment},
           {"scale", scale_name(plan.scale)},
           {"runs", plan.runs.size()}};
 }
@@ -205,7 +205,7 @@ struct PlanOptions {
 };
 
 void plan(const PlanOptions& options, Context& context) {
-  const std::vector<Plan> plans = load_manifests(options.manifests, options.expand, context).plans;
+  const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->stages() : std::vector<Stage>{};
   const std::vector<Line> lines = look_at(plans, store ? &*store : nullptr);
@@ -234,7 +234,8 @@ void plan(const PlanOptions& options, Context& context) {
         "`run` also continues {} to the number of cycles that an earlier command asked for",
         counted(longer, "run")));
   }
-  const std::string experiment = joined(plans, [](const Plan& one) { return one.experiment; });
+  const std::string experiment =
+      joined(plans, [](const Plan& one) { return one.manifest.experiment; });
   const std::string scale = joined(plans, [](const Plan& one) { return scale_name(one.scale); });
   const std::vector<Facts> stages =
       rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });

@@ -139,10 +139,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
 
   std::vector<Variant> variants = variants_of(scale);
-  Plan plan{manifest.experiment, scale.name, {}, {}, {}};
+  Plan plan{manifest, scale.name, {}, {}, {}};
   if (!scale.start.file.empty()) plan.file = read_packing_file(manifest, scale);
-  Ask common{
-      {.experiment = plan.experiment, .scale = plan.scale, .manifest = sha256_hex(manifest.text)}};
+  Ask common{{.experiment = manifest.experiment,
+              .scale = plan.scale,
+              .manifest = sha256_hex(manifest.text)}};
   common.checkpoint_every = scale.checkpoints.every_cycles;
   common.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by the last stage's key
@@ -207,7 +208,7 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
   for (std::size_t k = 0; k < known.size(); ++k) {
     places.emplace(known[k].id, k);
     for (Ask& ask : known[k].asks) {
-      if (ask.experiment == plan.experiment && ask.scale == plan.scale) ask.newest = false;
+      if (ask.experiment == plan.manifest.experiment && ask.scale == plan.scale) ask.newest = false;
     }
   }
   for (const PlannedRun& run : plan.runs) {

@@ -36,7 +36,7 @@ struct PlannedRun : Run {
 };
 
 struct Plan {
-  std::string experiment;
+  Manifest manifest;
   std::string scale;
   std::optional<PackingText> file = {};  ///< the grains of all packings
   std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
