@@ -411,16 +411,22 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// The runs of the first seed, without checkpoints, as figures take them.
-std::vector<FigureRun> runs_of(const Manifest& manifest, const Scale& scale,
-                               std::span<const Variant> variants) {
+/// A scale, and a run of each of its variants as figures take them, without checkpoints.
+struct ScaleRuns {
+  const Scale& scale;
+  std::size_t seeds;
+  std::vector<FigureRun> runs = {};
+};
+
+ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const Variant> variants,
+                  std::size_t seeds) {
   std::vector<json> swept;
   for (const Variant& variant : variants) swept.push_back(variant.swept);
   const auto names = variant_names(swept, manifest.labels);
-  std::vector<FigureRun> runs;
+  ScaleRuns made{scale, seeds};
   for (const Variant& variant : variants) {
     const Parameters& p = variant.parameters;
-    FigureRun& run = runs.emplace_back();
+    FigureRun& run = made.runs.emplace_back();
     run.variant = variant.name;
     run.swept = variant.swept;
     run.name = names.at(variant.swept);
@@ -430,7 +436,7 @@ std::vector<FigureRun> runs_of(const Manifest& manifest, const Scale& scale,
     const bool stiffens = p.protocol == ProtocolKind::stiffen;
     run.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
   }
-  return runs;
+  return made;
 }
 
 /// To the earliest checkpoint that a measure or expression needs besides its own.
@@ -535,8 +541,9 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
   return curves.size();
 }
 
-std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, const Scale& scale,
-                                std::span<const FigureRun> runs) {
+std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
+                                std::span<const ScaleRuns> all) {
+  const auto& [scale, seeds, runs] = here;
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
   keys.insert(keys.end(), {plot.by, plot.panel});
@@ -558,9 +565,8 @@ std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, 
   for (const SeriesSpec& one : plot.series) {
     if (plot.listed) break;  // only of the manifest that states the plot
     const std::size_t curves = curves_of(one, plot, runs);
-    const bool of_another = std::ranges::any_of(scales_of(manifest), [&](const Scale& other) {
-      return curves_of(one, plot, runs_of(manifest, other, variants_of(other))) > 0;
-    });
+    const bool of_another = std::ranges::any_of(
+        all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
       found.push_back(
           format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
@@ -585,9 +591,8 @@ struct ClaimProblems {
   std::vector<string> lacks;     // why the claim will be undecided
 };
 
-ClaimProblems problems_of(const ClaimSpec& claim, std::span<const FigureRun> runs,
-                          std::size_t seeds) {
-  const ClaimSides sides = sides_of(claim, runs);
+ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
+  const ClaimSides sides = sides_of(claim, here.runs);
   if (claim.optional && sides.lacks_one) return {};
   ClaimProblems found = {problems_of_sides(claim, sides, true), {}};
   for (const auto& side : sides.runs) {
@@ -596,8 +601,9 @@ ClaimProblems problems_of(const ClaimSpec& claim, std::span<const FigureRun> run
       if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
   }
-  if (seeds < least_runs) {
-    found.lacks.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
+  if (here.seeds < least_runs) {
+    found.lacks.push_back(
+        format("a verdict takes at least {} seeds, not {}.", least_runs, here.seeds));
   }
   return found;
 }
@@ -605,7 +611,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, std::span<const FigureRun> run
 /// Warns of the plots and claims that `source` states: of its own ones if `figure` is "", else of
 /// those of a figure that the manifest lists. Adds to `said` what the claims say.
 void warn_of_stated(const Manifest& source, const string& figure, const Manifest& manifest,
-                    const Scale& scale, std::span<const FigureRun> runs, std::size_t seeds,
+                    const ScaleRuns& here, std::span<const ScaleRuns> all,
                     std::vector<string>& said, std::vector<string>& warnings) {
   const auto is_of = [&](const auto& one) {
     return figure.empty() || (one.figure.empty() ? one.name : one.figure) == figure;
@@ -620,48 +626,52 @@ void warn_of_stated(const Manifest& source, const string& figure, const Manifest
     }
   };
   for (const auto& plot : source.plots) {
-    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, manifest, scale, runs));
+    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, here, all));
   }
   for (const auto& claim : source.claims) {
     if (!is_of(claim)) continue;
-    said.push_back(stated(claim, sides_of(claim, runs).names).text);
-    const ClaimProblems here = problems_of(claim, runs, seeds);
-    if (claim.listed && !here.refusals.empty()) continue;  // of variants that it does not have
-    warn_of("claim", claim, here.refusals);
+    said.push_back(stated(claim, sides_of(claim, here.runs).names).text);
+    const ClaimProblems found = problems_of(claim, here);
+    if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
+    warn_of("claim", claim, found.refusals);
     // A small scale is for trying: nothing is said where another one can decide the claim.
-    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
-      if (here.lacks.empty() || other.name == scale.name) return false;
-      const auto there = problems_of(claim, runs_of(manifest, other, variants_of(other)),
-                                     other.seeds.values.size());
+    const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
+      if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
+      const ClaimProblems there = problems_of(claim, other);
       return there.refusals.empty() && there.lacks.empty();
     });
-    if (!decided) warn_of("claim", claim, here.lacks);
+    if (!decided) warn_of("claim", claim, found.lacks);
   }
 }
 
-void warn_of_figures(const Manifest& manifest, const Scale& scale, std::span<const FigureRun> runs,
-                     std::size_t seeds, std::vector<string>& warnings) {
+void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
+                     std::vector<string>& warnings) {
   for (const string& name : manifest.figures) {
     const Figure& figure = *find_figure(name);
     if (figure.form != FigureForm::groups) continue;
-    const string key = averaged_key(runs, figure.keys);
+    const string key = averaged_key(here.runs, figure.keys);
     if (key.empty()) continue;
     warnings.push_back(
         format("{}: figure {} would average over the values of {}. Give each an experiment of its "
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
+  const std::vector<Scale> scales = scales_of(manifest);
+  std::vector<ScaleRuns> all;
+  for (const Scale& one : scales) {
+    all.push_back(runs_of(manifest, one, variants_of(one), one.seeds.values.size()));
+  }
   std::vector<string> said;
   bool known = true;  // what is said; what computed figures claim depends on the runs
   for (const string& figure : manifest.figures) {
     known = known && find_named(computed_figures(), figure) == nullptr;
     for (const Manifest& shipped : shipped_manifests()) {
-      warn_of_stated(shipped, figure, manifest, scale, runs, seeds, said, warnings);
+      warn_of_stated(shipped, figure, manifest, here, all, said, warnings);
     }
   }
-  warn_of_stated(manifest, "", manifest, scale, runs, seeds, said, warnings);
+  warn_of_stated(manifest, "", manifest, here, all, said, warnings);
   if (!known) return;
-  for (const string& problem : unsaid(scale.primary, said)) {
+  for (const string& problem : unsaid(here.scale.primary, said)) {
     warnings.push_back(format("{}: {}", manifest.file, problem));
   }
 }
@@ -736,7 +746,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::size_t seeds) {
   std::vector<string> warnings;
   warn_of_parameters(manifest, scale, planned, seeds, warnings);
-  warn_of_figures(manifest, scale, runs_of(manifest, scale, all), seeds, warnings);
+  warn_of_figures(manifest, runs_of(manifest, scale, all, seeds), warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;
 }
