@@ -416,35 +416,22 @@ FigureResult decide_claim(const ClaimSpec& claim, std::span<const FigureRun> giv
   std::vector<FigureRun> computed;  // with the values of an expression
   if (is_expression(claim.compare)) computed = with_values(given, {claim.compare});
   const std::span<const FigureRun> runs = computed.empty() ? given : computed;
-  std::array<std::vector<const FigureRun*>, 2> sides;
-  std::array<std::size_t, 2> counts = {1, 1};
-  std::array<std::string, 2> words;  // as people name the variants
-  const std::size_t compared = claim.published ? 1 : 2;
-  for (std::size_t k = 0; k < compared; ++k) {
-    sides.at(k) = runs_with(claim.between.at(k), runs);
-    counts.at(k) = std::max<std::size_t>(count_variants(sides.at(k)), 1);
-    const bool named = !sides.at(k).empty() && !sides.at(k).front()->name.empty();
-    words.at(k) = named ? sides.at(k).front()->name : words_of(claim.between.at(k));
-    if (claim.between.at(k).empty()) words.at(k).clear();
-    if (claim.optional && sides.at(k).empty()) return {};
-  }
-  const Claim decided = stated(claim, words);
-  const bool same = !sides[0].empty() && !sides[1].empty() &&
-                    sides[0].front()->stage.id == sides[1].front()->stage.id;
-  const std::vector<std::string> problems = problems_of_sides(claim, counts, same);
+  ClaimSides sides = sides_of(claim, runs);
+  if (claim.optional && sides.lacks_one) return {};
+  const Claim decided = stated(claim, sides.names);
+  const std::vector<std::string> problems = problems_of_sides(claim, sides, false);
   if (!problems.empty() && !claim.listed) {
     throw UsageError(fmt::format("claim {}: {}", claim.name, problems.front()));
   }
-  if (!problems.empty()) sides = {};
-  for (std::size_t k = 0; k < compared; ++k) {
-    if (!sides.at(k).empty() || claim.listed) continue;
+  if (!problems.empty()) sides.runs = {};
+  if (sides.lacks_one && !claim.listed) {
+    const std::string& name = sides.names[sides.runs[0].empty() ? 0 : 1];
     return {{},
             {decide(decided, "difference in " + quantity_of(claim), std::nullopt, 0,
-                    fmt::format("no run{} has a checkpoint{}",
-                                words.at(k).empty() ? "" : " with " + words.at(k),
+                    fmt::format("no run{} has a checkpoint{}", name.empty() ? "" : " with " + name,
                                 claim.cycles ? " of " + scalar_of(claim).reach : ""))}};
   }
-  return {{}, {decided_by(claim, decided, sides[0], sides[1])}};
+  return {{}, {decided_by(claim, decided, sides.runs[0], sides.runs[1])}};
 }
 
 }  // namespace
@@ -454,22 +441,36 @@ bool compares_waits(const ClaimSpec& claim) {
   return claim.reaches || (of_run != nullptr && of_run->waits && !claim.published);
 }
 
-std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
-                                           const std::array<std::size_t, 2>& variants, bool same) {
+ClaimSides sides_of(const ClaimSpec& claim, std::span<const FigureRun> runs) {
+  ClaimSides sides;
+  for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
+    const nlohmann::json& where = claim.between.at(k);
+    const std::vector<const FigureRun*>& side = sides.runs.at(k) = runs_with(where, runs);
+    const bool named = !side.empty() && !side.front()->name.empty();
+    if (!where.empty()) sides.names.at(k) = named ? side.front()->name : words_of(where);
+    sides.lacks_one = sides.lacks_one || side.empty();
+  }
+  return sides;
+}
+
+std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
+                                           bool planned) {
   if (!claim.published && claim.between[0] == claim.between[1]) {
     return {"both sides of `between` are the same. Name two variants."};
   }
   std::vector<std::string> problems;
   for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
-    if (variants[k] == 1) continue;
+    const std::size_t variants = count_variants(sides.runs[k]);
+    if (variants == 1 || (variants == 0 && !planned)) continue;
     problems.push_back(
         (claim.between[k].empty()
-             ? fmt::format("there are {} variants; `of` must name one.", variants[k])
-             : fmt::format("{} variants have {}; `{}` must name one{}.", variants[k],
+             ? fmt::format("there are {} variants; `of` must name one.", variants)
+             : fmt::format("{} variants have {}; `{}` must name one{}.", variants,
                            words_of(claim.between[k]), claim.published ? "of" : "between",
                            claim.published ? "" : " on each side")));
   }
-  if (same) {
+  const auto& [a, b] = sides.runs;
+  if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {
     problems.emplace_back(
         "both sides of `between` are the same runs, so their difference is exactly zero. Name two "
         "variants that differ.");

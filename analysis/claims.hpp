@@ -116,10 +116,18 @@ bool compares_waits(const ClaimSpec& claim);
 /// What the claim says. `sides`: names of the variants that it compares; "": there is only one.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
-/// One sentence for each reason why the sides of a claim cannot be compared. `variants`: how many
-/// variants have the values of each side; `same`: whether both sides have the same runs.
-std::vector<std::string> problems_of_sides(const ClaimSpec& claim,
-                                           const std::array<std::size_t, 2>& variants, bool same);
+/// What a claim compares. The second side is empty if the claim has a published number.
+struct ClaimSides {
+  std::array<std::vector<const FigureRun*>, 2> runs;
+  std::array<std::string, 2> names;  ///< for stated()
+  bool lacks_one = false;            ///< a side has no runs
+};
+ClaimSides sides_of(const ClaimSpec& claim, std::span<const FigureRun> runs);
+
+/// One sentence for each reason why the sides cannot be compared. With `planned`, runs of all
+/// variants are given, and it is a reason if a side has none of them.
+std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
+                                           bool planned);
 
 /// No panel and one verdict (analysis/claims.hpp), undecided if a side of `between` has no runs.
 /// Its function throws UsageError with the first of problems_of_sides().

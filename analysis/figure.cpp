@@ -102,12 +102,13 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
   return keys;
 }
 
-std::string averaged_key(
-    std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants) {
+std::string averaged_key(std::span<const FigureRun> runs, const std::vector<std::string>& keys) {
   std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // with its first variant
-  for (const auto& [curve, swept] : variants) {
-    const nlohmann::json& first = curves.try_emplace(curve, swept).first->second;
-    for (const auto& [key, value] : swept.items()) {
+  for (const FigureRun& run : runs) {
+    std::vector<nlohmann::json> curve;
+    for (const std::string& key : keys) curve.push_back(parameter_of(run, key));
+    const nlohmann::json& first = curves.try_emplace(std::move(curve), run.swept).first->second;
+    for (const auto& [key, value] : run.swept.items()) {
       if (first.value(key, nlohmann::json()) != value) return key;
     }
   }
@@ -116,13 +117,7 @@ std::string averaged_key(
 
 void require_told_apart(const std::string& figure, std::span<const FigureRun> runs,
                         const std::vector<std::string>& keys, const std::string& remedy) {
-  std::vector<std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants;
-  for (const FigureRun& run : runs) {
-    std::vector<nlohmann::json> group;
-    for (const std::string& key : keys) group.push_back(parameter_of(run, key));
-    variants.emplace_back(std::move(group), run.swept);
-  }
-  const std::string key = averaged_key(variants);
+  const std::string key = averaged_key(runs, keys);
   if (key.empty()) return;
   const std::string& experiment = runs.front().experiment;
   throw UsageError(

@@ -122,11 +122,9 @@ bool has_parameters(const FigureRun& run, const nlohmann::json& where);
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 
-/// If there is one curve for each set of values of some keys: a swept key whose values differ
-/// within one curve, so that the curve would average over them; "" if there is none. `variants`:
-/// for each variant its values of these keys, and all its swept keys and values.
-std::string averaged_key(
-    std::span<const std::pair<std::vector<nlohmann::json>, nlohmann::json>> variants);
+/// If there is one curve for each set of values of `keys`: a swept key whose values differ within
+/// one curve, so that the curve would average over them; "" if there is none.
+std::string averaged_key(std::span<const FigureRun> runs, const std::vector<std::string>& keys);
 
 /// Throws UsageError if averaged_key() finds a key for curves by `keys`. Keys that change together
 /// with `keys` are allowed. The message ends with `remedy`.

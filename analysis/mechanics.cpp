@@ -174,118 +174,76 @@ MechanicalUnits mechanical_units(const MeasureInput& input) {
   return {k / d, m / d, k * d, k * d * d, m * d * d, m * run.number("gravity_m_per_s2") * d};
 }
 
-namespace {
-
-template <int axis, WallSide side>
-double force_on(const Mechanics& m) {
-  return m.wall_force(axis, static_cast<Eigen::Index>(side));
-}
-
-/// A measure, and the unit of the member that it is made from; null for a pure number.
-struct MechanicalMeasure {
-  Measure measure;
-  double (*value)(const Mechanics& m);
-  double MechanicalUnits::*unit = nullptr;
-};
-
-const std::vector<MechanicalMeasure>& mechanical_measures() {
-  using M = Mechanics;
-  using U = MechanicalUnits;
-  static const std::vector<MechanicalMeasure> all = {
-      {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
-       [](const M& m) { return m.pressure; },
-       &U::stress_Pa},
-      {{"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
-       [](const M& m) { return m.deviator; },
-       &U::stress_Pa},
-      {{"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       [](const M& m) { return m.stress(0, 0); },
-       &U::stress_Pa},
-      {{"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       [](const M& m) { return m.stress(1, 1); },
-       &U::stress_Pa},
-      {{"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-       [](const M& m) { return m.stress(2, 2); },
-       &U::stress_Pa},
-      {{"stress_xy_Pa", "Pa",
-        "shear stress of interior grains, with the sign of the others: a growing shear_strain "
-        "makes it negative"},
-       [](const M& m) { return m.stress(0, 1); },
-       &U::stress_Pa},
-      {{"stress_xz_Pa", "Pa", "shear stress of interior grains"},
-       [](const M& m) { return m.stress(0, 2); },
-       &U::stress_Pa},
-      {{"stress_yz_Pa", "Pa", "shear stress of interior grains"},
-       [](const M& m) { return m.stress(1, 2); },
-       &U::stress_Pa},
-      {{"kinetic_pressure_Pa", "Pa",
-        "kinetic part of the pressure, of velocities less the mean flow"},
-       [](const M& m) { return m.kinetic_pressure; },
-       &U::kinetic_stress_Pa},
-      {{"coordination", "1", "contacts per interior grain"},
-       [](const M& m) { return m.coordination; }},
-      {{"rattlers_percent", "%",
-        "interior grains with fewer than four contacts with walls and grains that are not "
-        "rattlers"},
-       [](const M& m) { return m.rattlers; }},
-      {{"coordination_without_rattlers", "1",
-        "contacts of interior grains that are not rattlers with walls and such grains, per such "
-        "grain"},
-       [](const M& m) { return m.coordination_without_rattlers; }},
-      {{"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
-       &force_on<0, WallSide::bottom>,
-       &U::force_N},
-      {{"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
-       &force_on<1, WallSide::bottom>,
-       &U::force_N},
-      {{"force_top_x_N", "N", "force of the grains on the top wall"},
-       &force_on<0, WallSide::top>,
-       &U::force_N},
-      {{"force_top_y_N", "N", "force of the grains on the top wall"},
-       &force_on<1, WallSide::top>,
-       &U::force_N},
-      {{"force_left_x_N", "N", "force of the grains on the left wall"},
-       &force_on<0, WallSide::left>,
-       &U::force_N},
-      {{"force_left_y_N", "N", "force of the grains on the left wall"},
-       &force_on<1, WallSide::left>,
-       &U::force_N},
-      {{"force_right_x_N", "N", "force of the grains on the right wall"},
-       &force_on<0, WallSide::right>,
-       &U::force_N},
-      {{"force_right_y_N", "N", "force of the grains on the right wall"},
-       &force_on<1, WallSide::right>,
-       &U::force_N},
-      {{"elastic_energy_per_grain_J", "J",
-        "elastic energy of all contacts over the number of grains"},
-       [](const M& m) { return m.elastic_energy; },
-       &U::elastic_J},
-      {{"kinetic_energy_per_grain_J", "J",
-        "kinetic energy over the number of grains, half a time step earlier"},
-       [](const M& m) { return m.kinetic_energy; },
-       &U::kinetic_J},
-      {{"gravitational_energy_per_grain_J", "J", "weight times mean height above the bottom wall"},
-       [](const M& m) { return m.height; },
-       &U::weight_J}};
-  return all;
-}
-
-}  // namespace
-
 Provider mechanics_provider() {
-  Provider provider{.name = "mechanics",
-                    .parameters = with(interior_criteria(), {{"units", "SI"}})};
-  for (const auto& one : mechanical_measures()) provider.measures.push_back(one.measure);
-  provider.compute = [](const MeasureInput& input) {
+  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+    const Mechanics& m = *input.analysis->mechanics;
     const MechanicalUnits units = mechanical_units(input);
-    nlohmann::json found;
-    for (const auto& [measure, value, unit] : mechanical_measures()) {
-      const double number = value(*input.analysis->mechanics);
-      found[std::string(measure.name)] = unit == nullptr ? number : number * (units.*unit);
-    }
-    return found;
+    const auto stress = [&](int a, int b) { return m.stress(a, b) * units.stress_Pa; };
+    const auto force = [&](WallSide side, int axis) {
+      return m.wall_force(axis, static_cast<Eigen::Index>(side)) * units.force_N;
+    };
+    return {{"contact_pressure_Pa", m.pressure * units.stress_Pa},
+            {"deviator_Pa", m.deviator * units.stress_Pa},
+            {"stress_xx_Pa", stress(0, 0)},
+            {"stress_yy_Pa", stress(1, 1)},
+            {"stress_zz_Pa", stress(2, 2)},
+            {"stress_xy_Pa", stress(0, 1)},
+            {"stress_xz_Pa", stress(0, 2)},
+            {"stress_yz_Pa", stress(1, 2)},
+            {"kinetic_pressure_Pa", m.kinetic_pressure * units.kinetic_stress_Pa},
+            {"coordination", m.coordination},
+            {"rattlers_percent", m.rattlers},
+            {"coordination_without_rattlers", m.coordination_without_rattlers},
+            {"force_bottom_x_N", force(WallSide::bottom, 0)},
+            {"force_bottom_y_N", force(WallSide::bottom, 1)},
+            {"force_top_x_N", force(WallSide::top, 0)},
+            {"force_top_y_N", force(WallSide::top, 1)},
+            {"force_left_x_N", force(WallSide::left, 0)},
+            {"force_left_y_N", force(WallSide::left, 1)},
+            {"force_right_x_N", force(WallSide::right, 0)},
+            {"force_right_y_N", force(WallSide::right, 1)},
+            {"elastic_energy_per_grain_J", m.elastic_energy * units.elastic_J},
+            {"kinetic_energy_per_grain_J", m.kinetic_energy * units.kinetic_J},
+            {"gravitational_energy_per_grain_J", m.height * units.weight_J}};
   };
-  return provider;
+  return {
+      .name = "mechanics",
+      .parameters = with(interior_criteria(), {{"units", "SI"}}),
+      .measures =
+          {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
+           {"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
+           {"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+           {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+           {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+           {"stress_xy_Pa", "Pa",
+            "shear stress of interior grains, with the sign of the others: a growing shear_strain "
+            "makes it negative"},
+           {"stress_xz_Pa", "Pa", "shear stress of interior grains"},
+           {"stress_yz_Pa", "Pa", "shear stress of interior grains"},
+           {"kinetic_pressure_Pa", "Pa",
+            "kinetic part of the pressure, of velocities less the mean flow"},
+           {"coordination", "1", "contacts per interior grain"},
+           {"rattlers_percent", "%",
+            "interior grains with fewer than four contacts with walls and grains that are not "
+            "rattlers"},
+           {"coordination_without_rattlers", "1",
+            "contacts of interior grains that are not rattlers with walls and such grains, per "
+            "such grain"},
+           {"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
+           {"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
+           {"force_top_x_N", "N", "force of the grains on the top wall"},
+           {"force_top_y_N", "N", "force of the grains on the top wall"},
+           {"force_left_x_N", "N", "force of the grains on the left wall"},
+           {"force_left_y_N", "N", "force of the grains on the left wall"},
+           {"force_right_x_N", "N", "force of the grains on the right wall"},
+           {"force_right_y_N", "N", "force of the grains on the right wall"},
+           {"elastic_energy_per_grain_J", "J",
+            "elastic energy of all contacts over the number of grains"},
+           {"kinetic_energy_per_grain_J", "J",
+            "kinetic energy over the number of grains, half a time step earlier"},
+           {"gravitational_energy_per_grain_J", "J",
+            "weight times mean height above the bottom wall"}},
+      .compute = compute};
 }
 
 }  // namespace shearcell

@@ -119,16 +119,6 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
   }
 }
 
-/// Whether the event adds a place in an experiment, or raises its target.
-bool declares_news(const Database& into, const Event& event) {
-  const Ask m = std::get<events::RunDeclared>(events::decode(event)).ask;
-  Statement same(into,
-                 "SELECT target_cycles FROM memberships WHERE run = ? AND experiment = ? AND "
-                 "scale = ? AND variant = ? AND seed = ? AND manifest = ?",
-                 run_of(event).value(), m.experiment, m.scale, m.variant, m.seed, m.manifest);
-  return !same.step() || same.u64(0) < m.target_cycles;
-}
-
 using Stream = std::vector<const Event*>;  // in the order of the log
 
 /// An attempt is copied when it recorded a checkpoint that is news, or when it ended the run in a
@@ -141,7 +131,10 @@ struct RunMerge {
   bool source_wins = false;          ///< the source's state is the further one
 
   bool wants(const Database& into, const Event& event) const {
-    if (event.type == events::RunDeclared::kType) return !before || declares_news(into, event);
+    if (event.type == events::RunDeclared::kType) {
+      const Ask ask = std::get<events::RunDeclared>(events::decode(event)).ask;
+      return !before || adds_something(query_stage(into, before->id), ask);
+    }
     if (events::begins_attempt(event) || events::ends_attempt(event) ||
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);

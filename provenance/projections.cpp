@@ -414,6 +414,13 @@ std::map<std::string, TableRows> projection_rows(const Database& database) {
   return tables;
 }
 
+bool adds_something(const std::optional<Stage>& known, const Ask& ask) {
+  return !known || std::ranges::none_of(known->asks, [&](const Ask& old) {
+    return static_cast<const Place&>(old) == ask && old.checkpoint_every == ask.checkpoint_every &&
+           old.target_cycles >= ask.target_cycles;
+  });
+}
+
 bool holds_place(const Database& database, std::string_view run, const Place& place) {
   Statement last(database,
                  "SELECT run FROM memberships AS m JOIN runs ON run = id WHERE m.seed = ? AND "

@@ -86,13 +86,6 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-bool adds_something(const Stage& known, const Ask& m) {
-  return std::ranges::none_of(known.asks, [&](const Ask& old) {
-    return static_cast<const Place&>(old) == m && old.checkpoint_every == m.checkpoint_every &&
-           old.target_cycles >= m.target_cycles;
-  });
-}
-
 /// Why the holder of this token lost the run of its own attempt; "" while it holds it.
 std::string loss_of(const sqlite::Database& database, const std::string& token,
                     const std::string& id, std::uint64_t attempt) {
@@ -280,7 +273,7 @@ void Store::declare_stage(const Stage& declared) {
   }
   for (const Ask& m : declared.asks) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
-    if (!known || adds_something(*known, m)) append(run_stream(declared.id), event, lock);
+    if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
     // A start that was changed, so that another run took the place, and changed back.
     if (!holds_place(database_, declared.id, m)) append(run_stream(declared.id), event, lock);
   }

@@ -228,15 +228,15 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
 }
 
 // Figures show the newest version of those that have runs at the scale.
-void warn_of_other_version(const Manifest& manifest, const Plan& plan,
-                           const std::vector<Stage>& known, Context& context) {
+void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
+  const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
   for (const PlannedRun& run : plan.runs) planned.insert(run.stage.id);
   const std::string own = sha256_hex(manifest.text);
   const auto left_out = std::ranges::count_if(known, [&](const Stage& run) {
     if (run.kind == name_of(StageKind::prepare) || planned.contains(run.id)) return false;
     return std::ranges::any_of(run.asks, [&](const Ask& m) {
-      return m.newest && m.manifest != own && m.experiment == plan.experiment &&
+      return m.newest && m.manifest != own && m.experiment == manifest.experiment &&
              m.scale == plan.scale;
     });
   });
@@ -246,31 +246,32 @@ void warn_of_other_version(const Manifest& manifest, const Plan& plan,
            "{}: the store's newest manifest of experiment {} is another text, with {} that this "
            "plan does not have. Once this manifest is run, figures show its version alone; to show "
            "all, run one manifest that states the runs of both: it computes nothing new.",
-           manifest.file, plan.experiment, counted(static_cast<std::size_t>(left_out), "run")));
+           manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 
 }  // namespace
 
-LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
-                               Context& context) {
-  LoadedManifests loaded;
+std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
+                             Context& context) {
+  std::vector<Manifest> manifests;
   std::set<std::string> read;
   for (const std::string& path : paths) {
-    if (read.insert(path).second) loaded.manifests.push_back(load_manifest(path));
+    if (read.insert(path).second) manifests.push_back(load_manifest(path));
   }
-  warn_of_equal_names(loaded.manifests, context);
-  order_by_start(loaded.manifests, context);
+  warn_of_equal_names(manifests, context);
+  order_by_start(manifests, context);
   const std::vector<Stage> stored = known_runs(context);
   std::vector<Stage> known = stored;
   ExpandOptions with_known = options;
-  for (const Manifest& manifest : loaded.manifests) {
+  std::vector<Plan> plans;
+  for (const Manifest& manifest : manifests) {
     with_known.known = known;
-    const Plan& plan = loaded.plans.emplace_back(expand(manifest, with_known));
+    const Plan& plan = plans.emplace_back(expand(manifest, with_known));
     for (const std::string& warning : plan.warnings) warn(context, warning);
-    warn_of_other_version(manifest, plan, stored, context);
+    warn_of_other_version(plan, stored, context);
     add_as_computed(plan, known);
   }
-  return loaded;
+  return plans;
 }
 
 template <class Number>

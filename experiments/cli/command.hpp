@@ -91,16 +91,11 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 /// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
-struct LoadedManifests {
-  std::vector<Manifest> manifests;
-  std::vector<Plan> plans;  ///< one for each manifest
-};
-
 /// Reads and expands each manifest once, those whose `start` names a run of another one after it.
 /// warn() gets the warnings, also about runs of the store and about two different manifests of one
 /// `experiment`.
-LoadedManifests load_manifests(const std::vector<std::string>& paths, const ExpandOptions& options,
-                               Context& context);
+std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
+                             Context& context);
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);

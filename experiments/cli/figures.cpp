@@ -78,28 +78,22 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
-/// What was drawn of an experiment.
-struct Drawn {
-  std::vector<std::string> figures, primary, claims;
-
-  void add(const ComputedFigure& result) {
-    figures.push_back(result.name);
-    primary = result.primary;
-    for (const Verdict& verdict : result.verdicts) claims.push_back(verdict.claim);
-  }
-};
-
 /// Warns of primary claims that no figure has, where all figures of all runs were drawn.
 void warn_of_primary(const Store& store, const RunSelection& runs,
-                     const std::map<std::string, Drawn>& drawn) {
+                     const std::map<std::string, std::vector<ComputedFigure>>& drawn) {
   if (!runs.variants.empty() || !runs.seeds.empty()) return;
-  for (const auto& [experiment, of] : drawn) {
-    if (experiment.empty() || of.primary.empty()) continue;
+  for (const auto& [experiment, figures] : drawn) {
+    const std::vector<std::string>& primary = figures.back().primary;
+    if (experiment.empty() || primary.empty()) continue;
     const auto is_drawn = [&](const WantedFigure& wanted) {
-      return std::ranges::count(of.figures, wanted.figure.name) > 0;
+      return std::ranges::count(figures, wanted.figure.name, &ComputedFigure::name) > 0;
     };
     if (!std::ranges::all_of(wanted_figures(store, {}, {experiment}).figures, is_drawn)) continue;
-    for (const std::string& problem : unsaid(of.primary, of.claims)) {
+    std::vector<std::string> said;
+    for (const ComputedFigure& figure : figures) {
+      for (const Verdict& verdict : figure.verdicts) said.push_back(verdict.claim);
+    }
+    for (const std::string& problem : unsaid(primary, said)) {
       print_stderr("warning: {}: {}\n", experiment, problem);
     }
   }
@@ -139,13 +133,13 @@ void figures(FigureArguments& options, Context& context) {
   how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
-  std::map<std::string, Drawn> drawn;  // by experiment
+  std::map<std::string, std::vector<ComputedFigure>> drawn;  // by experiment
   for (const WantedFigure& figure : wanted.figures) {
     try {
-      const ComputedFigure result = draw_figure(store, figure, how);
+      ComputedFigure result = draw_figure(store, figure, how);
       list.push_back(facts(result));
-      drawn[result.experiment].add(result);
       print(result, figure.path(), told, context);
+      drawn[figure.experiment].push_back(std::move(result));
     } catch (const UsageError& problem) {
       complain_of(problem.what());
     } catch (const AnalysisError& problem) {

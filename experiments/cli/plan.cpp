@@ -38,7 +38,7 @@ double cycles_of(const Line& line) {
 // Other experiments that have the stage.
 std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
-  for (const Ask& m : line.stage.asks) {
+  for (const Ask& m : line.asks) {
     const bool known = std::ranges::count(others, m.experiment) > 0;
     if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
   }
@@ -96,17 +96,17 @@ const std::vector<std::string> kLammpsCaveats = {
     "wall's plane ends a run."};
 
 // Notes on runs that this machine cannot hold, and on runs by another engine.
-std::vector<std::string> notes_of(const Plan& plan) {
+std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
   std::vector<std::string> notes;
   double most = 0;
-  for (const PlannedRun& run : plan.runs) {
-    most = std::max(most, run_bytes(geometry(run.parameters)));
+  for (const Line& line : lines) {
+    most = std::max(most, run_bytes(geometry(line.run->parameters)));
   }
   if (most > machine_memory()) {
     notes.push_back(fmt::format("the largest run needs {}, and this machine has {}",
                                 format_bytes(most), format_bytes(machine_memory())));
   }
-  if (!asks_for_lammps(plan)) return notes;
+  if (std::ranges::none_of(plans, asks_for_lammps)) return notes;
   notes.insert(notes.end(), kLammpsCaveats.begin(), kLammpsCaveats.end());
   try {
     notes.push_back("LAMMPS here: " + find_lammps().version);
@@ -156,8 +156,17 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   }
 }
 
+// The names of the plans, each once.
+std::string joined(const std::vector<Plan>& plans, std::string (*name)(const Plan&)) {
+  std::vector<std::string> names;
+  for (const Plan& plan : plans) {
+    if (std::ranges::count(names, name(plan)) == 0) names.push_back(name(plan));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 nlohmann::json experiment_facts(const Plan& plan) {
-  return {{"experiment", plan.experiment},
+  return {{"experiment", plan.manifest.experiment},
           {"scale", scale_name(plan.scale)},
           {"runs", plan.runs.size()}};
 }
@@ -196,24 +205,24 @@ struct PlanOptions {
 };
 
 void plan(const PlanOptions& options, Context& context) {
-  const std::vector<Plan> plans = load_manifests(options.manifests, options.expand, context).plans;
-  const Plan expanded = joined(plans);
+  const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->stages() : std::vector<Stage>{};
-  const std::vector<Line> lines = look_at(expanded, store ? &*store : nullptr);
+  const std::vector<Line> lines = look_at(plans, store ? &*store : nullptr);
   const Rates rates(runs);
   Work left;
   for (const Line& line : lines) left.add(line.stage, line.look, rates);
   const nlohmann::json with_until = left_until(lines, runs);
   std::set<const PlannedRun*> left_runs;  // each is computed by one core
-  std::size_t longer = 0;
+  std::size_t runs_planned = 0, longer = 0;
   for (const Line& line : lines) {
+    runs_planned += line.stage.kind == name_of(StageKind::prepare) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
     longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.seconds(cores);
-  std::vector<std::string> notes = notes_of(expanded);
+  std::vector<std::string> notes = notes_of(plans, lines);
   const std::filesystem::path place = existing_folder(context.store);
   const auto free = static_cast<double>(std::filesystem::space(place).available);
   if (left.bytes > free) {
@@ -225,15 +234,18 @@ void plan(const PlanOptions& options, Context& context) {
         "`run` also continues {} to the number of cycles that an earlier command asked for",
         counted(longer, "run")));
   }
+  const std::string experiment =
+      joined(plans, [](const Plan& one) { return one.manifest.experiment; });
+  const std::string scale = joined(plans, [](const Plan& one) { return scale_name(one.scale); });
   const std::vector<Facts> stages =
       rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
   if (context.json) {
-    return print_json({{"experiment", expanded.experiment},
-                       {"scale", scale_name(expanded.scale)},
+    return print_json({{"experiment", experiment},
+                       {"scale", scale},
                        {"experiments", json_list(plans, experiment_facts)},
                        {"notes", notes},
                        {"warnings", context.warnings},
-                       {"runs", expanded.runs.size()},
+                       {"runs", runs_planned},
                        {"stages", to_json(stages)},
                        {"particle_steps_left", left.particle_steps},
                        {"particle_steps_left_with_until", with_until},
@@ -243,8 +255,8 @@ void plan(const PlanOptions& options, Context& context) {
                        {"particle_steps_per_second_and_core", left.rate},
                        {"rate_measured", left.measured}});
   }
-  fmt::print("{} at scale {}: {}, {}\n\n", expanded.experiment, scale_name(expanded.scale),
-             counted(expanded.runs.size(), "run"), counted(lines.size(), "stage"));
+  fmt::print("{} at scale {}: {}, {}\n\n", experiment, scale, counted(runs_planned, "run"),
+             counted(lines.size(), "stage"));
   print_table(stages);
   print_numerics(lines);
   if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {

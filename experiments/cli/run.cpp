@@ -127,15 +127,15 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
 
 void run(const RunOptions& options, Context& context) {
   // Reads all manifests before it writes anything.
-  const auto [manifests, plans] = load_manifests(options.inputs, options.expand, context);
+  const std::vector<Plan> plans = load_plans(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
   if (lammps) require_lammps(options, plans);
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
-  for (std::size_t m = 0; m < manifests.size(); ++m) {
-    for (StageJob& job : declare(store, manifests[m], plans[m])) {
+  for (const Plan& plan : plans) {
+    for (StageJob& job : declare(store, plan)) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }

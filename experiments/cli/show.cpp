@@ -369,10 +369,10 @@ void show_figure(const Store& store, const FigureRecord& record, bool list, Cont
 }
 
 Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
-               const std::vector<InputFault>& faults, std::size_t inputs) {
-  const auto pruned =
-      static_cast<std::size_t>(std::ranges::count(faults, "pruned", &InputFault::what));
-  const std::size_t changed = faults.size() - pruned;
+               const std::vector<Finding>& faults, std::size_t inputs) {
+  const auto changed = static_cast<std::size_t>(
+      std::ranges::count(faults, Finding::Severity::error, &Finding::severity));
+  const std::size_t pruned = faults.size() - changed;
   nlohmann::json list = nlohmann::json::array();
   std::string text =
       faults.empty()
@@ -381,7 +381,7 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
                         inputs - faults.size(),
                         pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
                         changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
-  for (const auto& [run, checkpoint, what] : faults) {
+  for (const auto& [severity, checkpoint, run, what] : faults) {
     list.push_back({{"run", run}, {"checkpoint", checkpoint}, {"what", what}});
     text += fmt::format("\n{}\n{}", checkpoint.empty() ? "run " + run : checkpoint, what);
   }
@@ -407,10 +407,8 @@ void show_published(const Store& store, const std::filesystem::path& file, bool 
         "or of this name; name the right store with --store");
   }
   const FigureLineage lineage = figure_lineage(store, found->record);
-  const std::vector<InputFault> faults = check_inputs(store, lineage);
-  // A pruned checkpoint is not damage.
-  const bool damaged =
-      std::ranges::any_of(faults, [](const InputFault& f) { return f.what != "pruned"; });
+  const std::vector<Finding> faults = check_inputs(store, lineage);
+  const bool damaged = std::ranges::count(faults, Finding::Severity::error, &Finding::severity) > 0;
   if (damaged || !found->matches()) fail(context, kStoreDamaged);
   std::size_t inputs = 0;
   for (const FigureInput& input : lineage.inputs) inputs += input.checkpoints.size();

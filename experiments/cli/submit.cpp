@@ -130,16 +130,16 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
                             folder.string());
 }
 
-json event_facts(const LoadedManifests& loaded) {
-  const auto sha = [](const Manifest& manifest) { return sha256_hex(manifest.text); };
+json event_facts(const std::vector<Plan>& plans) {
+  const auto sha = [](const Plan& plan) { return sha256_hex(plan.manifest.text); };
   return {{"scheduler", "slurm"},
-          {"manifests", json_list(loaded.manifests, sha)},
-          {"scales", json_list(loaded.plans, [](const Plan& plan) { return plan.scale; })}};
+          {"manifests", json_list(plans, sha)},
+          {"scales", json_list(plans, [](const Plan& plan) { return plan.scale; })}};
 }
 
 /// Merges what earlier submissions computed and no job merged, as after `scancel`, and declares the
 /// runs.
-void prepare(Store& store, const std::vector<Submission>& open, const LoadedManifests& loaded) {
+void prepare(Store& store, const std::vector<Submission>& open, const std::vector<Plan>& plans) {
   for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
     if (const std::uint64_t checkpoints = merge_tasks(store, submission); checkpoints > 0) {
@@ -147,9 +147,7 @@ void prepare(Store& store, const std::vector<Submission>& open, const LoadedMani
                    submission.id);
     }
   }
-  for (std::size_t m = 0; m < loaded.manifests.size(); ++m) {
-    declare(store, loaded.manifests[m], loaded.plans[m]);
-  }
+  for (const Plan& plan : plans) declare(store, plan);
 }
 
 void check_time(const JobOptions& job) {
@@ -171,7 +169,7 @@ void check_time(const JobOptions& job) {
 
 void submit(const SubmitOptions& options, Context& context) {
   check_time(options.job);
-  const LoadedManifests loaded = load_manifests(options.manifests, options.expand, context);
+  const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
   const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
   if (const std::string why = unfit_path(folder); !why.empty()) throw std::runtime_error(why);
   if (!options.dry_run) require_slurm();
@@ -184,14 +182,13 @@ void submit(const SubmitOptions& options, Context& context) {
     if (!options.dry_run) throw ProgramError(queue.problem);
     warn(context, "runs that are queued already are not left out: " + queue.problem);
   }
-  if (!options.dry_run) prepare(*store, queue.submissions, loaded);
+  if (!options.dry_run) prepare(*store, queue.submissions, plans);
   const auto busy = store ? busy_runs(*store, queue.submissions) : std::set<std::string>();
-  Result result{
-      propose(loaded.plans, store ? &*store : nullptr, busy, options.array_size, options.job)};
+  Result result{propose(plans, store ? &*store : nullptr, busy, options.array_size, options.job)};
   if (options.dry_run && !result.proposal.shares.empty()) {
     show_jobs(folder, result);
   } else if (!result.proposal.shares.empty()) {
-    const Submission made = prepare_submission(*store, result.proposal, event_facts(loaded), seen);
+    const Submission made = prepare_submission(*store, result.proposal, event_facts(plans), seen);
     queue_jobs(*store, made, result, context);
   }
   print(result, context);

@@ -160,7 +160,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
   std::map<std::string, Share> packings;          // the cost of settling
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // of each packing in shares
-  for (const PlannedStage& one : look_at(joined(plans), store)) {
+  for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
     const std::string packing =
         parent.empty() ? id : packing_of.try_emplace(parent, parent).first->second;

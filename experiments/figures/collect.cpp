@@ -113,11 +113,9 @@ void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns
   const std::set<std::string> waiting = waiting_for_failed(store.stages());
   std::set<std::string> not_begun, never, going_on;
   for (const FigureRun& run : collected.runs) {
-    const std::string name =
-        fmt::format("{} seed {}{}", run.name, run.seed,
-                    run.stage.state == StageState::failed || waiting.contains(run.stage.id)
-                        ? " (failed)"
-                        : "");
+    const std::string name = fmt::format(
+        "{} seed {}{}", run.name, run.seed,
+        run.stage.state == StageState::failed || waiting.contains(run.stage.id) ? " (failed)" : "");
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
     } else if (run.stage.state != StageState::completed &&
@@ -184,7 +182,7 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
       if (run.experiment == manifest.experiment) variants.push_back(run.swept);
     }
     if (variants.empty()) continue;
-    const auto known = parsed(manifest);
+    const auto known = recorded_manifest(manifest.text);
     const auto labels = known ? known->labels : std::vector<VariantLabel>();
     const auto names = variant_names(variants, labels);
     for (FigureRun& run : collected.runs) {
@@ -293,7 +291,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const RegisteredManifest& manifest : manifests) {
-    const std::optional<Manifest> read_one = parsed(manifest);
+    const std::optional<Manifest> read_one = recorded_manifest(manifest.text);
     std::vector<Figure> stated = read_one ? stated_figures(*read_one) : std::vector<Figure>();
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;

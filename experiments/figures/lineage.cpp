@@ -323,24 +323,25 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   return by_name;
 }
 
-std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& lineage) {
+std::vector<Finding> check_inputs(const Store& store, const FigureLineage& lineage) {
+  using enum Finding::Severity;
   const ObjectStore objects(store.folder());
-  std::vector<InputFault> faults;
+  std::vector<Finding> faults;
   for (const FigureInput& input : lineage.inputs) {
     const RunLineage& run = lineage.runs.at(input.run);
-    if (!input.fault.empty()) faults.push_back({input.run, "", input.fault});
+    if (!input.fault.empty()) faults.push_back({error, "", input.run, input.fault});
     for (const std::string& sha256 : input.checkpoints) {
       const CheckpointHistory* known = run.find(sha256);
       if (known == nullptr) {
-        faults.push_back({input.run, sha256, "the log does not have it"});
+        faults.push_back({error, sha256, input.run, "the log does not have it"});
         continue;
       }
       try {
         objects.get(sha256, known->record.size);
       } catch (const StoreDamaged& damage) {
+        const bool pruned = known->record.state == CheckpointState::pruned;
         faults.push_back(
-            {input.run, sha256,
-             known->record.state == CheckpointState::pruned ? "pruned" : damage.what()});
+            {pruned ? note : error, sha256, input.run, pruned ? "pruned" : damage.what()});
       }
     }
   }

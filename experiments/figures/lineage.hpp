@@ -98,14 +98,8 @@ struct PublishedFile {
 /// regular file.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 
-/// An input that is missing or damaged.
-struct InputFault {
-  std::string run;
-  std::string checkpoint;  ///< SHA-256; "" for the run as a whole
-  std::string what;        ///< "missing ...", "pruned", FigureInput::fault
-};
-
-/// Reads and hashes every input checkpoint; returns those that are not as recorded.
-std::vector<InputFault> check_inputs(const Store& store, const FigureLineage& lineage);
+/// Reads and hashes every input checkpoint. Returns those that are not as recorded: the subject is
+/// the SHA-256, or "" for the run as a whole. A pruned file is a note.
+std::vector<Finding> check_inputs(const Store& store, const FigureLineage& lineage);
 
 }  // namespace shearcell

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -410,8 +411,32 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-std::uint64_t length_of(const Variant& variant) {
-  return target_cycles(variant.parameters);
+/// A scale, and a run of each of its variants as figures take them, without checkpoints.
+struct ScaleRuns {
+  const Scale& scale;
+  std::size_t seeds;
+  std::vector<FigureRun> runs = {};
+};
+
+ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const Variant> variants,
+                  std::size_t seeds) {
+  std::vector<json> swept;
+  for (const Variant& variant : variants) swept.push_back(variant.swept);
+  const auto names = variant_names(swept, manifest.labels);
+  ScaleRuns made{scale, seeds};
+  for (const Variant& variant : variants) {
+    const Parameters& p = variant.parameters;
+    FigureRun& run = made.runs.emplace_back();
+    run.variant = variant.name;
+    run.swept = variant.swept;
+    run.name = names.at(variant.swept);
+    run.stage = last_stage(p, 1, prepare_stage(variant.packing, 1));
+    for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
+    run.target_cycles = target_cycles(p);
+    const bool stiffens = p.protocol == ProtocolKind::stiffen;
+    run.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
+  }
+  return made;
 }
 
 /// To the earliest checkpoint that a measure or expression needs besides its own.
@@ -434,62 +459,46 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
                 back == 0 ? "" : format(" with another one {} before it", counted(back, "cycle")));
 }
 
-// Whether runs of the variant have a checkpoint at the cycle, and one so many cycles before.
-bool has_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t cycle,
-                    std::uint64_t back) {
-  const bool stiffens = variant.parameters.protocol == ProtocolKind::stiffen;
-  const std::uint64_t every = stiffens ? 1 : scale.checkpoints.every_cycles;
-  const std::uint64_t last = length_of(variant);
+// Whether the run will have a checkpoint at the cycle, and one so many cycles before.
+bool has_checkpoint(const FigureRun& run, std::uint64_t cycle, std::uint64_t back) {
+  const std::uint64_t every = run.checkpoint_every, last = run.target_cycles;
   const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
   return cycle >= back && has(cycle) && has(cycle - back);
 }
 
 // The same of any cycle from `first` to `end`. Whether a multiple of the cadence has the earlier
 // checkpoint depends on `back` alone, so the first multiple and the last cycle decide.
-bool has_any_checkpoint(const Variant& variant, const Scale& scale, std::uint64_t first,
-                        std::uint64_t end, std::uint64_t back) {
-  const std::uint64_t begin = std::max(first, back), every = scale.checkpoints.every_cycles;
-  const std::uint64_t last = length_of(variant);
-  for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
-    if (begin <= cycle && cycle <= end && has_checkpoint(variant, scale, cycle, back)) return true;
+bool has_any_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end,
+                        std::uint64_t back) {
+  const std::uint64_t begin = std::max(first, back), every = run.checkpoint_every;
+  for (const std::uint64_t cycle :
+       {begin, (begin + every - 1) / every * every, run.target_cycles}) {
+    if (begin <= cycle && cycle <= end && has_checkpoint(run, cycle, back)) return true;
   }
   return false;
 }
 
-/// A swept key over which curves of these parameters' values would average; or "". Other names
-/// than those of parameters are ignored.
-string averaged_over(const std::vector<string>& keys, std::span<const Variant> variants) {
-  std::vector<std::pair<std::vector<json>, json>> values;
-  for (const Variant& variant : variants) {
-    std::vector<json> curve;
-    for (const string& key : keys) {
-      if (const Field* field = find_field(key)) curve.push_back(field->get(variant.parameters));
-    }
-    values.emplace_back(std::move(curve), variant.swept);
-  }
-  return averaged_key(values);
-}
-
 /// Why no run has a value that the plot draws; "" if one may have.
-string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant> variants) {
-  const auto [shortest, longest] = std::ranges::minmax(variants, {}, length_of);
-  std::array<std::uint64_t, 2> cycles = {0, length_of(longest)};
+string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureRun> runs) {
+  const auto [shortest, longest] =
+      std::ranges::minmax(std::views::transform(runs, &FigureRun::target_cycles));
+  std::array<std::uint64_t, 2> cycles = {0, longest};
   string where;
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
   } else if (!draws_every_cycle(plot) && !is_of_run(plot)) {
     if (!plot.cycle && scale.until.until) return "";  // not known where the runs end
-    cycles.fill(plot.cycle.value_or(length_of(shortest)));
+    cycles.fill(plot.cycle.value_or(shortest));
     where = format(" at cycle {}", cycles[0]);
   }
-  if (cycles[1] > length_of(longest)) {
-    return format("it asks for cycle {}, and the runs have {}.", cycles[1], length_of(longest));
+  if (cycles[1] > longest) {
+    return format("it asks for cycle {}, and the runs have {}.", cycles[1], longest);
   }
   for (const string& measure : {plot.y, plot.x}) {
     const std::uint64_t back = cycles_back(measure);
-    const bool any = std::ranges::any_of(variants, [&](const Variant& variant) {
-      return has_any_checkpoint(variant, scale, cycles[0], cycles[1], back);
+    const bool any = std::ranges::any_of(runs, [&](const FigureRun& run) {
+      return has_any_checkpoint(run, cycles[0], cycles[1], back);
     });
     if (any) continue;
     return format(
@@ -499,17 +508,17 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const Variant
   return "";
 }
 
-/// Why runs of the variant have no value for the claim; "" if they may have.
-string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& variant) {
+/// Why the run will have no value for the claim; "" if it may have one.
+string lack_of(const ClaimSpec& claim, const FigureRun& run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
   const std::uint64_t back = cycles_back(claim.compare);
-  if (last > length_of(variant)) {
-    return format("it asks for cycle {}, and the runs have {}.", last, length_of(variant));
+  if (last > run.target_cycles) {
+    return format("it asks for cycle {}, and the runs have {}.", last, run.target_cycles);
   }
   // If one of them lacks a checkpoint, so does one of the first two or the last.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
-    if (has_checkpoint(variant, scale, cycle, back)) continue;
+    if (has_checkpoint(run, cycle, back)) continue;
     return format(
         "it needs {}, which the runs do not have. Ask for more checkpoints (`every_cycles`).",
         words_of_checkpoint(format(" at cycle {}", cycle), back));
@@ -517,42 +526,35 @@ string lack_of(const ClaimSpec& claim, const Scale& scale, const Variant& varian
   return "";
 }
 
-bool has_values(const Variant& variant, const json& where) {
-  return std::ranges::all_of(where.items(), [&](const auto& item) {
-    return is_as_stated(find_field(item.key())->get(variant.parameters), item.value());
-  });
-}
-
 /// The number of the plot's curves that the entry of `series` fits.
 std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
-                      std::span<const Variant> variants) {
+                      std::span<const FigureRun> runs) {
   std::set<json> curves;
-  for (const Variant& variant : variants) {
-    if (!has_values(variant, series.where)) continue;
-    json curve = variant.swept;
+  for (const FigureRun& run : runs) {
+    if (!has_parameters(run, series.where)) continue;
+    json curve = run.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
     curve.erase(plot.panel);
-    if (!plot.by.empty()) curve = find_field(plot.by)->get(variant.parameters);
+    if (!plot.by.empty()) curve = parameter_of(run, plot.by);
     curves.insert(std::move(curve));
   }
   return curves.size();
 }
 
-std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, const Scale& scale,
-                                std::span<const Variant> variants) {
+std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
+                                std::span<const ScaleRuns> all) {
+  const auto& [scale, seeds, runs] = here;
   std::vector<string> found;
   std::vector<string> keys = names_in(plot.x);
   keys.insert(keys.end(), {plot.by, plot.panel});
   const bool averages = !plot.by.empty() && !is_measured_of_run(plot.x);
-  const string key = averages ? averaged_over(keys, variants) : "";
+  const string key = averages ? averaged_key(runs, keys) : "";
   if (!key.empty()) {
     found.push_back(format(
         "it would average over the values of {}. Leave out `by` for a curve of each variant.",
         key));
   }
-  const auto subtracted = std::ranges::count_if(
-      variants, [&](const Variant& variant) { return has_values(variant, plot.minus); });
-  found.push_back(problem_of_minus(plot, static_cast<std::size_t>(subtracted)));
+  found.push_back(problem_of_minus(plot, count_variants(runs_with(plot.minus, runs))));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
     found.push_back(format("shear_strain is 0 at whole cycles. State {}.",
@@ -562,10 +564,9 @@ std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, 
   }
   for (const SeriesSpec& one : plot.series) {
     if (plot.listed) break;  // only of the manifest that states the plot
-    const std::size_t curves = curves_of(one, plot, variants);
-    const bool of_another = std::ranges::any_of(scales_of(manifest), [&](const Scale& other) {
-      return curves_of(one, plot, variants_of(other)) > 0;
-    });
+    const std::size_t curves = curves_of(one, plot, runs);
+    const bool of_another = std::ranges::any_of(
+        all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
       found.push_back(
           format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
@@ -581,7 +582,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const Manifest& manifest, 
   } else if (plot.cycle && draws_every_cycle(plot)) {
     found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
   }
-  found.push_back(lack_of(plot, scale, variants));
+  found.push_back(lack_of(plot, scale, runs));
   return found;
 }
 
@@ -590,42 +591,28 @@ struct ClaimProblems {
   std::vector<string> lacks;     // why the claim will be undecided
 };
 
-ClaimProblems problems_of(const ClaimSpec& claim, const Scale& scale,
-                          std::span<const Variant> variants, std::size_t seeds) {
-  std::array<std::vector<const Variant*>, 2> sides;
-  for (const Variant& variant : variants) {
-    for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
-      if (has_values(variant, claim.between[k])) sides[k].push_back(&variant);
+ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
+  const ClaimSides sides = sides_of(claim, here.runs);
+  if (claim.optional && sides.lacks_one) return {};
+  ClaimProblems found = {problems_of_sides(claim, sides, true), {}};
+  for (const auto& side : sides.runs) {
+    for (const FigureRun* run : side) {
+      string lack = lack_of(claim, *run);
+      if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
   }
-  const bool lacks_one = sides[0].empty() || (sides[1].empty() && !claim.published);
-  if (claim.optional && lacks_one) return {};
-  const auto run_of = [](const Variant& variant) {
-    return last_stage(variant.parameters, 1, prepare_stage(variant.packing, 1)).id;
-  };
-  const bool one_each = sides[0].size() == 1 && sides[1].size() == 1;
-  ClaimProblems found = {
-      problems_of_sides(claim, {sides[0].size(), sides[1].size()},
-                        one_each && run_of(*sides[0][0]) == run_of(*sides[1][0])),
-      {}};
-  sides[0].insert(sides[0].end(), sides[1].begin(), sides[1].end());
-  for (const Variant* side : sides[0]) {
-    string lack = lack_of(claim, scale, *side);
-    if (lack.empty()) continue;
-    found.lacks.push_back(std::move(lack));
-    break;
-  }
-  if (seeds < least_runs) {
-    found.lacks.push_back(format("a verdict takes at least {} seeds, not {}.", least_runs, seeds));
+  if (here.seeds < least_runs) {
+    found.lacks.push_back(
+        format("a verdict takes at least {} seeds, not {}.", least_runs, here.seeds));
   }
   return found;
 }
 
-/// Warns of the plots and claims that `stated` states: of its own ones if `figure` is "", else of
-/// those of a figure that the manifest lists.
-void warn_of_stated(const Manifest& stated, const string& figure, const Manifest& manifest,
-                    const Scale& scale, std::span<const Variant> variants, std::size_t seeds,
-                    std::vector<string>& warnings) {
+/// Warns of the plots and claims that `source` states: of its own ones if `figure` is "", else of
+/// those of a figure that the manifest lists. Adds to `said` what the claims say.
+void warn_of_stated(const Manifest& source, const string& figure, const Manifest& manifest,
+                    const ScaleRuns& here, std::span<const ScaleRuns> all,
+                    std::vector<string>& said, std::vector<string>& warnings) {
   const auto is_of = [&](const auto& one) {
     return figure.empty() || (one.figure.empty() ? one.name : one.figure) == figure;
   };
@@ -638,77 +625,55 @@ void warn_of_stated(const Manifest& stated, const string& figure, const Manifest
         warnings.push_back(format("{}: {} {}: {}", place, kind, one.name, problem));
     }
   };
-  for (const auto& plot : stated.plots) {
-    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, manifest, scale, variants));
+  for (const auto& plot : source.plots) {
+    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, here, all));
   }
-  for (const auto& claim : stated.claims) {
+  for (const auto& claim : source.claims) {
     if (!is_of(claim)) continue;
-    const ClaimProblems here = problems_of(claim, scale, variants, seeds);
-    if (claim.listed && !here.refusals.empty()) continue;  // of variants that it does not have
-    warn_of("claim", claim, here.refusals);
+    said.push_back(stated(claim, sides_of(claim, here.runs).names).text);
+    const ClaimProblems found = problems_of(claim, here);
+    if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
+    warn_of("claim", claim, found.refusals);
     // A small scale is for trying: nothing is said where another one can decide the claim.
-    const bool decided = std::ranges::any_of(manifest.scales, [&](const Scale& other) {
-      if (here.lacks.empty() || other.name == scale.name) return false;
-      const auto there = problems_of(claim, other, variants_of(other), other.seeds.values.size());
+    const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
+      if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
+      const ClaimProblems there = problems_of(claim, other);
       return there.refusals.empty() && there.lacks.empty();
     });
-    if (!decided) warn_of("claim", claim, here.lacks);
+    if (!decided) warn_of("claim", claim, found.lacks);
   }
 }
 
-// Warns of primary claims that no figure has. What computed figures claim depends on the runs.
-void warn_of_primary(const Manifest& manifest, const Scale& scale,
-                     std::span<const Variant> variants, std::vector<string>& warnings) {
-  if (scale.primary.empty()) return;
-  std::vector<json> swept;
-  for (const Variant& variant : variants) swept.push_back(variant.swept);
-  const auto names = variant_names(swept, manifest.labels);
-  std::vector<string> said;
-  const auto add = [&](const ClaimSpec& claim) {
-    std::array<string, 2> sides;
-    for (std::size_t k = 0; k < (claim.published ? 1 : 2); ++k) {
-      const json& where = claim.between[k];
-      const auto side = std::ranges::find_if(
-          variants, [&](const Variant& variant) { return has_values(variant, where); });
-      sides[k] = where.empty()            ? ""
-                 : side == variants.end() ? words_of(where)
-                                          : names.at(side->swept);
-    }
-    said.push_back(stated(claim, sides).text);
-  };
-  std::ranges::for_each(manifest.claims, add);
-  for (const string& figure : manifest.figures) {
-    if (find_named(computed_figures(), figure) != nullptr) return;
-    for (const Manifest& shipped : shipped_manifests()) {
-      for (const auto& claim : shipped.claims) {
-        if ((claim.figure.empty() ? claim.name : claim.figure) == figure) add(claim);
-      }
-    }
-  }
-  for (const string& problem : unsaid(scale.primary, said)) {
-    warnings.push_back(format("{}: {}", manifest.file, problem));
-  }
-}
-
-void warn_of_figures(const Manifest& manifest, const Scale& scale,
-                     std::span<const Variant> variants, std::size_t seeds,
+void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
                      std::vector<string>& warnings) {
   for (const string& name : manifest.figures) {
     const Figure& figure = *find_figure(name);
     if (figure.form != FigureForm::groups) continue;
-    const string key = averaged_over(figure.keys, variants);
+    const string key = averaged_key(here.runs, figure.keys);
     if (key.empty()) continue;
     warnings.push_back(
         format("{}: figure {} would average over the values of {}. Give each an experiment of its "
                "own, or state a plot (`plots`).",
                manifest.file, name, key));
   }
+  const std::vector<Scale> scales = scales_of(manifest);
+  std::vector<ScaleRuns> all;
+  for (const Scale& one : scales) {
+    all.push_back(runs_of(manifest, one, variants_of(one), one.seeds.values.size()));
+  }
+  std::vector<string> said;
+  bool known = true;  // what is said; what computed figures claim depends on the runs
   for (const string& figure : manifest.figures) {
+    known = known && find_named(computed_figures(), figure) == nullptr;
     for (const Manifest& shipped : shipped_manifests()) {
-      warn_of_stated(shipped, figure, manifest, scale, variants, seeds, warnings);
+      warn_of_stated(shipped, figure, manifest, here, all, said, warnings);
     }
   }
-  warn_of_stated(manifest, "", manifest, scale, variants, seeds, warnings);
+  warn_of_stated(manifest, "", manifest, here, all, said, warnings);
+  if (!known) return;
+  for (const string& problem : unsaid(here.scale.primary, said)) {
+    warnings.push_back(format("{}: {}", manifest.file, problem));
+  }
 }
 
 }  // namespace
@@ -781,8 +746,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::size_t seeds) {
   std::vector<string> warnings;
   warn_of_parameters(manifest, scale, planned, seeds, warnings);
-  warn_of_figures(manifest, scale, all, seeds, warnings);
-  warn_of_primary(manifest, scale, all, warnings);
+  warn_of_figures(manifest, runs_of(manifest, scale, all, seeds), warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;
 }

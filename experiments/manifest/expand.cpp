@@ -141,10 +141,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
 
   std::vector<Variant> variants = variants_of(scale);
-  Plan plan{manifest.experiment, scale.name, {}, {}, {}};
+  Plan plan{manifest, scale.name, {}, {}, {}};
   if (!scale.start.file.empty()) plan.file = read_packing_file(manifest, scale);
-  Ask common{
-      {.experiment = plan.experiment, .scale = plan.scale, .manifest = sha256_hex(manifest.text)}};
+  Ask common{{.experiment = manifest.experiment,
+              .scale = plan.scale,
+              .manifest = sha256_hex(manifest.text)}};
   common.checkpoint_every = scale.checkpoints.every_cycles;
   common.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by the last stage's key
@@ -222,7 +223,7 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
   for (std::size_t k = 0; k < known.size(); ++k) {
     places.emplace(known[k].id, k);
     for (Ask& ask : known[k].asks) {
-      if (ask.experiment == plan.experiment && ask.scale == plan.scale) ask.newest = false;
+      if (ask.experiment == plan.manifest.experiment && ask.scale == plan.scale) ask.newest = false;
     }
   }
   for (const PlannedRun& run : plan.runs) {
@@ -232,32 +233,6 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
     if (!fresh) stage.asks.push_back(run);
     stage.cycle = std::max(stage.cycle, static_cast<double>(run.target_cycles));
   }
-}
-
-Plan joined(std::span<const Plan> plans) {
-  std::vector<std::string> experiments, scales;
-  Plan all;
-  std::map<std::string, std::size_t> places;  // of a run in all.runs, by its id
-  for (const Plan& plan : plans) {
-    if (std::ranges::count(experiments, plan.experiment) == 0) {
-      experiments.push_back(plan.experiment);
-    }
-    if (std::ranges::count(scales, scale_name(plan.scale)) == 0) {
-      scales.push_back(scale_name(plan.scale));
-    }
-    for (const PlannedRun& run : plan.runs) {
-      const auto [place, fresh] = places.try_emplace(run.stage.id, all.runs.size());
-      if (fresh) {
-        all.runs.push_back(run);
-        continue;
-      }
-      std::vector<Ask>& asks = all.runs[place->second].stage.asks;
-      std::ranges::copy(run.stage.asks, std::back_inserter(asks));
-    }
-  }
-  all.experiment = fmt::format("{}", fmt::join(experiments, ", "));
-  all.scale = scales.size() == 1 ? plans.front().scale : fmt::format("{}", fmt::join(scales, ", "));
-  return all;
 }
 
 bool asks_for_lammps(const Plan& plan) {

@@ -27,8 +27,8 @@ struct ExpandOptions {
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest states it. `stage` has the asks of all joined plans, those of this run
-/// first. The scale is empty if the manifest has no scales, the variant "base" if nothing is swept.
+/// A run as a manifest states it; the only ask of its `stage` is its own. The scale is empty if the
+/// manifest has no scales, the variant "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;
@@ -36,7 +36,7 @@ struct PlannedRun : Run {
 };
 
 struct Plan {
-  std::string experiment;
+  Manifest manifest;
   std::string scale;
   std::optional<PackingText> file = {};  ///< the grains of all packings
   std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
@@ -49,9 +49,6 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 /// Adds the runs of the plan to `known`, or extends them there, as they are once they have the
 /// cycles that the plan asks for: the start of another manifest may name them.
 void add_as_computed(const Plan& plan, std::vector<Stage>& known);
-
-/// The runs of one or more plans. A stage of several plans occurs once, with the asks of all.
-Plan joined(std::span<const Plan> plans);
 
 /// Whether LAMMPS computes any run of the plan.
 bool asks_for_lammps(const Plan& plan);

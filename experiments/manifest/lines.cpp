@@ -16,15 +16,6 @@
 namespace shearcell {
 namespace {
 
-// Nothing if the manifest is of another version of the schema.
-std::optional<Manifest> parsed(std::string_view text) {
-  try {
-    return parse_manifest(text, "manifest");
-  } catch (const ManifestError&) {
-    return std::nullopt;
-  }
-}
-
 std::string text_of_line(std::string_view text, int line) {
   constexpr std::size_t longest = 200;
   while (--line > 0) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
@@ -41,7 +32,7 @@ const Scale& scale_of(const Manifest& manifest, std::string_view name) {
 
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure) {
-  const std::optional<Manifest> manifest = parsed(text);
+  const std::optional<Manifest> manifest = recorded_manifest(text);
   if (!manifest) return {};
   std::vector<ManifestLine> found;
   const auto add = [&](std::string key, const Position& at) {
@@ -84,14 +75,13 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   return found;
 }
 
-nlohmann::json overrides(std::string_view text, const Ask& ask) {
-  const std::optional<Manifest> manifest = parsed(text);
-  if (!manifest) return nullptr;
+nlohmann::json overrides(std::string_view text, const Ask& ask) try {
+  const Manifest manifest = parse_manifest(text, "manifest");
   nlohmann::json found;
   const auto add = [&](const char* key, const nlohmann::json& run, const nlohmann::json& stated) {
     found[key] = {{"run", run}, {"manifest", stated}};
   };
-  const Scale& stated = scale_of(*manifest, ask.scale);
+  const Scale& stated = scale_of(manifest, ask.scale);
   for (const Variant& variant : variants_of(stated)) {
     const std::uint64_t cycles = target_cycles(variant.parameters);
     const bool is_it = variant.swept.empty() || selects({variant.swept, "", {}}, ask.swept);
@@ -106,6 +96,8 @@ nlohmann::json overrides(std::string_view text, const Ask& ask) {
     add("engine", *engine, value_at(stated, "engine"));
   }
   return found;
+} catch (const ManifestError&) {
+  return nullptr;
 }
 
 }  // namespace shearcell

@@ -237,4 +237,7 @@ std::string manifest_markdown();
 /// problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
+/// read_manifest() of a text in a store; nothing if this version of the program cannot read it.
+std::optional<Manifest> recorded_manifest(std::string_view text);
+
 }  // namespace shearcell

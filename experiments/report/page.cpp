@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <span>
@@ -55,6 +56,7 @@ struct Experiment {
   std::string manifest_path = {};
   bool labelled = false;                 ///< the manifest names variants
   json figures = json::array();          ///< as figure_json() gives them
+  std::vector<Verdict> verdicts = {};    ///< of the figures
   std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
   std::vector<Stage> runs = {};
   std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
@@ -226,14 +228,8 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
           {"inputs", inputs}};
 }
 
-/// Computes the figure. What it says of the store goes into the report.
-json figure_json(const WantedFigure& wanted, Content& content) {
-  const ReportOptions& options = content.options;
-  FigureOptions how;
-  how.runs = options.runs;
-  how.workers = options.workers;
-  how.report = options.measured;
-  const ComputedFigure figure = compute_figure(content.store, wanted, how);
+/// What the figure says of the store goes into the report.
+json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Content& content) {
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
       figure_lineage(content.store, {wanted.path(), 0, "", figure.lineage});
@@ -460,14 +456,8 @@ json run_rows(const Packings& packings, const Experiment& experiment) {
 
 json experiment_json(const Content& content, const Experiment& experiment) {
   const RegisteredManifest& manifest = experiment.manifest;
-  std::map<Ruling, std::size_t> rulings;
-  for (const json& figure : experiment.figures) {
-    for (const json& claim : figure.at("claims")) {
-      ++rulings[value_of<Ruling>(claim.at("ruling").at("name").get<std::string>()).value()];
-    }
-  }
   json verdict = json::array();
-  for (const auto& [ruling, number] : rulings) {
+  for (const auto& [ruling, number] : rulings_of(experiment.verdicts)) {
     verdict.push_back(ruling_json(ruling));
     verdict.back()["number"] = number;
   }
@@ -524,7 +514,7 @@ std::vector<Experiment> experiments_of(const Store& store, const std::vector<std
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
-    const std::optional<Manifest> known = parsed(manifest);
+    const std::optional<Manifest> known = recorded_manifest(manifest.text);
     Experiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
     experiment.labelled = known && !known->labels.empty();
@@ -545,6 +535,10 @@ void add_figures(Content& content) {
   const WantedFigures wanted = wanted_figures(content.store, {}, content.options.runs.experiments);
   std::set<std::string>& notes = content.report.notes;
   notes.insert(wanted.unknown.begin(), wanted.unknown.end());
+  FigureOptions how;
+  how.runs = content.options.runs;
+  how.workers = content.options.workers;
+  how.report = content.options.measured;
   for (const WantedFigure& figure : wanted.figures) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
@@ -554,7 +548,9 @@ void add_figures(Content& content) {
       if (at_home) home->unmade.push_back(figure.figure.name);
     };
     try {
-      (at_home ? home->figures : content.across).push_back(figure_json(figure, content));
+      const ComputedFigure made = compute_figure(content.store, figure, how);
+      (at_home ? home->figures : content.across).push_back(figure_json(figure, made, content));
+      if (at_home) std::ranges::copy(made.verdicts, std::back_inserter(home->verdicts));
       ++content.report.figures;
     } catch (const StoreDamaged& damage) {
       content.report.damage.insert(damage.what());

@@ -402,8 +402,9 @@ nlohmann::json overlap_limits(const Manifest& manifest) {
 
 }  // namespace
 
-std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan) {
-  nlohmann::json info = {{"experiment", plan.experiment},
+std::vector<StageJob> declare(Store& store, const Plan& plan) {
+  const Manifest& manifest = plan.manifest;
+  nlohmann::json info = {{"experiment", manifest.experiment},
                          {"question", manifest.question},
                          {"figures", manifest.figures}};
   if (auto limits = overlap_limits(manifest); !limits.empty()) {

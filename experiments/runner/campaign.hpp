@@ -33,9 +33,9 @@ struct CampaignResult {
   std::vector<std::string> messages;  ///< one for each failure or damage
 };
 
-/// Records the manifest and the runs that it expands to. Returns their stages, each once, parents
+/// Records the manifest and the runs of the plan. Returns their stages, each once, parents
 /// first and otherwise in the plan's order.
-std::vector<StageJob> declare(Store& store, const Manifest& manifest, const Plan& plan);
+std::vector<StageJob> declare(Store& store, const Plan& plan);
 
 /// The stages of the store that are not done by their Outlook, with the stages before them; with
 /// `prefixes` only stages whose ids begin with one of these. Throws NotFound for a prefix that fits

@@ -348,27 +348,32 @@ Outlook look_at(const Store& store, const Stage& stage) {
   }
 }
 
-std::vector<PlannedStage> look_at(const Plan& plan, const Store* store) {
+std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* store) {
   std::map<std::string, Stage> known;
   if (store != nullptr) {
     for (Stage& stage : store->stages()) known.emplace(stage.id, std::move(stage));
   }
   std::vector<PlannedStage> stages;
-  std::set<std::string> seen;
-  for (const PlannedRun& run : plan.runs) {
-    for (const Stage* planned : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
-      if (planned == nullptr || !seen.insert(planned->id).second) continue;
-      PlannedStage& one = stages.emplace_back(PlannedStage{.run = &run, .stage = *planned});
-      if (const auto found = known.find(planned->id); found != known.end()) {
-        one.stage = std::move(found->second);
-        one.stage.resolved = planned->resolved;  // that of the store may be damaged
-        one.asks = one.stage.asks;
-        one.checkpoints = store->checkpoints(one.stage.id, Listed::and_pruned);
-      }
-      std::ranges::copy(planned->asks, std::back_inserter(one.asks));
-      one.look = outlook(one.stage, one.asks, one.checkpoints);
+  std::map<std::string, std::size_t> places;  // in `stages`, by id
+  const auto add = [&](const PlannedRun& run, const Stage& planned) {
+    const auto [place, fresh] = places.try_emplace(planned.id, stages.size());
+    if (fresh) stages.push_back({.run = &run, .stage = planned});
+    PlannedStage& one = stages[place->second];
+    if (const auto found = known.find(planned.id); fresh && found != known.end()) {
+      one.stage = std::move(found->second);
+      one.stage.resolved = planned.resolved;  // that of the store may be damaged
+      one.asks = one.stage.asks;
+      one.checkpoints = store->checkpoints(one.stage.id, Listed::and_pruned);
+    }
+    std::ranges::copy(planned.asks, std::back_inserter(one.asks));
+  };
+  for (const Plan& plan : plans) {
+    for (const PlannedRun& run : plan.runs) {
+      if (run.prepare) add(run, *run.prepare);
+      add(run, run.stage);
     }
   }
+  for (PlannedStage& one : stages) one.look = outlook(one.stage, one.asks, one.checkpoints);
   return stages;
 }
 

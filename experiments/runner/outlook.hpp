@@ -87,18 +87,18 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 /// known. Outlook::unreadable says why an ask cannot be read.
 Outlook look_at(const Store& store, const Stage& stage);
 
-/// A stage of a plan, with what the store has recorded of it.
+/// A stage of plans, with what the store has recorded of it.
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Ask> asks = {};  ///< those of the store and of the plan
+  std::vector<Ask> asks = {};  ///< those of the store and of all plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };
 
-/// The stages of the plan's runs, each once, parents first. `store` may be null. Throws as
+/// The stages of the plans' runs, each once, parents first. `store` may be null. Throws as
 /// outlook().
-std::vector<PlannedStage> look_at(const Plan& plan, const Store* store);
+std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* store);
 
 /// outlook() for these asks, with the measures that decide where `until` ends the stage. As long as
 /// a checkpoint is undecided, its measures are read from the cache, or computed and cached, and

@@ -40,18 +40,11 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
 
 }  // namespace
 
-std::optional<Manifest> parsed(const RegisteredManifest& manifest) {
-  try {
-    return read_manifest(manifest.text, "manifest");
-  } catch (const ManifestError&) {
-    return std::nullopt;  // of another version of the schema
-  }
-}
-
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
   for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    if (auto known = parsed(manifest)) labels[manifest.sha256] = std::move(known->labels);
+    auto known = recorded_manifest(manifest.text);
+    if (known) labels[manifest.sha256] = std::move(known->labels);
   }
   std::map<Group, std::vector<nlohmann::json>> values;
   for (const Stage& run : store.stages()) {

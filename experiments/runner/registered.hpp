@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,7 +12,8 @@
 
 namespace shearcell {
 
-/// A registered manifest: its hash, experiment, question, names of figures, and its text.
+/// A registered manifest: its hash, experiment, question, names of figures, and its text for
+/// recorded_manifest().
 struct RegisteredManifest {
   std::string sha256;
   std::string experiment;
@@ -21,9 +21,6 @@ struct RegisteredManifest {
   std::vector<std::string> figures;
   std::string text;
 };
-
-/// The parsed manifest; nothing if this version of the program cannot read it.
-std::optional<Manifest> parsed(const RegisteredManifest& manifest);
 
 /// Display names of all variants in a store, by variant_names() of each manifest. A settled packing
 /// is called "packing". If an experiment has packings that differ at one scale, the values that

@@ -24,7 +24,7 @@ class Submitted : public StoreTest {
   std::vector<Share> shares(std::uint64_t cycles = 2) {
     const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids), "tiny.yaml");
     const Plan plan = expand(manifest, {.cycles = cycles, .seeds = 2});
-    declare(store_, manifest, plan);
+    declare(store_, plan);
     return share_out(shares_of({plan}, &store_), 2);
   }
 
@@ -89,7 +89,7 @@ TEST_F(Submitted, HaveWorkLeftWhileACompletedRunLacksCheckpoints) {
   compute(store_, text + "checkpoints: {every_cycles: 2}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
-  declare(store_, manifest, plan);
+  declare(store_, plan);
   const Submission made = submit(share_out(shares_of({plan}, &store_), 1));
   EXPECT_EQ(unfinished_submissions(store_).size(), 1U) << "its tasks have only begun";
   Store own = store_of(made, 1);
@@ -114,7 +114,7 @@ TEST_F(Submitted, ClonesAreTasksOfThePackingOfTheirState) {
   EXPECT_EQ(both[0].packings, std::vector{packing});
   EXPECT_EQ(both[0].runs, (std::vector{first.runs[0].stage.id, second.runs[0].stage.id}));
   compute(store_, tiny.text);
-  declare(store_, clones, second);
+  declare(store_, second);
   const std::vector<Share> rest = shares_of({second}, &store_);
   ASSERT_EQ(rest.size(), 1U);
   EXPECT_EQ(rest[0].runs, std::vector{second.runs[0].stage.id});
@@ -129,7 +129,7 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const std::string text = tiny_manifest("", "until: {phi: 0.1, extra_cycles: 1}\n");
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
   const Plan plan = expand(manifest);
-  declare(store_, manifest, plan);
+  declare(store_, plan);
   const Submission made = submit(share_out(shares_of({plan}, &store_), 1));
   Store own = store_of(made, 1);
   EXPECT_EQ(resume(own).completed, 2U);
@@ -144,7 +144,7 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const Plan longer = expand(manifest, {.cycles = 9});
   EXPECT_EQ(shares_of({longer}, &store_).size(), 1U) << "nobody asked for this length yet";
   const std::size_t recorded = count_events(store_, "CheckpointRecorded");
-  declare(store_, manifest, longer);
+  declare(store_, longer);
   resume(store_);
   EXPECT_EQ(count_events(store_, "CheckpointRecorded"), recorded) << "it ends by `until` again";
 }

@@ -22,7 +22,7 @@ using CampaignTest = StoreTest;
 TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
   const Manifest manifest = parse_manifest(tiny_manifest("", kBothFluids + "seeds: 2\n"), "t");
   const Plan plan = expand(manifest);
-  const std::vector<StageJob> jobs = declare(store_, manifest, plan);
+  const std::vector<StageJob> jobs = declare(store_, plan);
   ASSERT_EQ(plan.runs.size(), 4U);
   ASSERT_EQ(jobs.size(), 6U);  // two packings, two fluids each
   std::set<std::string> seen = {""};
@@ -34,7 +34,7 @@ TEST_F(CampaignTest, DeclaresParentsFirstAndEachStageOnce) {
   EXPECT_EQ(stages_to_resume(store_, {}).size(), 6U);
 
   const Head head = store_.head();
-  EXPECT_EQ(declare(store_, manifest, plan).size(), 6U);
+  EXPECT_EQ(declare(store_, plan).size(), 6U);
   EXPECT_EQ(store_.head().hash, head.hash) << "declaring again recorded something";
 }
 

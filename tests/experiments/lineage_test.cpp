@@ -141,12 +141,12 @@ TEST_F(FigureLineageTest, MissingAndDamagedInputsAreNamed) {
   };
   std::filesystem::remove(path(0));
   truncate_file(path(3));
-  const std::vector<InputFault> faults = check_inputs(store_, lineage);
+  const std::vector<Finding> faults = check_inputs(store_, lineage);
   ASSERT_EQ(faults.size(), 2U);
-  for (const InputFault& fault : faults) std::printf("%s\n", fault.what.c_str());
-  EXPECT_EQ(faults[0].checkpoint, lineage.inputs[0].checkpoints[0]);
-  EXPECT_TRUE(has(faults[0].what, "missing"));
-  EXPECT_EQ(faults[1].checkpoint, lineage.inputs[3].checkpoints[0]);
+  for (const Finding& fault : faults) std::printf("%s\n", fault.message.c_str());
+  EXPECT_EQ(faults[0].subject, lineage.inputs[0].checkpoints[0]);
+  EXPECT_TRUE(has(faults[0].message, "missing"));
+  EXPECT_EQ(faults[1].subject, lineage.inputs[3].checkpoints[0]);
 }
 
 // As earlier versions recorded them: the SHA-256 of every file in place of the states.
@@ -172,7 +172,7 @@ TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
   const auto faults = check_inputs(store_, figure_lineage(store_, figure_records(store_).back()));
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_EQ(faults[0].run, now.inputs[0].run);
-  EXPECT_EQ(faults[1].checkpoint, std::string(64, 'a'));
+  EXPECT_EQ(faults[1].subject, std::string(64, 'a'));
 }
 
 TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
@@ -184,10 +184,10 @@ TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
     changed["inputs"][1][key] = value;
     store_.record_figure("S2", changed);
     const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
-    const std::vector<InputFault> faults = check_inputs(store_, lineage);
+    const std::vector<Finding> faults = check_inputs(store_, lineage);
     ASSERT_EQ(faults.size(), 1U) << key;
     EXPECT_EQ(faults[0].run, lineage.inputs[1].run);
-    EXPECT_EQ(faults[0].what, "the log has other states at these cycles");
+    EXPECT_EQ(faults[0].message, "the log has other states at these cycles");
   }
 }
 

@@ -44,7 +44,7 @@ TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
   ASSERT_EQ(runs.size(), 4U);
   EXPECT_EQ(expand(drag()).scale, "desk") << "by default";
   EXPECT_EQ(runs[0].checkpoint_every, 1U) << "by default";
-  EXPECT_EQ(variants({"", "", {}, runs, {}}),
+  EXPECT_EQ(variants({{}, "", {}, runs, {}}),
             (Strings{"fluid=still", "fluid=still", "fluid=cell", "fluid=cell"}));
   EXPECT_EQ(runs[0].seed, 1U);
   EXPECT_EQ(runs[1].seed, 2U);

@@ -48,7 +48,8 @@ class Phases : public DrawingTest {
 
   // Cycle from which `plan` and `submit` say that the run of the store is left to compute.
   std::optional<double> left_of(const std::string& text) const {
-    const Outlook look = look_at(expand(parse_manifest(text, "t")), &store_).at(1).look;
+    const Plan plan = expand(parse_manifest(text, "t"));
+    const Outlook look = look_at({&plan, 1}, &store_).at(1).look;
     return look.done ? std::nullopt : std::optional(look.from);
   }
 

@@ -359,7 +359,7 @@ class FromAFile : public Started {
   }
 
   CampaignResult compute_placed(Store& store, const Manifest& stated) {
-    return run_campaign(store, declare(store, stated, expand(stated)), 2, {}, true);
+    return run_campaign(store, declare(store, expand(stated)), 2, {}, true);
   }
 
   /// The grains of a state as a CSV file, without a box.
@@ -410,7 +410,7 @@ TEST_F(FromAFile, TheStoreKeepsTheTextAndMergesIt) {
       "  walls: smooth\n  grains: 4\n  nominal_packing_fraction: 0.05\n"
       "  fill_packing_fraction: 0.04\n  height_over_width: 1\n";
   const Manifest stated = manifest("settle: {}\n", base);
-  const std::vector<StageJob> jobs = declare(store_, stated, expand(stated));
+  const std::vector<StageJob> jobs = declare(store_, expand(stated));
   std::filesystem::remove(folder_.path() / "grains.csv");
   Store other(folder_.path() / "other", Access::create);
   other.merge({store_.folder()});
@@ -431,7 +431,7 @@ TEST_F(FromAFile, AFileThatIsChangedBackIsShownAgain) {
     write_grains("x_d,y_d,z_d\n1,1,1\n" + grains);
     const Manifest stated = manifest("", base);
     const Plan plan = expand(stated);
-    declare(store_, stated, plan);
+    declare(store_, plan);
     return plan.runs.front().stage.id;
   };
   const auto shown = [&] {

@@ -58,7 +58,7 @@ inline const std::string kBothFluids = "sweep: {grid: {fluid: [still, cell]}}\n"
 inline std::vector<StageJob> declared(Store& store, const std::string& text,
                                       const ExpandOptions& options = {}) {
   const Manifest manifest = parse_manifest(text, "tiny.yaml");
-  return declare(store, manifest, expand(manifest, options));
+  return declare(store, expand(manifest, options));
 }
 
 /// Declares the runs of a manifest and computes them.

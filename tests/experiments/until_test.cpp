@@ -202,17 +202,19 @@ TEST_F(UntilTest, ARunHasWorkLeftForAPlanWithALaterOne) {
   const auto plan_of = [](const std::string& text) {
     return expand(parse_manifest(text, "tiny.yaml"), {});
   };
-  const auto look = [&](const Plan& plan) { return look_at(plan, &store_).at(1).look; };
+  const auto look = [&](const std::vector<Plan>& plans) {
+    return look_at(plans, &store_).at(1).look;
+  };
   const Plan early = plan_of(manifest(until(0))), late = plan_of(renamed(manifest(until(1)), "b"));
   for (const auto& plans : {std::vector{early, late}, std::vector{late, early}}) {
-    EXPECT_FALSE(look(joined(plans)).done);
-    EXPECT_EQ(look(joined(plans)).from, sheared(store_).cycle);
+    EXPECT_FALSE(look(plans).done);
+    EXPECT_EQ(look(plans).from, sheared(store_).cycle);
   }
-  EXPECT_TRUE(look(early).done);
+  EXPECT_TRUE(look({early}).done);
   const Plan seldom =
       plan_of(renamed(manifest(until(0)), "c") + "checkpoints: {every_cycles: 5}\n");
-  EXPECT_FALSE(look(seldom).done) << "it may end at cycle 5 only";
-  EXPECT_EQ(look(seldom).from, sheared(store_).cycle);
+  EXPECT_FALSE(look({seldom}).done) << "it may end at cycle 5 only";
+  EXPECT_EQ(look({seldom}).from, sheared(store_).cycle);
 }
 
 TEST_F(UntilTest, TheLongestOfTwoExperimentsCounts) {

@@ -144,7 +144,7 @@ TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
 
 TEST_F(ReportOfRuns, ShowsTheStateOfEachStepOfTheWorkflow) {
   const Manifest longer = parse_manifest(tiny_manifest("  cycles: 5\n", kBothFluids), "tiny.yaml");
-  declare(store_, longer, expand(longer));
+  declare(store_, expand(longer));
   const Stage run = runs_of_kind(store_, "shear").front();
   store_.start_stage(run.id, {}, store_.checkpoints(run.id).back().sha256);
   store_.fail_stage(run.id, "blew up");
