@@ -126,7 +126,7 @@ TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
   EXPECT_EQ(read_bytes(path("out/report.html")), first);
 
   expect(2, {"report", "--run", "nothing"});
-  expect(1, {"report", "--out", "no/such/folder.html"});
+  expect(1, {"report", "--out", "out/report.html/below.html"});
 
   const std::string file = newest_file(last_run());
   std::filesystem::remove(path("shearcell-store/derived.sqlite"));
