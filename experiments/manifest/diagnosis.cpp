@@ -691,7 +691,8 @@ std::vector<string> unsaid(const std::vector<string>& primary, std::vector<strin
   std::vector<string> problems;
   for (const string& claim : primary) {
     if (std::ranges::count(said, claim) > 0) continue;
-    problems.push_back(with_nearest(format("primary: no claim has the statement '{}'", claim), claim, known));
+    problems.push_back(
+        with_nearest(format("primary: no claim has the statement '{}'", claim), claim, known));
   }
   return problems;
 }

@@ -348,8 +348,9 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
 
 TEST_F(CommandLineStore, ReportsWhyARunFailed) {
   const std::string manifest =
-      write("m.yaml", tiny_manifest("", "sweep: {grid: {settle_time_limit_s: [60, 0.1]}}\n"
-                                         "plots: [{name: own, y: phi}]\n"));
+      write("m.yaml", tiny_manifest("",
+                                    "sweep: {grid: {settle_time_limit_s: [60, 0.1]}}\n"
+                                    "plots: [{name: own, y: phi}]\n"));
   expect(3, {"run", manifest, "--cycles", "1", "-q"}, {"over its limit of 0.1"});
   expect(0, {"figures", "own"}, {"1 run without a checkpoint yet", "seed 1 (failed)"});
   expect(0, {"status"}, {"over its limit of 0.1", "completed"});

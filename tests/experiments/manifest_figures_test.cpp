@@ -187,7 +187,8 @@ TEST(FigureWarnings, OfPrimaryClaimsThatNothingStates) {
   EXPECT_EQ(found("own: phi at cycle 4 is the same for water and fluid=cell", label), Strings{});
   const Strings renamed = found(says, label);
   ASSERT_EQ(renamed.size(), 1U);
-  EXPECT_TRUE(has(renamed[0], "primary: no claim has the statement '" + says + "', the nearest is own: phi at " +
+  EXPECT_TRUE(has(renamed[0], "primary: no claim has the statement '" + says +
+                                  "', the nearest is own: phi at " +
                                   "cycle 4 is the same for water and fluid=cell"));
   for (const std::string& other : found("C: the size", "figures: [C]\n")) {
     EXPECT_FALSE(has(other, "primary")) << "known only from runs";
