@@ -51,7 +51,7 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
   if (!outcome.damage.empty()) fail(context, kStoreDamaged);
 }
 
-std::string unnamed(const std::string& path) {
+std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "names no file or folder";
   std::error_code ignored;
@@ -73,7 +73,7 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->default_str(
           Context{}.store)  // not the variable's, so that the manual is the same everywhere
-      ->check(unnamed)
+      ->check(unfit_output)
       ->type_name("DIR");
   add_json_option(command, context);
   command.footer(footer);
@@ -204,7 +204,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Puts a manifest whose runs another one starts from before it.
+// Puts a manifest whose runs another one starts from before it. A `start` that names a run by its
+// id may mean one of any manifest.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {

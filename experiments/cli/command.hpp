@@ -69,8 +69,9 @@ struct Freed {
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
 
-/// An error message if the path is empty or among the checkpoint files of a store; else "".
-std::string unnamed(const std::string& path);
+/// Why nothing can be written to the path: it is empty, or among the checkpoint files of a store;
+/// "" if neither.
+std::string unfit_output(const std::string& path);
 
 /// --json.
 void add_json_option(CLI::App& command, Context& context);

@@ -344,7 +344,7 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names));
   command->add_option("--out", options->out, "File or folder to write")
       ->required()
-      ->check(unnamed)
+      ->check(unfit_output)
       ->type_name("PATH");
   command
       ->add_option(

@@ -186,7 +186,7 @@ void add_figures(CLI::App& app, Context& context) {
   command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
       ->capture_default_str()
-      ->check(unnamed)
+      ->check(unfit_output)
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")

@@ -78,7 +78,7 @@ void add_report(CLI::App& app, Context& context) {
   PackingChoice& packings = options.packings;
   sub->add_option("--out", command->out, "File to write")
       ->capture_default_str()
-      ->check(unnamed)
+      ->check(unfit_output)
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")

@@ -86,7 +86,7 @@ void add_table(CLI::App& app, Context& context) {
         ->excludes(command->get_option("--curve"));
   }
   command->add_option("--out", options->out, "File to write (default, and for -: standard output)")
-      ->check(unnamed)
+      ->check(unfit_output)
       ->type_name("FILE");
   add_common_options(
       *command, context,

@@ -51,8 +51,8 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// entered it) if there are claims, and NAME.lineage.json. Deletes a caption or verdict of an older
 /// figure that the new one lacks. Records a FigureGenerated event with host and build, unless
 /// options.recorded is false, the newest event of this figure says the same or a drawing failed
-/// (gnuplot may be missing). The same
-/// checkpoints give the same bytes. Throws as compute_figure() and require_own_files().
+/// (gnuplot may be missing). The same checkpoints give the same bytes. Throws as compute_figure()
+/// and require_own_files().
 ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell
