@@ -465,8 +465,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
     problems.push_back(
         (claim.between[k].empty()
              ? fmt::format("there are {} variants; `of` must name one.", variants)
-             : fmt::format("{} variants have {}; `{}` must name one{}.", variants,
-                           words_of(claim.between[k]), claim.published ? "of" : "between",
+             : fmt::format("{}; `{}` must name one{}.", variants_have(variants, claim.between[k]),
+                           claim.published ? "of" : "between",
                            claim.published ? "" : " on each side")));
   }
   const auto& [a, b] = sides.runs;

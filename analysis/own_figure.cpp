@@ -629,9 +629,14 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
 }
 
+std::string variants_have(std::size_t variants, const nlohmann::json& where) {
+  return variants == 0 ? "no variant has " + words_of(where)
+                       : fmt::format("{} variants have {}", variants, words_of(where));
+}
+
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
   if (plot.minus.empty() || variants == 1) return "";
-  return fmt::format("{} variants have {}; `minus` must name one.", variants, words_of(plot.minus));
+  return fmt::format("{}; `minus` must name one.", variants_have(variants, plot.minus));
 }
 
 std::vector<FigureRun> with_values(std::span<const FigureRun> given,

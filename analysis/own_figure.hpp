@@ -146,6 +146,9 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// cycle. `names` gives curves their titles; without it they are called "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
+/// "2 variants have fluid=still", "no variant has fluid=still".
+std::string variants_have(std::size_t variants, const nlohmann::json& where);
+
 /// A sentence on why `minus` does not name exactly one variant; "" if it does. `variants`: how many
 /// variants have its values.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);

@@ -430,7 +430,10 @@ ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const 
     run.variant = variant.name;
     run.swept = variant.swept;
     run.name = names.at(variant.swept);
-    run.stage = last_stage(p, 1, prepare_stage(variant.packing, 1));
+    const Stage packing = prepare_stage(variant.packing, 1);
+    run.stage = last_stage(p, 1, packing);
+    // The packings of a start are known only when the runs are there; they may be one for all.
+    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
     for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
     run.target_cycles = target_cycles(p);
     const bool stiffens = p.protocol == ProtocolKind::stiffen;
@@ -526,6 +529,22 @@ string lack_of(const ClaimSpec& claim, const FigureRun& run) {
   return "";
 }
 
+/// Which variants have other packings than the one that the plot subtracts; "" if none has.
+string lack_of_partner(const PlotSpec& plot, std::span<const FigureRun> runs) {
+  const std::vector<const FigureRun*> others = runs_with(plot.minus, runs);
+  if (plot.minus.empty() || others.size() != 1) return "";
+  std::vector<string> alone;
+  for (const FigureRun& run : runs) {
+    if (run.packing != others.front()->packing) alone.push_back(run.variant);
+  }
+  if (alone.empty()) return "";
+  return format(
+      "{} {} other packings than {}, so nothing is drawn of {}. State with `settle` what all "
+      "packings are to have in common.",
+      some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
+      alone.size() == 1 ? "it" : "them");
+}
+
 /// The number of the plot's curves that the entry of `series` fits.
 std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
                       std::span<const FigureRun> runs) {
@@ -555,6 +574,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
         key));
   }
   found.push_back(problem_of_minus(plot, count_variants(runs_with(plot.minus, runs))));
+  found.push_back(lack_of_partner(plot, runs));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
     found.push_back(format("shear_strain is 0 at whole cycles. State {}.",

@@ -199,8 +199,10 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   if (deepest > limit) {
     refuse(packing.path, {}, "",
            fmt::format("a grain overlaps a wall by {:.3g} d, more than {:g} d", deepest, limit), "",
-           fmt::format("Leave the grains of rough walls room (`walls: smooth` has none){}.",
-                       packing.file.settles ? "" : ", or let them settle first: `settle: {}`"));
+           fmt::format(
+               "Rough walls have grains, at other places for each seed: take the seed of "
+               "the packing, leave them room, or state `walls: smooth`{}.",
+               packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
   }
   return made;
 }
