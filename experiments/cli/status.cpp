@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
@@ -25,14 +24,12 @@ struct View {
   Store store;
   std::vector<PlacedRun> runs;
   std::map<std::string, Lease> holders;  // by run
-  std::set<std::string> waiting;         // waiting_for_failed()
   QueueView queue;
   VariantNames names;
 
   View(const RunSelection& selection, const Context& context)
       : store(context.store, Access::read),
         runs(by_run(select_runs(store, selection))),
-        waiting(waiting_for_failed(store.stages())),
         queue(view_queue(store)),
         names(store) {
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
@@ -146,7 +143,7 @@ std::optional<Estimate> estimate(const View& view) {
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
-    if (stage.state == StageState::failed || view.waiting.contains(stage.id)) continue;
+    if (stage.state == StageState::failed || waits_for_failed(view.store, stage)) continue;
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
@@ -213,7 +210,7 @@ void print(const View& view) {
   print_tables(view);
   if (const auto left = estimate(view)) print(*left);
   const auto waiting = std::ranges::count_if(
-      view.runs, [&](const PlacedRun& one) { return view.waiting.contains(one.stage.id); });
+      view.runs, [&](const PlacedRun& one) { return waits_for_failed(view.store, one.stage); });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));

@@ -108,18 +108,13 @@ bool asks_for_one(const Figure& figure, const FigureRun& run) {
   return !asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last).empty();
 }
 
-/// Whether the stage failed, or cannot start because the one before it did.
-bool has_failed(const Store& store, const Stage& stage) {
-  if (has_ended(stage.state)) return stage.state == StageState::failed;
-  return !stage.parent.empty() && store.stage(stage.parent).state == StageState::failed;
-}
-
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
 void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, never, going_on;
   for (const FigureRun& run : collected.runs) {
-    const std::string name = fmt::format("{} seed {}{}", run.name, run.seed,
-                                         has_failed(store, run.stage) ? " (failed)" : "");
+    const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
+    const std::string name =
+        fmt::format("{} seed {}{}", run.name, run.seed, failed ? " (failed)" : "");
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
     } else if (run.stage.state != StageState::completed &&

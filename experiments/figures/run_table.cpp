@@ -61,7 +61,7 @@ std::vector<Column> names(const VariantNames& variants) {
              [](const Run& s) { return s.experiment; }),
       of_run("scale", "scale of the manifest", [](const Run& s) { return scale_name(s.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
-             [variants](const Run& s) { return variants.of(s); }),
+             [variants](const Run& s) { return variants.of(s.stage, s); }),
       of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
       of_run("seed", "seed of the random numbers", [](const Run& s) { return s.seed; }),
   };

@@ -59,12 +59,6 @@ Scene settle_scene(const Parameters& p) {
   return scene;
 }
 
-Scene stiffen_scene(const Parameters& p) {
-  Scene scene = settle_scene(p);
-  scene.time_step = 0;
-  return scene;
-}
-
 std::uint64_t target_cycles(const Parameters& p) {
   if (p.protocol != ProtocolKind::stiffen) return p.cycles;
   return 1 + p.stiffness_decades * p.stiffness_steps_per_decade;

@@ -31,9 +31,6 @@ inline constexpr double kMostPauseSteps = 1e9;
 /// pause_s in time steps of the shear, not rounded.
 double pause_time_steps(const Parameters& parameters);
 
-/// The scene of a stiffening: the scene of settling without a time step.
-Scene stiffen_scene(const Parameters& parameters);
-
 /// Length of the stage after settling: cycles of shear, or stiffnesses.
 std::uint64_t target_cycles(const Parameters& parameters);
 

@@ -432,7 +432,7 @@ ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const 
     run.name = names.at(variant.swept);
     const Stage packing = prepare_stage(variant.packing, 1);
     run.stage = last_stage(p, 1, packing);
-    // The packings of a start are known only when the runs are there; they may be one for all.
+    // With `start`, the packing is not known yet, and several variants may share it.
     if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
     for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
     run.target_cycles = target_cycles(p);

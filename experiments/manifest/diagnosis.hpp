@@ -19,8 +19,8 @@ void check_variants(const Manifest& manifest);
 /// Why LAMMPS cannot compute such a run; "" if it can, or if the engine is another one.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// A sentence for each entry of `primary` that is neither one of the claims `said` nor of the
-/// figure summary.
+/// A message for each statement in `primary` that neither a claim in `said` nor a claim of the
+/// figure summary makes.
 std::vector<std::string> unsaid(const std::vector<std::string>& primary,
                                 std::vector<std::string> said);
 

@@ -353,6 +353,10 @@ std::string without_controls(string_view text) {
   return escaped(text, std::string::npos, is_control);
 }
 
+std::string for_terminal(string_view text) {
+  return escaped(text, std::string::npos, [](char32_t c) { return c != '\n' && is_control(c); });
+}
+
 std::string as_seen(string_view text) {
   std::string seen;
   while (!text.empty()) {

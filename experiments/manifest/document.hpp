@@ -56,6 +56,9 @@ std::string printable(std::string_view text, std::size_t longest = 60);
 /// which some scripts need.
 std::string without_controls(std::string_view text);
 
+/// without_controls() of each line.
+std::string for_terminal(std::string_view text);
+
 /// The text as a reader sees it, to compare names: without invisible characters and blanks at the
 /// ends, with one space for other blanks. "" if there is nothing to see.
 std::string as_seen(std::string_view text);

@@ -46,8 +46,8 @@ struct Plan {
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// Adds the runs of the plan to `known`, or extends them there, as they are once they have the
-/// cycles that the plan asks for: the start of another manifest may name them.
+/// Adds the runs of the plan to `known`, or extends them there, with all cycles that the plan asks
+/// for, so that the `start` of another manifest can name them.
 void add_as_computed(const Plan& plan, std::vector<Stage>& known);
 
 /// Whether LAMMPS computes any run of the plan.

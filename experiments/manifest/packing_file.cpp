@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -170,7 +171,7 @@ class PackingReader {
     if (value && std::fabs(*value) <= kLargest) return *value;
     if (value) {
       refuse_part(part, name, "is not finite, or beyond 1e100",
-                  "Remove this grain, or mend its value.");
+                  "Remove this grain, or correct its value.");
     }
     if (part.find(',') != part.npos && part.find_first_not_of("+-0123456789,eE") == part.npos) {
       string point(part);
@@ -195,7 +196,7 @@ class PackingReader {
     if (known == nullptr) return;
     for (int k = 0; k < known->count; ++k) {
       if (!layout_.has(static_cast<Quantity>(known->first + k))) continue;
-      refuse_part(part, "", "names a column that stands there twice", "Keep one of them.");
+      refuse_part(part, "", "names a column that occurs twice", "Keep one of them.");
     }
     layout_.set(known->first, at, known->count);
     if (name == "radius") layout_.per_diameter = 2;
@@ -254,7 +255,7 @@ class PackingReader {
     if (facts_.unit && facts_.unit != unit) {
       refuse_line(
           fmt::format("states lengths in {}", name_of(unit)),
-          fmt::format("The manifest says `unit: {}`: leave that out.", name_of(*facts_.unit)));
+          fmt::format("The manifest says `unit: {}`: remove that key.", name_of(*facts_.unit)));
     }
     unit_ = unit;
   }
@@ -279,7 +280,7 @@ class PackingReader {
       const std::size_t end = quoted ? rest.find('"', 1) + 1 : rest.find_first_of(" \t");
       const string_view value = rest.substr(0, end);
       if (!keys.emplace(name, unquoted(value)).second) {
-        refuse_part(name, "", "is a key that stands there twice", "Keep one of them.");
+        refuse_part(name, "", "is a key that occurs twice", "Keep one of them.");
       }
       rest.remove_prefix(value.size());
     }
@@ -365,11 +366,8 @@ class PackingReader {
 
   /// Whether the first lines hold one such as "500 atoms".
   bool states_atoms() const {
-    const string_view beginning = rest_.substr(0, 2000);
-    const std::size_t at = beginning.find(" atoms");
-    if (at == beginning.npos) return false;
-    const string_view before = trimmed(beginning.substr(0, at));
-    return !before.empty() && std::isdigit(static_cast<unsigned char>(before.back())) != 0;
+    static const std::regex count("[0-9][ \\t]+atoms");
+    return std::regex_search(string(rest_.substr(0, 2000)), count);
   }
 
   void read_data() {

@@ -981,7 +981,7 @@ struct Reader {
       if (in.find(source) != nullptr) sources.push_back(source);
     }
     if (sources.size() != 1) {
-      return reject(in, "does not name one of an experiment, a checkpoint and a file",
+      return reject(in, "does not have exactly one of the keys experiment, checkpoint and file",
                     remedy_of(about));
     }
     const Names& others = go_together.at(sources.front());

@@ -33,7 +33,15 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
 /// the recorded run.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
-  const Parameters had = read_stage(recorded.resolved).parameters;
+  Parameters had;
+  try {
+    had = read_stage(recorded.resolved).parameters;
+  } catch (const UnreadableRecord& problem) {
+    refuse(manifest.file, scale.start.at, "start",
+           fmt::format("this version of the program cannot read run {:.8}: {}", recorded.id,
+                       problem.what()),
+           "", "Use the version that computed it, or begin with another run.");
+  }
   for (const Field& field : schema()) {
     const bool of_packing = field.identity.stage == StageKind::prepare &&
                             field.identity.distinguishes_runs() &&
@@ -156,7 +164,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
            cycle == static_cast<double>(ask.target_cycles);
   };
   const std::vector<Ask>& asks = found.front()->asks;
-  if (found.front()->cycle > cycle && std::ranges::none_of(asks, records_it)) {
+  if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no checkpoint of cycle {}", found.front()->id, cycle), "",
            fmt::format("It has those of every {} cycles and of cycle {}; name one of these, or run "

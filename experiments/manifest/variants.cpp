@@ -237,7 +237,8 @@ std::map<json, std::string> variant_names(const std::vector<json>& variants,
   const auto some = std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
-  // A key that some variants lack must not replace one that all have: that would not be named.
+  // Of keys that vary together only the first is kept. Those that all variants have come first,
+  // since a variant without the kept key would get no name.
   std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some});
   for (const std::string& key : keys_telling_apart(variants, all)) {
     if (std::find(some, all.end(), key) != all.end()) keys.push_back(key);

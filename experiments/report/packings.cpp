@@ -334,13 +334,13 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
     packings.frames += list.size();
     if (list.empty()) continue;
-    packings.runs.push_back(
-        {{"id", run.stage.id},
-         {"label", fmt::format("{}, seed {}, N = {}", names.of(run), run.seed, run.stage.grains)},
-         {"experiment", run.experiment},
-         {"grains", run.stage.grains},
-         {"wall_grains", run.wall_grains},
-         {"frames", std::move(list)}});
+    packings.runs.push_back({{"id", run.stage.id},
+                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.stage, run),
+                                                   run.seed, run.stage.grains)},
+                             {"experiment", run.experiment},
+                             {"grains", run.stage.grains},
+                             {"wall_grains", run.wall_grains},
+                             {"frames", std::move(list)}});
   }
   return packings;
 }

@@ -72,16 +72,10 @@ class Progress {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
     if (done) ++done_;
-    if (quiet_ || how.empty()) return;
-    erase();
-    print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
-    draw();
-  }
-
-  /// This program no longer computes the stage.
-  void drop(const StageJob& job) {
-    const std::lock_guard lock(mutex_);
-    running_.erase(job.id);
+    if (!quiet_ && !how.empty()) {
+      erase();
+      print_stderr("{}: {} ({} of {} stages done)\n", job.name, how, done_, stages_);
+    }
     draw();
   }
 
@@ -112,7 +106,8 @@ class Progress {
     std::multimap<std::string, std::string> lines;
     for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
     for (const auto& [name, text] : lines) {
-      print_stderr("{:.{}}\n", fmt::format("{:<28} {}", name, text), longest);
+      const std::string line = for_terminal(fmt::format("{:<28} {}", name, text));
+      print_stderr("{}\n", first_columns(line, longest));
       ++drawn_;
     }
   }
@@ -270,7 +265,7 @@ class Campaign {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
     }
-    progress_.drop(job);
+    progress_.end(job, "", false);
     return JobState::ended;
   }
 
@@ -327,7 +322,7 @@ class Campaign {
         return JobState::ended;
       case StageOutcome::held:
       case StageOutcome::lost:
-        progress_.drop(job);
+        progress_.end(job, "", false);
         if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be started; `shearcell verify` may show why");

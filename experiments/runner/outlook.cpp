@@ -88,7 +88,8 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
       if (!end.reached) end.undecided = &one;
       break;
     }
-    if (known->second.number(measure) < until->value) continue;
+    // Also a number that is undefined, as phi without interior grains, has not reached the value.
+    if (!(known->second.number(measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
   }
@@ -109,7 +110,8 @@ bool is_covered(const Stage& stage, const Ask& ask) {
          });
 }
 
-/// Sets the end. Returns whether the stage is as long as every ask wants it.
+/// Sets the outlook's `end`, `ended` and `undecided`. Returns whether the stage is long enough for
+/// every ask.
 bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
@@ -539,15 +541,9 @@ double Work::seconds(std::size_t at_a_time) const {
   return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
 }
 
-std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs) {
-  std::set<std::string> failed, waiting;
-  for (const Stage& run : runs) {
-    if (run.state == StageState::failed) failed.insert(run.id);
-  }
-  for (const Stage& run : runs) {
-    if (!has_ended(run.state) && failed.contains(run.parent)) waiting.insert(run.id);
-  }
-  return waiting;
+bool waits_for_failed(const Store& store, const Stage& stage) {
+  return !has_ended(stage.state) && !stage.parent.empty() &&
+         store.stage(stage.parent).state == StageState::failed;
 }
 
 }  // namespace shearcell

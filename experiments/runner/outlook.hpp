@@ -7,7 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -186,7 +185,7 @@ struct Work {
   double seconds(std::size_t at_a_time) const;
 };
 
-/// Ids of unfinished stages that cannot start because their packing failed.
-std::set<std::string> waiting_for_failed(const std::vector<Stage>& runs);
+/// Whether the stage cannot start, because the one before it failed.
+bool waits_for_failed(const Store& store, const Stage& stage);
 
 }  // namespace shearcell

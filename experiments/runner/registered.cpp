@@ -14,10 +14,6 @@ namespace {
 // In place of a manifest: packings of all versions are named together.
 const std::string kPackings = "packings";
 
-bool is_packing(const Stage& run) {
-  return run.kind == name_of(StageKind::prepare);
-}
-
 /// The registrations, oldest first. A version that was registered again after another version
 /// occurs again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
@@ -40,6 +36,14 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
 
 }  // namespace
 
+std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage& run,
+                                                                    const Place& m) {
+  if (run.kind == name_of(StageKind::prepare)) {
+    return {{m.experiment, kPackings, m.scale}, effective_parameters(run.resolved)};
+  }
+  return {{m.experiment, m.manifest, m.scale}, m.swept};
+}
+
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
   for (const RegisteredManifest& manifest : registered_manifests(store)) {
@@ -49,11 +53,8 @@ VariantNames::VariantNames(const Store& store) {
   std::map<Group, std::vector<nlohmann::json>> values;
   for (const Stage& run : store.stages()) {
     for (const Ask& m : run.asks) {
-      if (is_packing(run)) {
-        values[{m.experiment, kPackings, m.scale}].push_back(effective_parameters(run.resolved));
-      } else {
-        values[{m.experiment, m.manifest, m.scale}].push_back(m.swept);
-      }
+      auto [group, vary] = key_of(run, m);
+      values[group].push_back(std::move(vary));
     }
   }
   for (const auto& [group, vary] : values) {
@@ -66,21 +67,12 @@ VariantNames::VariantNames(const Store& store) {
   }
 }
 
-std::string VariantNames::find(const Group& group, const nlohmann::json& values,
-                               const Place& place) const {
-  const auto names = names_.find(group);
-  if (names == names_.end()) return place.variant;
-  const auto name = names->second.find(values);
-  return name == names->second.end() ? place.variant : name->second;
-}
-
 std::string VariantNames::of(const Stage& run, const Place& m) const {
-  if (!is_packing(run)) return of(m);
-  return find({m.experiment, kPackings, m.scale}, effective_parameters(run.resolved), m);
-}
-
-std::string VariantNames::of(const Place& m) const {
-  return find({m.experiment, m.manifest, m.scale}, m.swept, m);
+  const auto [group, vary] = key_of(run, m);
+  const auto names = names_.find(group);
+  if (names == names_.end()) return m.variant;
+  const auto name = names->second.find(vary);
+  return name == names->second.end() ? m.variant : name->second;
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
@@ -31,12 +32,11 @@ class VariantNames {
   explicit VariantNames(const Store& store);
   /// The name of the run in this place; if unknown, the variant.
   std::string of(const Stage& run, const Place& place) const;
-  /// The name of a variant; not for packings.
-  std::string of(const Place& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
-  std::string find(const Group& group, const nlohmann::json& values, const Place& place) const;
+  /// The runs among which the run is named, and the values that tell it apart from these.
+  static std::pair<Group, nlohmann::json> key_of(const Stage& run, const Place& place);
 
   std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by values that vary
 };

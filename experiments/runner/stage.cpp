@@ -39,8 +39,9 @@ namespace {
 
 Scene make_scene(const StageInputs& inputs) {
   if (inputs.stage == StageKind::shear) return shear_scene(inputs.parameters);
-  if (inputs.stage == StageKind::stiffen) return stiffen_scene(inputs.parameters);
-  return settle_scene(inputs.parameters);
+  Scene scene = settle_scene(inputs.parameters);
+  if (inputs.stage == StageKind::stiffen) scene.time_step = 0;  // no time passes
+  return scene;
 }
 
 void require_memory(const StageInputs& inputs) {
@@ -51,31 +52,23 @@ void require_memory(const StageInputs& inputs) {
       inputs.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-/// Leaves the grains of a file where they are.
-class AsPlaced final : public Protocol {
- public:
-  Drive drive() const override { return {}; }
-  StageProgress advance(Simulation& simulation, std::uint64_t) const override {
-    simulation.check();
-    return {.checkpoint_due = true, .finished = true};
-  }
-  std::uint64_t last_step() const override { return 0; }
-};
-
-std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& stage) {
+std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& stage,
+                                        const Scene& scene) {
   const Parameters& p = inputs.parameters;
   const std::uint64_t cycles = stage.target_cycles;
-  if (inputs.file && !inputs.file->settles) return std::make_unique<AsPlaced>();
+  if (inputs.file && !inputs.file->settles) {
+    return std::make_unique<CyclicShear>(Drive{}, 0, 0);  // the grains stay where they are
+  }
   if (inputs.stage == StageKind::prepare) {
     return std::make_unique<Settle>(
         SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
                          p.settle_time_limit_s, p.max_overlap_diameters},
-        settle_scene(p));
+        scene);
   }
   if (inputs.stage == StageKind::stiffen) {
     StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
     stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
-    return std::make_unique<Stiffen>(stiffen, stiffen_scene(p));
+    return std::make_unique<Stiffen>(stiffen, scene);
   }
   return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(stage.asks, drive(p)));
 }
@@ -117,7 +110,7 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
   limit = overlap_limit(store, stage, limit);
   require_memory(inputs);
   const Scene scene = make_scene(inputs);
-  auto protocol = make_protocol(inputs, stage);
+  auto protocol = make_protocol(inputs, stage, scene);
   return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
@@ -589,7 +582,8 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// If it is not, run_stage reports what is wrong with it. A pruned one can be regenerated.
+// Whether the newest checkpoint can be read, or was pruned and can be recomputed. If not,
+// run_stage() reports the damage.
 bool newest_is_sound(const Store& store, const Stage& run) {
   const auto found = store.checkpoints(run.id, Listed::and_pruned);
   return !found.empty() &&

@@ -56,17 +56,6 @@ bool shows_colours(std::FILE* stream) {
   return moves_cursor(stream) && environment("NO_COLOR").empty();
 }
 
-std::string for_terminal(std::string_view text) {
-  std::string shown;
-  for (;;) {
-    const std::size_t end = text.find('\n');
-    shown += without_controls(text.substr(0, end));
-    if (end == std::string_view::npos) return shown;
-    shown += '\n';
-    text.remove_prefix(end + 1);
-  }
-}
-
 std::size_t columns_of(std::string_view text) {
   std::size_t columns = 0;
   while (!text.empty()) {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "experiments/manifest/document.hpp"
+
 namespace shearcell {
 
 /// Columns of the terminal behind the stream; none when it is a file or a pipe.
@@ -23,10 +25,6 @@ bool moves_cursor(std::FILE* stream);
 /// Whether colours may be written to the stream: such a terminal, and NO_COLOR
 /// (https://no-color.org) is not set to anything.
 bool shows_colours(std::FILE* stream);
-
-/// The text without control sequences: bytes that are not UTF-8, control characters other than a
-/// line feed, and characters that change the direction of text are shown as \x1b or \u202e.
-std::string for_terminal(std::string_view text);
 
 /// Columns of a terminal that a UTF-8 text takes: two for most Chinese, Japanese and Korean
 /// characters, none for accents that join the character before them.

@@ -29,7 +29,7 @@ std::string xyz(const std::string& comment, const std::string& rows, int count =
 }
 
 std::string data(const std::string& header, const std::string& sections) {
-  return "title\n\n2 atoms\n1 atom types\n" + header + "\n" + sections;
+  return "soft atoms\n\n2 atoms\n1 atom types\n" + header + "\n" + sections;
 }
 
 const std::string kBounds = "0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n";
@@ -75,7 +75,7 @@ const std::vector<BadPacking> kBad = {
      "beside `file` in the manifest.",
      kUnstated},
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
-     "a.csv:1:1: states lengths in m. The manifest says `unit: d`: leave that out."},
+     "a.csv:1:1: states lengths in m. The manifest says `unit: d`: remove that key."},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:13: length_unit: is not read (got nm). It takes m or d."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
@@ -85,10 +85,10 @@ const std::vector<BadPacking> kBad = {
     {"NotANumber", "a.xyz", xyz("", "A 1 1 1\nA 3 three 3\n"),
      "a.xyz:4:5: y: is not a number (got three). Write it in decimal digits, as 1.5e-3."},
     {"NaN", "a.xyz", xyz("", "A 1 1 nan\nA 3 3 3\n"),
-     "a.xyz:3:7: z: is not finite, or beyond 1e100 (got nan). Remove this grain, or mend its "
+     "a.xyz:3:7: z: is not finite, or beyond 1e100 (got nan). Remove this grain, or correct its "
      "value."},
     {"Infinite", "a.csv", "x,y,z\n1,2,-inf\n",
-     "a.csv:2:5: z: is not finite, or beyond 1e100 (got -inf). Remove this grain, or mend its "
+     "a.csv:2:5: z: is not finite, or beyond 1e100 (got -inf). Remove this grain, or correct its "
      "value."},
     {"BeyondDouble", "a.csv", "x,y,z\n1,2,1e999\n",
      "a.csv:2:5: z: is not a number (got 1e999). Write it in decimal digits, as 1.5e-3."},
@@ -103,7 +103,7 @@ const std::vector<BadPacking> kBad = {
     {"VelocityIncomplete", "a.csv", "x,y,z,vx\n1,2,3,0\n",
      "a.csv:1:1: the column vy is missing. The first line names the columns, as x_m,y_m,z_m."},
     {"ColumnTwice", "a.csv", "x,y,z,x\n1,2,3,4\n",
-     "a.csv:1:7: names a column that stands there twice (got x). Keep one of them."},
+     "a.csv:1:7: names a column that occurs twice (got x). Keep one of them."},
     {"HeaderAlone", "a.csv", "x,y,z\n", "a.csv:1:1: the file holds no grains. " + kFormats},
     {"HeaderMissing", "a.csv", "1,2,3\n",
      "a.csv:1:1: the column x is missing. The first line names the columns, as x_m,y_m,z_m."},
@@ -127,7 +127,7 @@ const std::vector<BadPacking> kBad = {
     {"PropertiesFlat", "a.xyz", xyz("Properties=pos:R:2", "1 1\n3 3\n"),
      "a.xyz:2:18: Properties: is not the number of columns of pos (got 2). It takes 3."},
     {"KeyTwice", "a.xyz", xyz(kLattice + kLattice, "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:29: is a key that stands there twice (got Lattice). Keep one of them."},
+     "a.xyz:2:29: is a key that occurs twice (got Lattice). Keep one of them."},
     {"BoxLeans", "a.xyz", xyz("Lattice=\"9 0 0 0.5 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. A start is upright. Of a sheared "
      "cell, write the state at the end of a cycle."},

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "analysis/measures.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
@@ -62,7 +64,9 @@ TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
   const std::vector<Case> cases = {
       {{ask(50, ten)}, measured({1, 9.99}), -1},
       {{ask(50, ten)}, measured({1, 10}), 2},
-      {{ask(50, ten)}, measured({1, 12, 3}), 2},        // reached once is reached
+      {{ask(50, ten)}, measured({1, 12, 3}), 2},  // reached once is reached
+      {{ask(50, ten)}, measured({1, NAN}), -1},   // a cell without interior grains
+      {{ask(50, ten)}, measured({NAN, 10}), 2},
       {{ask(50, later)}, measured({1, 10, 11}), -1},    // cycle 4 of 5
       {{ask(50, later)}, measured({1, 10, 11, 9}), 2},  // the first checkpoint at or after 5
       {{ask(50, ten, 4)}, measured({1, 10}), -1},       // it has no checkpoint at cycle 2
