@@ -33,7 +33,7 @@ Facts facts(const bench::SpeedResult& r) {
 
 void speed(bench::SpeedOptions& options, Context& context) {
   options.report = [](const std::string& what) { print_stderr("{}\n", what); };
-  print_list("sizes", rows_of(bench::measure_speed(options), facts), context);
+  print_list("sizes", list_of(bench::measure_speed(options), facts), context);
   if (context.json) return;
   fmt::print(
       "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "

@@ -133,7 +133,8 @@ void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
 
 std::filesystem::path existing_folder(const std::string& store) {
   std::filesystem::path place = std::filesystem::absolute(store);
-  while (!is_directory(place) && place.has_relative_path()) place = place.parent_path();
+  std::error_code ignored;  // a folder that may not be entered is not there
+  while (!is_directory(place, ignored) && place.has_relative_path()) place = place.parent_path();
   return place;
 }
 

@@ -146,9 +146,9 @@ std::filesystem::path existing_folder(const std::string& store);
 /// Prints one JSON value, indented by two.
 void print_json(const nlohmann::json& facts);
 
-/// A JSON array with facts(item) for each item.
-nlohmann::json json_list(const auto& items, const auto& facts) {
-  nlohmann::json list = nlohmann::json::array();
+/// facts(item) for each item.
+auto list_of(const auto& items, const auto& facts) {
+  std::vector<std::decay_t<decltype(facts(*std::begin(items)))>> list;
   for (const auto& item : items) list.push_back(facts(item));
   return list;
 }
@@ -176,13 +176,6 @@ void print_table(const std::vector<Facts>& rows);
 /// Prints "HEADING  text" for each fact that has a heading. Further lines of the text stand below
 /// the first one; an empty text has no line.
 void print_lines(const Facts& facts);
-
-/// facts(item) for each item.
-std::vector<Facts> rows_of(const auto& items, const auto& facts) {
-  std::vector<Facts> rows;
-  for (const auto& item : items) rows.push_back(facts(item));
-  return rows;
-}
 
 /// Prints {"NAME": [...]} or a table.
 void print_list(const char* name, const std::vector<Facts>& rows, const Context& context);

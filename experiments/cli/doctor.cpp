@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "core/machine.hpp"
@@ -38,14 +37,9 @@ Check vectors(const std::string& simd) {
 }
 
 Check memory() {
-  std::ifstream file("/proc/meminfo");
-  double kib = 0;
-  for (std::string key, unit; file >> key >> kib && std::getline(file, unit);) {
-    if (key != "MemAvailable:") continue;
-    return {"memory", format_bytes(kib * 1024) + " free", "ok",
-            fmt::format("enough for {:.1e} grains at once", kib * 1024 / kRunBytesPerGrain)};
-  }
-  return {"memory", "unknown", "ok", ""};
+  const double bytes = machine_memory();
+  return {"memory", format_bytes(bytes) + " usable", "ok",
+          fmt::format("enough for {:.1e} grains at once", bytes / kRunBytesPerGrain)};
 }
 
 Check disk(const fs::path& place) {
@@ -151,7 +145,7 @@ void doctor(const DoctorOptions& options, Context& context) {
             {"found", f.found, "found"},
             {"advice", f.advice}};
   };
-  print_list("findings", rows_of(findings, facts), context);
+  print_list("findings", list_of(findings, facts), context);
   if (context.json) return;
   fmt::print("\n");
   for (const Check& f : findings) {

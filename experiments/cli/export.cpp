@@ -134,11 +134,11 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
     throw std::invalid_argument(fmt::format(
         "run {:.8} has no stored checkpoint{}{}; {}", run.id, cycles.empty() ? "" : " in cycles ",
         cycles,
-        pruned > 0 ? "`shearcell regenerate` makes those that were pruned again"
+        pruned > 0 ? "`shearcell regenerate` recomputes the pruned ones"
                    : fmt::format("it has cycles {} to {}", all.front().cycle, all.back().cycle)));
   }
   if (pruned > 0) {
-    print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` makes them again)\n",
+    print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
                  run.id, counted(pruned, "checkpoint"));
   }
   return records;
@@ -203,7 +203,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   return files_of(out);
 }
 
-// Readers of a crate take other texts for the name of a file in it.
+// Readers of an RO-Crate take a text that is no web address for the name of a file in the crate.
 std::string check_uri(const std::string& text) {
   const bool web = text.starts_with("https://") || text.starts_with("http://");
   return web && text.find_first_of(" \"<>\\") == std::string::npos
@@ -310,7 +310,7 @@ void export_runs(const ExportOptions& options, Context& context) {
     throw UsageError(problem.what());
   }
   if (context.json) {
-    const nlohmann::json list = json_list(done, [&](const Exported& one) -> nlohmann::json {
+    const nlohmann::json list = list_of(done, [&](const Exported& one) -> nlohmann::json {
       return {{"run", one.run},
               {"format", options.format},
               {"out", one.out.string()},

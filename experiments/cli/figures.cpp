@@ -33,7 +33,7 @@ nlohmann::json facts(const ComputedFigure& result) {
           {"runs", result.runs},
           {"checkpoints", result.checkpoints},
           {"measured", result.measured.size()},
-          {"files", json_list(result.files, [](const auto& file) { return file.string(); })},
+          {"files", list_of(result.files, [](const auto& file) { return file.string(); })},
           {"notes", result.notes},
           {"empty", result.empty},
           {"undrawn", result.undrawn},

@@ -18,6 +18,12 @@ std::string gist(const nlohmann::json& body) {
   return "";
 }
 
+/// The stream with an id of eight digits.
+std::string shown_stream(const std::string& stream) {
+  const bool has_id = stream.starts_with("run/") || stream.starts_with("manifest/");
+  return has_id ? stream.substr(0, stream.find('/') + 9) : stream;
+}
+
 void print_log(const std::string& run, Context& context) {
   const Store store(context.store, Access::read);
   const std::string stream = run.empty() ? "" : run_stream(store.find_stage(run).id);
@@ -26,13 +32,13 @@ void print_log(const std::string& run, Context& context) {
     std::string most_useful = gist(body);
     return {{"seq", event.seq, "seq"},
             {"recorded_at", event.recorded_at, "UTC", event.recorded_at.substr(0, 19)},
-            {"stream", event.stream, "stream", event.stream.substr(0, event.stream.find('/') + 9)},
+            {"stream", event.stream, "stream", shown_stream(event.stream)},
             {"version", event.version},
             {"type", event.type, "event"},
             {"payload", std::move(body), "", std::move(most_useful)},
             {"hash", event.hash}};
   };
-  print_list("events", rows_of(store.events(stream), facts), context);
+  print_list("events", list_of(store.events(stream), facts), context);
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ std::string reference(const CLI::App& program) {
 void add_manual(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand(
       "manual", "Print the reference of manifest keys, measures and commands, in Markdown");
-  command->add_flag("--markdown")->description("As without it");
+  command->add_flag("--markdown")->description("No effect: the manual is always in Markdown");
   command->footer("Example:\n  shearcell manual > reference.md");
   command->callback([&app] { fmt::print("{}", reference(app)); });
 }

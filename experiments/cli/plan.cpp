@@ -149,7 +149,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("less, by how much is known once such a run has ended\n");
+    fmt::print("less; how much less is known after a run with this `until` has ended\n");
   } else {
     fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
@@ -238,11 +238,11 @@ void plan(const PlanOptions& options, Context& context) {
       joined(plans, [](const Plan& one) { return one.manifest.experiment; });
   const std::string scale = joined(plans, [](const Plan& one) { return scale_name(one.scale); });
   const std::vector<Facts> stages =
-      rows_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
+      list_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", experiment},
                        {"scale", scale},
-                       {"experiments", json_list(plans, experiment_facts)},
+                       {"experiments", list_of(plans, experiment_facts)},
                        {"notes", notes},
                        {"warnings", context.warnings},
                        {"runs", runs_planned},

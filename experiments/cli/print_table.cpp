@@ -92,7 +92,7 @@ nlohmann::json to_json(const Facts& facts) {
 }
 
 nlohmann::json to_json(const std::vector<Facts>& rows) {
-  return json_list(rows, [](const Facts& row) { return to_json(row); });
+  return list_of(rows, [](const Facts& row) { return to_json(row); });
 }
 
 void print_table(const std::vector<Facts>& all) {

@@ -64,17 +64,20 @@ double bytes_of(const std::vector<CheckpointRecord>& records) {
 void print_plan(const Store& store, const std::vector<CheckpointRecord>& records) {
   std::map<std::string, std::vector<CheckpointRecord>> freed_by_run;
   for (const CheckpointRecord& record : records) freed_by_run[record.run].push_back(record);
-  print_table(rows_of(freed_by_run, [&](const auto& freed) -> Facts {
+  print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage run = store.stage(id);
     // All experiments that have the run: they lose its files too.
     std::set<std::string> experiments;
     for (const Ask& m : run.asks) experiments.insert(m.experiment);
+    // Also files that a prune left behind when it was killed.
+    const auto left = std::ranges::count(of_run, CheckpointState::pruned, &CheckpointRecord::state);
+    const std::size_t recorded = store.checkpoints(id).size() + static_cast<std::size_t>(left);
     return {{"", id.substr(0, 8), "run"},
             {"", fmt::format("{}", fmt::join(experiments, ", ")), "experiment"},
             {"", name_of(run.state), "state"},
             {"", of_run.size(), "to free"},
-            {"", store.checkpoints(id).size(), "of"},
+            {"", recorded, "of"},
             {"", format_bytes(bytes_of(of_run)), "bytes"}};
   }));
 }
@@ -124,7 +127,7 @@ void prune(const PruneOptions& options, Context& context) {
               {"size", record.size}};
     };
     const std::vector<CheckpointRecord> all = with_leftovers();
-    print_json({{"checkpoints", json_list(all, checkpoint)},
+    print_json({{"checkpoints", list_of(all, checkpoint)},
                 {"leftovers", leftovers.size()},
                 {"kept_of_other_engines", kept},
                 {"measured", freed.measured},
@@ -283,7 +286,8 @@ deletes checkpoints of LAMMPS.
 Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
 plots need, and what the figures of the store's manifests simulate. The results are in
 derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its
-file. Cycles that a run adds later lack measures over the pruned ones, as msd_10_cycles_d2.
+file. If a run is continued later, its new cycles lack measures that need a pruned checkpoint, such
+as msd_10_cycles_d2.
 Records stay. `run` and `resume` recompute the files that they need, `regenerate` all others.
 Examples:
   shearcell prune --keep-every 10

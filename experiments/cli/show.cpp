@@ -42,8 +42,8 @@ Facts facts_of(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// With the places of the memberships whose figures and tables have the checkpoint: none if only an
-/// interruption or another experiment's cadence left it.
+/// Also `asked_by`: the indices in `memberships` of the places whose figures and tables use the
+/// checkpoint; empty if only an interruption or another experiment left it.
 std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -52,7 +52,7 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
       asked_by[c.step].push_back(k);
     }
   }
-  return rows_of(checkpoints, [&](const CheckpointRecord& c) {
+  return list_of(checkpoints, [&](const CheckpointRecord& c) {
     Facts facts = facts_of(c);
     facts.push_back({"asked_by", asked_by[c.step]});
     return facts;
@@ -173,7 +173,7 @@ void show_run(const Store& store, const Stage& run, Context& context) {
   print_text("\n");
   print_lines(facts_of_id(run));
   print_text("\n");
-  print_table(rows_of(checkpoints, [](const CheckpointRecord& c) { return facts_of(c); }));
+  print_table(list_of(checkpoints, [](const CheckpointRecord& c) { return facts_of(c); }));
   if (const Facts measures = newest_measures(store, checkpoints, context); !measures.empty()) {
     print_text("\nnewest checkpoint:\n");
     print_lines(measures);

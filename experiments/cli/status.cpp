@@ -108,7 +108,7 @@ Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
                {"variant", place.variant},
                {"kind", run.kind},
                {"parent", run.parent},
-               {"places", json_list(listed.places, place_facts)},
+               {"places", list_of(listed.places, place_facts)},
                {"target_cycles", run.target_cycles},
                {"step", run.step},
                {"attempts", run.attempts},
@@ -235,19 +235,19 @@ void status(const RunSelection& selection, Context& context) {
   const View view(selection, context);
   if (!context.json) return print(view);
   const std::string& problem = view.queue.problem;
-  print_json({{"runs", json_list(view.runs,
-                                 [&](const PlacedRun& run) {
-                                   return to_json(facts(run, run.places.front(), view));
-                                 })},
+  print_json({{"runs", list_of(view.runs,
+                               [&](const PlacedRun& run) {
+                                 return to_json(facts(run, run.places.front(), view));
+                               })},
               {"estimate", facts(estimate(view))},
-              {"submissions", json_list(view.queue.submissions,
-                                        [](const Submission& open) -> nlohmann::json {
-                                          return {{"id", open.id},
-                                                  {"job", open.job},
-                                                  {"fold_job", open.merge_job},
-                                                  {"tasks", open.tasks.size()},
-                                                  {"in_queue", open.queue.size()}};
-                                        })},
+              {"submissions", list_of(view.queue.submissions,
+                                      [](const Submission& open) -> nlohmann::json {
+                                        return {{"id", open.id},
+                                                {"job", open.job},
+                                                {"fold_job", open.merge_job},
+                                                {"tasks", open.tasks.size()},
+                                                {"in_queue", open.queue.size()}};
+                                      })},
               {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
 }
 

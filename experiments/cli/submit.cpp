@@ -42,7 +42,7 @@ struct Result {
 void print(const Result& result, const Context& context) {
   const Proposal& proposal = result.proposal;
   std::size_t runs = 0, task = 0;
-  const std::vector<Facts> tasks = rows_of(proposal.shares, [&](const Share& share) -> Facts {
+  const std::vector<Facts> tasks = list_of(proposal.shares, [&](const Share& share) -> Facts {
     runs += share.runs.size();
     const double seconds = proposal.seconds(share);
     return {{"", ++task, "task"},
@@ -133,8 +133,8 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
 json event_facts(const std::vector<Plan>& plans) {
   const auto sha = [](const Plan& plan) { return sha256_hex(plan.manifest.text); };
   return {{"scheduler", "slurm"},
-          {"manifests", json_list(plans, sha)},
-          {"scales", json_list(plans, [](const Plan& plan) { return plan.scale; })}};
+          {"manifests", list_of(plans, sha)},
+          {"scales", list_of(plans, [](const Plan& plan) { return plan.scale; })}};
 }
 
 /// Merges what earlier submissions computed and no job merged, as after `scancel`, and declares the
@@ -171,7 +171,7 @@ void submit(const SubmitOptions& options, Context& context) {
   check_time(options.job);
   const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
   const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
-  if (const std::string why = unfit_path(folder); !why.empty()) throw std::runtime_error(why);
+  if (const std::string why = unfit_path(folder); !why.empty()) throw UsageError(why);
   if (!options.dry_run) require_slurm();
   std::optional<Store> store = options.dry_run
                                    ? open_if_there(context.store)

@@ -128,7 +128,7 @@ nlohmann::json facts(const VerifyReport& report) {
           {"bytes", report.bytes},
           {"orphans", report.orphans},
           {"head", {{"seq", report.head.seq}, {"hash", report.head.hash}}},
-          {"findings", json_list(report.findings, finding_facts)}};
+          {"findings", list_of(report.findings, finding_facts)}};
 }
 
 // Checks runs and cached measures. Reads records and files, so it does nothing if the store is

@@ -58,34 +58,33 @@ void add_checkpoints(const Store& store, const Figure& figure, FigureRun& run) {
   }
 }
 
-/// The number of checkpoints that the figure asks for, up to the end of the run, and that are
+/// The number of checkpoints that the figure asks for, before the run's last one, and that are
 /// missing.
-std::ptrdiff_t missing_for(const Store& store, const Figure& figure, const FigureRun& run) {
-  const std::optional<Drive> motion = shear_drive(run.stage);
-  if (!motion) return 0;
-  Ask ask = ask_for(figure, run);
-  ask.until = nullptr;
-  ask.target_cycles = static_cast<std::uint64_t>(last_cycle(figure, run));
-  const Outlook look =
-      outlook(run.stage, {&ask, 1}, store.checkpoints(run.stage.id, Listed::and_pruned));
-  const double first = first_cycle(figure) * static_cast<double>(cycle_steps(*motion));
-  const auto taken = [first](std::uint64_t step) { return static_cast<double>(step) >= first; };
-  return std::ranges::count_if(look.missing, taken) + std::ranges::count_if(look.lost, taken);
+std::size_t missing_for(const Figure& figure, const FigureRun& run) {
+  if (figure.form == FigureForm::table) return 0;
+  std::size_t missing = 0;
+  for (const std::uint64_t step :
+       asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last_cycle(figure, run))) {
+    const bool made =
+        std::ranges::binary_search(run.checkpoints, step, {}, &CheckpointMeasures::step);
+    missing += step < run.stage.step && !made ? 1 : 0;
+  }
+  return missing;
 }
 
 /// Notes how many checkpoints are missing up to the end of the runs: a manifest may state a denser
 /// cadence than that of the runs.
-void note_never_made(const Store& store, const Figure& figure, CollectedRuns& collected) {
+void note_never_made(const Figure& figure, CollectedRuns& collected) {
   struct Lack {
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
   for (const FigureRun& run : collected.runs) {
-    const std::ptrdiff_t missing = missing_for(store, figure, run);
+    const std::size_t missing = missing_for(figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
-    lack.checkpoints += static_cast<std::size_t>(missing);
+    lack.checkpoints += missing;
     lack.runs.insert(run.stage.id.substr(0, 8));
   }
   for (const auto& [of_lammps, lack] : lacks) {
@@ -308,7 +307,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
                                unknown_name("figure", name, supplement));
     }
   }
-  // Beside figures of the supplement; with experiments of a user's own only by name.
+  // Without names, table1 is drawn only if a manifest lists figures of the supplement.
   const bool lists_any = std::ranges::any_of(
       manifests, [](const RegisteredManifest& manifest) { return !manifest.figures.empty(); });
   // The summary of one experiment would say what its figures say.
@@ -382,7 +381,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   if (measured) {
     leave_out_not_begun(store, wanted.figure, collected);
     if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
-    note_never_made(store, wanted.figure, collected);
+    note_never_made(wanted.figure, collected);
   }
   for (const FigureRun& run : collected.runs) {
     const nlohmann::json& resolved = run.stage.resolved;

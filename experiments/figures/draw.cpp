@@ -120,7 +120,7 @@ bool has_no_value(const FigureTable& table) {
   });
 }
 
-/// Also says which runs were selected and what was left out.
+/// What the panels show, the number of runs, which runs were selected and what was left out.
 std::string caption(const ComputedFigure& figure, const RunSelection& selected) {
   const std::map<std::string, std::size_t>& runs = figure.runs_by_variant;
   std::vector<std::string> variants, counts;

@@ -43,7 +43,8 @@ std::map<std::string, std::vector<Figure>> simulating_figures(const Store& store
   return figures;
 }
 
-/// The cache itself is not synced, since it can be computed again; not after a prune.
+/// Writes the cache to the disk. DerivedCache does not, because measures can be recomputed; after a
+/// prune they cannot.
 void sync_cache(const Store& store) {
   const std::filesystem::path file = store.folder() / DerivedCache::kFile;
   for (const std::filesystem::path& path : {file, store.folder()}) {

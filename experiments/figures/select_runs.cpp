@@ -136,13 +136,14 @@ NewestRuns newest_runs(std::vector<Run> selected) {
   chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
-  std::map<ExperimentScale, std::vector<std::string>> left;  // variants
+  // Variants, by experiment, scale and version of the manifest.
+  std::map<std::pair<ExperimentScale, std::string>, std::vector<std::string>> left;
   for (const Run& one : std::ranges::subrange(older, selected.end())) {
     const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {
       return place(other) == place(one) && other.manifest == one.manifest;
     });
     if (instead == chosen.runs.end()) {
-      left[experiment_scale(one)].push_back(one.variant);
+      left[{experiment_scale(one), one.manifest}].push_back(one.variant);
     } else {
       chosen.notes.push_back(fmt::format(
           "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
@@ -150,12 +151,18 @@ NewestRuns newest_runs(std::vector<Run> selected) {
           one.experiment, one.stage.id, one.variant, one.seed, instead->stage.id));
     }
   }
-  for (const auto& [where, variants] : left) {
+  for (const auto& [version, variants] : left) {
+    const auto& [where, manifest] = version;
+    const auto shown = std::ranges::find(chosen.runs, where, experiment_scale);
+    const auto count = std::ranges::count(chosen.runs, where, experiment_scale);
     chosen.notes.push_back(fmt::format(
-        "experiment {}: left out: {} of another version of its manifest: {}; to show all, run one "
-        "manifest that states the runs of both, which computes nothing new",
-        where.first, counted(variants.size(), "run"),
-        some_of(std::set<std::string>(variants.begin(), variants.end()))));
+        "experiment {} at scale {}: left out: {} of another version of its manifest, {:.8}: {}; "
+        "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
+        "that states the runs of both: it computes nothing new",
+        where.first, scale_name(where.second), counted(variants.size(), "run"), manifest,
+        some_of(std::set<std::string>(variants.begin(), variants.end())),
+        counted(static_cast<std::size_t>(count), "run"),
+        shown == chosen.runs.end() ? "" : fmt::format(", {:.8}", shown->manifest)));
   }
   return chosen;
 }

@@ -99,7 +99,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
-/// Those that encode_frame() has in more digits.
+/// Whether encode_frame() stores the measure in an array of its own, with more digits than others.
 bool has_more_digits(const Measure& measure) {
   return measure.name == "phi_local" || measure.name == "q6" || measure.name == "structure" ||
          measure.name == "crystallite";

@@ -152,27 +152,15 @@ json panel_json(const FigureTable& table, const std::string& id, const WantedFig
           {"csv", to_csv(table)}};
 }
 
-/// Whether the record is of the same figure, with the same scale, states and analysis version.
-bool is_record_of(const Store& store, const FigureRecord& record, const FigureLineage& lineage) {
-  if (figure_name(record) != figure_name(lineage.record)) return false;
-  const auto key = [](const FigureInput& i) {
-    return std::tie(i.run, i.experiment, i.variant, i.seed, i.manifest, i.overrides, i.states);
-  };
-  try {
-    const FigureLineage recorded = figure_lineage(store, record);
-    return recorded.scale == lineage.scale &&
-           recorded.analysis_version == lineage.analysis_version &&
-           std::ranges::equal(recorded.inputs, lineage.inputs, {}, key, key);
-  } catch (const StoreDamaged&) {
-    return false;
-  }
-}
-
-/// The newest record of the figure with these inputs.
-std::optional<FigureRecord> recorded_as(const Content& content, const FigureLineage& lineage) {
+/// The newest record of the figure with the same scale, states and analysis version.
+std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
   std::optional<FigureRecord> newest;
-  for (const FigureRecord& record : figure_records(content.store)) {
-    if (is_record_of(content.store, record, lineage)) newest = record;
+  for (FigureRecord& record : figure_records(store)) {
+    json facts = record.provenance;
+    if (!facts.is_object()) continue;
+    facts.erase("made");
+    facts["outputs"] = json::object();  // of draw_figure()
+    if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;
 }
@@ -228,7 +216,7 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
           {"inputs", inputs}};
 }
 
-/// What the figure says of the store goes into the report.
+/// The figure as JSON. Also adds its damage, its notes and its manifests to `content`.
 json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Content& content) {
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
@@ -263,7 +251,7 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
           {"panels", panels},
           {"claims", claims},
           {"warnings", warnings},
-          {"lineage", lineage_json(lineage, figure, panels, recorded_as(content, lineage))}};
+          {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.store, figure))}};
 }
 
 /// A stage with its attempts and checkpoints.

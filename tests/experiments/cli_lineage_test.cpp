@@ -119,6 +119,7 @@ TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
   before.insert("out/report.html");
   EXPECT_EQ(listing(), before);
   EXPECT_EQ(json({"log", "--json"}), log);
+  expect(0, {"log"}, {" figure/tiny/base/S2 "});
   EXPECT_TRUE(has(read_bytes(path("out/report.html")), "as recorded"));
 
   const std::string first = read_bytes(path("out/report.html"));

@@ -211,6 +211,16 @@ TEST_F(DrawFigure, AGroupedFigureDoesNotPoolVersions) {
   EXPECT_EQ(distinct_runs(collect_runs(store_, onset, {})).size(), 2U);
 }
 
+// The manifest asks for cycles 0 and 2 of these cycles.
+TEST_F(DrawFigure, MissesNoCheckpointThatTheManifestDoesNotAskFor) {
+  compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"), {.cycles = 4});
+  WantedFigure begun = kS2;
+  begun.figure.within = {{0, 3}};
+  const CollectedRuns collected = collect_runs(store_, begun, {});
+  EXPECT_EQ(collected.notes, std::vector<std::string>());
+  EXPECT_EQ(collected.runs.at(0).checkpoints.size(), 2U);
+}
+
 TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 2}\n"));
   compute(store_, tiny_manifest("", "checkpoints: {every_cycles: 1}\n"));

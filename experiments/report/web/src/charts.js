@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Chart descriptions of runs: {id, kind, scale, variant, seed, cycle: [...], phi: [...], ...}, with an
-// array over the checkpoints for each measure (experiments/report/report_data.cpp).
+// array over the checkpoints for each measure (traces_of in experiments/report/page.cpp).
 import {italic, plain} from "./dom.js";
 
 const labels = {

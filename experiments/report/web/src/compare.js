@@ -23,6 +23,7 @@ function variantsOf(experiments) {
 function factsOf({experiment, name, runs}) {
   const mean = (key, digits) => {
     const last = runs.map((run) => run[key].at(-1)).filter((value) => value !== null);
+    if (last.length === 0) return "–";
     return (last.reduce((sum, value) => sum + value, 0) / last.length).toFixed(digits);
   };
   return `${experiment}, ${name}: ${runs.length} ${runs.length === 1 ? "run" : "runs"}, mean of the last ` +

@@ -20,6 +20,10 @@ export const sub = (text) => [[text, "sub"]];
 export const written = (label) =>
   label.map(([text, style]) => ["i", "sub", "sup"].includes(style) ? element(style, {}, text) : text);
 
+// Least and greatest value. (Math.min(...values) fails for some 100,000 values.)
+export const extentOf = (values) =>
+  values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+
 // Fills a <select>: an option for each item, valued by its place, in groups.
 export function addOptions(select, items, groupOf, textOf) {
   const groups = new Map();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the chart descriptions of analysis/chart.hpp with Plotly.
 import Plotly from "plotly.js-basic-dist-min";
-import {coloursOf, element, onThemeChange} from "./dom.js";
+import {coloursOf, element, extentOf, onThemeChange} from "./dom.js";
 
 const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's 4 to 13
 const font = {family: '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif', size: 13};
@@ -76,7 +76,7 @@ function tracesOf(chart, width, dark) {
 
 function axisOf(axis, values, color) {
   const {log, whole, low, high, clip} = axis;
-  const [least, most] = [Math.min(...values), Math.max(...values)];
+  const [least, most] = extentOf(values);
   return {
     title: {text: markup(withUnit(axis)), standoff: 8}, type: log ? "log" : "linear", color,
     ...(clip && {range: log ? [Math.log10(low), Math.log10(high)] : [low, high]}),

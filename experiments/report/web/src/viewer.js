@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The packing viewer: one packing or two side by side, with one set of controls for both. The template
 // elements viewer-parts and pane-parts (page.html) have its parts, found by `data-part`.
-import {addOptions, coloursOf, element, onThemeChange, plain, save, written} from "./dom.js";
+import {addOptions, coloursOf, element, extentOf, onThemeChange, plain, save, written} from "./dom.js";
 import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
 import {Plot} from "./plot.js";
 import {PackingScene} from "./scene.js";
@@ -103,8 +103,9 @@ class Pane {
     const values = key === "none" ? [] : this.packing.frames.flatMap(({profiles}) => profiles[key]).filter(Number.isFinite);
     host.hidden = values.length === 0;
     if (host.hidden) return;
+    const [low, high] = extentOf(values);
     const chart = {
-      x: {label: plain(name), unit: [], low: Math.min(...values), high: Math.max(...values)},
+      x: {label: plain(name), unit: [], low, high},
       y: {label: plain("height"), unit: plain("d"), low: 0, high: null}, title: [], lines: [],
       series: [{
         title: [], name: [], colour: "#d55e00", point: 7, line: true, shift: 0,
