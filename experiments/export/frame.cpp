@@ -21,7 +21,7 @@ bool enters_frames(const Provider& one) {
 void add_columns(const Measures& measures, Frame& frame) {
   for (const Measure* measure : all_measures(MeasureKind::grains)) {
     const auto found = measures.of_grains.find(measure->name);
-    std::vector<double> values(frame.grains, std::nan(""));
+    std::vector<double> values(frame.grains, measure->scale.whole ? -1 : std::nan(""));
     if (found != measures.of_grains.end()) values = found->second;
     values.resize(frame.particles(), measure->scale.of_wall_grains);
     frame.columns.push_back({std::string(measure->name), measure->scale.whole, std::move(values)});

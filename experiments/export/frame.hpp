@@ -46,7 +46,7 @@ struct Frame : Particles {
   /// The measures of the frame by their names in `table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
+  /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
   std::vector<FrameColumn> columns;
   std::vector<FrameContact> contacts;  ///< by `grain`
 

@@ -58,10 +58,13 @@ class Trajectory {
     image.row(2) = Eigen::Map<const Eigen::RowVectorXi>(frame.image.data(), image.cols());
     element("particles/all/image", H5T_STD_I32LE, {particles_, 3}, image.data());
     for (const FrameColumn& column : frame.columns) {
-      const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
-      element("particles/all/" + column.name, column.whole ? H5T_STD_I32LE : H5T_IEEE_F64LE,
-              {particles_},
-              column.whole ? static_cast<const void*>(whole.data()) : column.values.data());
+      const std::string path = "particles/all/" + column.name;
+      if (column.whole) {
+        const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
+        element(path, H5T_STD_I32LE, {particles_}, whole.data());
+      } else {
+        element(path, H5T_IEEE_F64LE, {particles_}, column.values.data());
+      }
     }
     const Handle hash(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
     require(H5Tset_size(hash.get(), kHashDigits), "a text type");

@@ -72,9 +72,10 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
            out.array("radius", "Float64", 1, std::vector<double>(f.particles(), f.radius));
   piece += out.array("type", "Int32", 1, f.type);
   for (const FrameColumn& column : f.columns) {
-    const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
-    piece += column.whole ? out.array(column.name, "Int32", 1, whole)
-                          : out.array(column.name, "Float64", 1, column.values);
+    const std::vector<double>& all = column.values;
+    piece += column.whole ? out.array(column.name, "Int32", 1,
+                                      std::vector<std::int32_t>(all.begin(), all.end()))
+                          : out.array(column.name, "Float64", 1, all);
   }
   piece += "</PointData>\n<Verts>\n" +
            out.array("connectivity", "Int64", 1, count_from(0, f.particles())) +
