@@ -157,7 +157,7 @@ void check_time(const JobOptions& job) {
   if (!limit) {
     throw CLI::ValidationError("--time", "'" + job.time +
                                              "' is not a time limit of Slurm: write MINUTES, "
-                                             "HH:MM:SS or DAYS-HH:MM:SS");
+                                             "HH:MM:SS, DAYS-HH:MM:SS or UNLIMITED");
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
