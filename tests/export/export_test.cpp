@@ -447,7 +447,7 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
   Frame frame = frame_of(checkpoints().back(), {}, about());
   const FrameWriter writers[] = {vtk_writer(folder.path(), 2), lammps_writer(folder.path())};
   for (const double cycle : {100.00002, 100.00004}) {
-    frame.cycle = cycle;
+    frame.checkpoint.cycle = cycle;
     for (const FrameWriter& write : writers) write(frame);
   }
   for (const char* name : {"grains_100.00002.vtp", "cell_100.00004.vtp", "frame_100.00004.data"}) {
