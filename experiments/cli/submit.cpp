@@ -118,8 +118,8 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
                               "`shearcell submit` again, or `merge` them, when the job has ended",
                               error.what()));
   }
-  store.record_submission("JobQueued",
-                          {{"submission", submission.id}, {"job", job}, {"fold_job", merging}});
+  store.record(kSubmissions,
+               {"JobQueued", {{"submission", submission.id}, {"job", job}, {"fold_job", merging}}});
   result.facts = {{"submission", submission.id},
                   {"job", job},
                   {"fold_job", merging},

@@ -706,7 +706,8 @@ Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& 
                           {"host", host_facts()}};
   if (result.from) facts["from"] = {{"sha256", result.from->sha256}, {"step", result.from->step}};
   if (result.divergence) facts.update(to_json(*result.divergence));
-  store.record_replay(record.run, !result.divergence, facts);
+  store.record(run_stream(record.run),
+               {result.divergence ? "ReplayDiverged" : "ReplayVerified", facts});
   return result;
 }
 

@@ -59,7 +59,7 @@ TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
     facts["outputs"] = {{"S2a\x1b[2J.csv", "\u202e"}};
     facts["inputs"].clear();
     facts["analysis_version"] = "\x1b]0;1\x07";
-    store.record_figure(name, facts);
+    store.record("figure/" + name, {"FigureGenerated", facts});
   }
   const Outcome shown = expect(0, {"show", name}, {"S2\\x1b[2J\\u202e"});
   EXPECT_EQ(shown.out.find_first_of("\x1b\x07"), std::string::npos) << shown.out;

@@ -221,7 +221,7 @@ std::vector<Case> other_faults() {
     Store store(s, Access::write);
     store.rebuild();
     const json facts = store.figures().front().provenance;
-    store.record_figure("S2", facts);
+    store.record("figure/S2", {"FigureGenerated", facts});
   };
   return {
       reported("lease_without_end", "resume", 0, lease(58), "elsewhere, process 77", "60 s"),
