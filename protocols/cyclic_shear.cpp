@@ -23,24 +23,21 @@ std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const
   return next;
 }
 
-CyclicShear::CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles,
-                         std::vector<CheckpointCadence> more)
-    : drive_(drive), cycles_(cycles), cadences_(std::move(more)) {
-  cadences_.push_back({checkpoint_cycles});
-}
-
-StageProgress CyclicShear::advance(Simulation& simulation, std::uint64_t most_steps) const {
-  const std::uint64_t end = last_step();
-  const std::uint64_t step = simulation.step();
-  const std::uint64_t due = next_checkpoint(cadences_, drive_, step);
-  if (step < end) {
-    simulation.advance(drive_, std::min({most_steps, due - step, end - step}));
-  }
-  const bool finished = simulation.step() >= end;
-  return {
-      .cycle = static_cast<double>(simulation.step()) / static_cast<double>(cycle_steps(drive_)),
-      .checkpoint_due = finished || simulation.step() == due,
-      .finished = finished};
+Protocol cyclic_shear(const Drive& drive, std::uint64_t cycles,
+                      std::vector<CheckpointCadence> cadences) {
+  const std::uint64_t end = cycles * cycle_steps(drive);
+  const auto advance = [drive, end, cadences = std::move(cadences)](
+                           Simulation& simulation, std::uint64_t most_steps) -> StageProgress {
+    const std::uint64_t step = simulation.step();
+    const std::uint64_t due = next_checkpoint(cadences, drive, step);
+    if (step < end) simulation.advance(drive, std::min({most_steps, due - step, end - step}));
+    const bool finished = simulation.step() >= end;
+    const auto per_cycle = static_cast<double>(cycle_steps(drive));
+    return {.cycle = static_cast<double>(simulation.step()) / per_cycle,
+            .checkpoint_due = finished || simulation.step() == due,
+            .finished = finished};
+  };
+  return {drive, end, advance};
 }
 
 }  // namespace shearcell

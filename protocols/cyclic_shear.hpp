@@ -21,20 +21,8 @@ struct CheckpointCadence {
 std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
                               std::uint64_t step);
 
-class CyclicShear final : public Protocol {
- public:
-  /// Shears for `cycles` cycles. Checkpoints are due after every `checkpoint_cycles` cycles and by
-  /// the cadences `more`.
-  CyclicShear(const Drive& drive, std::uint64_t cycles, std::uint64_t checkpoint_cycles,
-              std::vector<CheckpointCadence> more = {});
-  Drive drive() const override { return drive_; }
-  StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t last_step() const override { return cycles_ * cycle_steps(drive_); }
-
- private:
-  Drive drive_;
-  std::uint64_t cycles_;
-  std::vector<CheckpointCadence> cadences_;
-};
+/// Shears for `cycles` cycles. Checkpoints are due by the cadences and at the end.
+Protocol cyclic_shear(const Drive& drive, std::uint64_t cycles,
+                      std::vector<CheckpointCadence> cadences);
 
 }  // namespace shearcell

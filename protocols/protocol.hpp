@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interface of protocols: what is done to a cell during one stage of a run.
+// What is done to a cell during one stage of a run.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "core/simulation.hpp"
 
@@ -15,20 +16,13 @@ struct StageProgress {
   bool finished = false;        ///< the stage is complete; its last state must be recorded too
 };
 
-/// A protocol has parameters and no state. Its next action follows from the state of the simulation
-/// alone, so a stage continues from any checkpoint bit for bit.
-class Protocol {
- public:
-  virtual ~Protocol() = default;
-
-  /// Motion of the walls during the stage.
-  virtual Drive drive() const = 0;
-
+/// What is done during one stage: parameters and no state. The next action follows from the state
+/// of the simulation alone, so a stage continues from any checkpoint bit for bit.
+struct Protocol {
+  Drive drive = {};             ///< motion of the walls
+  std::uint64_t last_step = 0;  ///< at which the stage ends; 0 where it depends on the state
   /// Advances by at most `most_steps`, fewer when a checkpoint is due. Throws NumericalFailure.
-  virtual StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const = 0;
-
-  /// The step at which the stage ends; 0 where it depends on the state.
-  virtual std::uint64_t last_step() const = 0;
+  std::function<StageProgress(Simulation& simulation, std::uint64_t most_steps)> advance;
 };
 
 }  // namespace shearcell

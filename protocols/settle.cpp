@@ -99,7 +99,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   Scene scene = scene_;
   if (start < steps_without_gravity(simulation.cell(), simulation.grains())) scene.gravity = 0;
   simulation.set_scene(scene);
-  simulation.advance(drive(), std::min(most_steps, next_check(start) - start));
+  simulation.advance(Drive{}, std::min(most_steps, next_check(start) - start));
   const std::uint64_t step = simulation.step();
   if (step % check_steps_ == 0) simulation.check();
   const bool done = finished(simulation);

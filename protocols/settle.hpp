@@ -39,13 +39,12 @@ double pressing_time(const Scene& scene, double height, double per_area);
 /// While the wall presses, overlaps up to half a diameter are accepted: the wall may catch a grain
 /// between its own wall grains and those of a side wall, and push the grain out with the whole
 /// load.
-class Settle final : public Protocol {
+class Settle {
  public:
   /// `scene` is the final one, with gravity.
   Settle(const SettleParameters& parameters, const Scene& scene);
-  Drive drive() const override { return {}; }
-  StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t last_step() const override { return 0; }
+  /// As Protocol::advance.
+  StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;
 
   /// pressing_time() in steps, a multiple of the check interval, at most the time limit. 0 without
   /// pressure.

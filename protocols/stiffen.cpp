@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "protocols/stiffen.hpp"
 
-#include <algorithm>
-
 namespace shearcell {
 namespace {
 
@@ -31,22 +29,20 @@ double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_pe
          power(root_of_ten(steps_per_decade), step % steps_per_decade);
 }
 
-Stiffen::Stiffen(const StiffenParameters& parameters, const Scene& scene)
-    : parameters_(parameters), scene_(scene) {
-  parameters_.steps_per_decade = std::max<std::uint64_t>(1, parameters.steps_per_decade);
-}
-
-StageProgress Stiffen::advance(Simulation& simulation, std::uint64_t most_steps) const {
-  if (most_steps > 0 && simulation.step() < parameters_.steps) {
-    Scene scene = scene_;
-    scene.stiffness =
-        raised_stiffness(scene_.stiffness, simulation.step(), parameters_.steps_per_decade);
-    simulation.set_scene(scene);
-    minimize_enthalpy(simulation, parameters_.minimize);
-  }
-  return {.cycle = static_cast<double>(simulation.step()),
-          .checkpoint_due = true,
-          .finished = simulation.step() >= parameters_.steps};
+Protocol stiffen(const StiffenParameters& p, const Scene& scene) {
+  const auto advance = [p, scene](Simulation& simulation,
+                                  std::uint64_t most_steps) -> StageProgress {
+    if (most_steps > 0 && simulation.step() < p.steps) {
+      Scene raised = scene;
+      raised.stiffness = raised_stiffness(scene.stiffness, simulation.step(), p.steps_per_decade);
+      simulation.set_scene(raised);
+      minimize_enthalpy(simulation, p.minimize);
+    }
+    return {.cycle = static_cast<double>(simulation.step()),
+            .checkpoint_due = true,
+            .finished = simulation.step() >= p.steps};
+  };
+  return {.last_step = p.steps, .advance = advance};
 }
 
 }  // namespace shearcell

@@ -18,19 +18,9 @@ struct StiffenParameters {
 double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_per_decade);
 
 /// A cycle is one stiffness: the state of cycle n is at rest at k_0 10^((n - 1)/m); cycle 0 is the
-/// settled packing. The step of the simulation is the cycle. No time passes.
-class Stiffen final : public Protocol {
- public:
-  /// `scene` holds k_0, gravity and pressure.
-  Stiffen(const StiffenParameters& parameters, const Scene& scene);
-  Drive drive() const override { return {}; }
-  /// Does one whole stiffness per call: a minimization cannot be continued from a state.
-  StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const override;
-  std::uint64_t last_step() const override { return parameters_.steps; }
-
- private:
-  StiffenParameters parameters_;
-  Scene scene_;
-};
+/// settled packing. The step of the simulation is the cycle. No time passes. `scene` holds k_0,
+/// gravity and pressure. Each advance does one whole stiffness: a minimization cannot be continued
+/// from a state.
+Protocol stiffen(const StiffenParameters& parameters, const Scene& scene);
 
 }  // namespace shearcell

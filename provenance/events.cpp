@@ -19,28 +19,20 @@ using nlohmann::json;
 namespace events {
 namespace {
 
-/// Converts payloads of one type from layout `from` to the next. Null stands for values that the
-/// older layout did not record. Steps of one type are in ascending order.
-struct Step {
+/// Members that layout 2 added to a type: null in payloads of layout 1, which did not record them.
+struct Added {
   std::string_view type;
-  std::uint64_t from;
-  void (*convert)(json&);
+  const char* member;
 };
 
-constexpr std::array<Step, 3> kSteps = {{
-    {RunStarted::kType, 1,
-     [](json& payload) { payload["process"] = payload["parent_checkpoint"] = nullptr; }},
-    {RunResumed::kType, 1, [](json& payload) { payload["process"] = nullptr; }},
-    {RunCompleted::kType, 1, [](json& payload) { payload["target_cycles"] = nullptr; }},
-}};
+constexpr std::array<Added, 4> kAdded = {{{RunStarted::kType, "process"},
+                                          {RunStarted::kType, "parent_checkpoint"},
+                                          {RunResumed::kType, "process"},
+                                          {RunCompleted::kType, "target_cycles"}}};
 
 template <class T>
 constexpr bool has_fields = requires(T& value) {
-  T::fields(value, [](const char*, auto&) {});
-};
-template <class T>
-constexpr bool has_optional_fields = requires(T& value) {
-  T::optional_fields(value, [](const char*, auto&) {});
+  T::fields(value, [](const char*, auto&, bool = false) {});
 };
 template <class T>
 constexpr bool is_optional = requires(T& value) {
@@ -66,24 +58,19 @@ void read(const json& from, const char* key, T& value) {
 
 template <class T>
 void read_fields(const json& from, T& value) {
-  T::fields(value, [&from](const char* name, auto& v) { read(from, name, v); });
-  if constexpr (has_optional_fields<T>) {
-    T::optional_fields(value, [&from](const char* name, auto& v) {
-      if (from.contains(name)) read(from, name, v);
-    });
-  }
+  T::fields(value, [&from](const char* name, auto& v, bool if_stated = false) {
+    if (!if_stated || from.contains(name)) read(from, name, v);
+  });
 }
 
 template <class T>
 json written(const T& value) {
   if constexpr (has_fields<T>) {
     json inner;
-    T::fields(value, [&inner](const char* name, const auto& v) { inner[name] = written(v); });
-    if constexpr (has_optional_fields<T>) {
-      T::optional_fields(value, [&inner](const char* name, const auto& v) {
-        if (json given = written(v); !given.empty()) inner[name] = std::move(given);
-      });
-    }
+    T::fields(value, [&inner](const char* name, const auto& v, bool if_stated = false) {
+      json given = written(v);
+      if (!if_stated || !given.empty()) inner[name] = std::move(given);
+    });
     return inner;
   } else if constexpr (is_optional<T>) {
     return value ? json(*value) : json();
@@ -131,11 +118,7 @@ NewEvent encode(const Any& event) {
 }
 
 std::uint64_t newest_schema(std::string_view type) {
-  std::uint64_t newest = 1;
-  for (const Step& step : kSteps) {
-    if (step.type == type) newest = std::max(newest, step.from + 1);
-  }
-  return newest;
+  return std::ranges::count(kAdded, type, &Added::type) > 0 ? 2 : 1;
 }
 
 }  // namespace events
@@ -155,8 +138,8 @@ json Event::body() const {
                     "to {}; use the newer shearcell that wrote it",
                     seq, type, schema, newest));
   }
-  for (const events::Step& step : events::kSteps) {
-    if (step.type == type && step.from >= schema) step.convert(body);
+  for (const events::Added& added : events::kAdded) {
+    if (added.type == type && schema < newest) body[added.member] = nullptr;
   }
   return body;
 }

@@ -107,11 +107,10 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
 }
 
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
-  std::vector<Stage> chain;
-  std::set<std::string> seen;
-  for (std::string next = id; !next.empty() && seen.insert(next).second;) {
-    chain.push_back(store.stage(next));
-    next = chain.back().parent;
+  std::vector<Stage> chain = {store.stage(id)};
+  std::set<std::string> seen = {id};
+  while (!chain.back().parent.empty() && seen.insert(chain.back().parent).second) {
+    chain.push_back(store.stage(chain.back().parent));
   }
   std::reverse(chain.begin(), chain.end());
   std::vector<RunLineage> stages;
@@ -124,7 +123,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
       std::visit(LineageBuilder(stage, event), events::decode(event));
     }
     std::erase_if(stage.checkpoints, [](const CheckpointHistory& c) {
-      return c.recorded_at.empty();  // of a forged table
+      return c.recorded_at.empty() && !c.attempt;  // of a forged table
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;

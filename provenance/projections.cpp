@@ -113,6 +113,12 @@ class Projector {
   void operator()(const events::RunDeclared& e) const {
     const Stage& d = e.run;
     const Ask& m = e.ask;
+    if (!is_sha256_hex(id_)) {
+      throw StoreDamaged(
+          fmt::format("event {} ({} of {:.64}): the id of the run is not a SHA-256; "
+                      "run `verify`, and restore the store from a backup",
+                      event_.seq, event_.type, event_.stream));
+    }
     require_cycles(m.target_cycles, m.checkpoint_every);
     // A completed run may also have ended early, as other experiments asked for.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
@@ -376,7 +382,7 @@ std::string try_apply(Database& database, const Event& event) {
     if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
       return "the text of the file of grains has another SHA-256";
     }
-    return "";
+    return event.recorded_at.empty() ? "it does not say when it was recorded" : "";
   } catch (const StoreDamaged& damage) {
     return damage.what();
   } catch (const json::exception& problem) {

@@ -394,15 +394,6 @@ void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
   lock.commit();
 }
 
-void Store::record_figure(const std::string& name, const json& provenance) {
-  record("figure/" + name, {events::kFigureGenerated, provenance});
-}
-
-void Store::record_submission(const std::string& type, const json& facts,
-                              std::optional<std::uint64_t> seen) {
-  record(kSubmissions, {type, facts}, seen);
-}
-
 std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string& id,
                                                                std::vector<std::string>* damage,
                                                                std::uint64_t before_step) {
@@ -614,11 +605,6 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
     lock.commit();
     return;
   }
-}
-
-void Store::record_replay(const std::string& id, bool same, const json& facts) {
-  stage(id);  // throws when it is unknown
-  record(run_stream(id), {same ? "ReplayVerified" : "ReplayDiverged", facts});
 }
 
 }  // namespace shearcell

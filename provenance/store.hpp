@@ -23,7 +23,7 @@
 
 namespace shearcell {
 
-/// The stream of record_submission.
+/// The stream of submissions to a cluster.
 inline constexpr std::string_view kSubmissions = "store/submission";
 
 struct LoadedCheckpoint {
@@ -146,13 +146,12 @@ class Store {
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// `name` is the name of the figure's stream, "drag/desk/S2"; `provenance` holds the inputs and
-  /// the SHA-256 of the outputs.
-  void record_figure(const std::string& name, const nlohmann::json& provenance);
-
-  /// `type` is "CampaignSubmitted" or "JobQueued"; `seen` as of record().
-  void record_submission(const std::string& type, const nlohmann::json& facts,
-                         std::optional<std::uint64_t> seen = std::nullopt);
+  /// Appends an event that changes no run: FigureGenerated (inputs, SHA-256 of the outputs) in
+  /// "figure/drag/desk/S2", ReplayVerified or ReplayDiverged in the stream of the run,
+  /// CampaignSubmitted or JobQueued in kSubmissions. Throws ConcurrencyConflict when the stream
+  /// does not hold exactly `seen` events.
+  void record(std::string_view stream, const NewEvent& event,
+              std::optional<std::uint64_t> seen = std::nullopt);
 
   // --- Reading ---
 
@@ -194,8 +193,6 @@ class Store {
   std::uint64_t prune(const std::vector<CheckpointRecord>& records, bool last_too = false);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
-  /// Appends ReplayVerified or ReplayDiverged.
-  void record_replay(const std::string& id, bool same, const nlohmann::json& facts);
 
   /// Merges other stores into this one (merge.cpp). With `runs` merges only the manifests and these
   /// runs, which must include the parents of each. Throws NotFound when a source is no store and
@@ -208,10 +205,6 @@ class Store {
  private:
   /// Appends one event and applies it.
   void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
-  /// append() in a transaction of its own. Throws ConcurrencyConflict when the stream does not hold
-  /// exactly `seen` events.
-  void record(std::string_view stream, const NewEvent& event,
-              std::optional<std::uint64_t> seen = std::nullopt);
   /// Appends an event that only the holder may write; with `release`, ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);

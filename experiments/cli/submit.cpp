@@ -118,8 +118,8 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
                               "`shearcell submit` again, or `merge` them, when the job has ended",
                               error.what()));
   }
-  store.record_submission("JobQueued",
-                          {{"submission", submission.id}, {"job", job}, {"fold_job", merging}});
+  store.record(kSubmissions,
+               {"JobQueued", {{"submission", submission.id}, {"job", job}, {"fold_job", merging}}});
   result.facts = {{"submission", submission.id},
                   {"job", job},
                   {"fold_job", merging},
@@ -157,7 +157,7 @@ void check_time(const JobOptions& job) {
   if (!limit) {
     throw CLI::ValidationError("--time", "'" + job.time +
                                              "' is not a time limit of Slurm: write MINUTES, "
-                                             "HH:MM:SS or DAYS-HH:MM:SS");
+                                             "HH:MM:SS, DAYS-HH:MM:SS or UNLIMITED");
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(

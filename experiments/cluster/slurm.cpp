@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <limits>
 #include <regex>
 #include <sstream>
 
@@ -106,6 +107,8 @@ fs::path scratch_here(const std::string& text) {
 std::optional<double> slurm_seconds(const std::string& time) {
   static const std::regex form(R"((?:(\d+)-)?(\d+)(?::(\d+))?(?::(\d+))?)");
   std::smatch found;
+  constexpr double no_limit = std::numeric_limits<double>::infinity();
+  if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
   if (!std::regex_match(time, found, form)) return std::nullopt;
   // A lone number is minutes, and two are minutes and seconds; three, or those after days, begin
   // with hours.
@@ -117,7 +120,7 @@ std::optional<double> slurm_seconds(const std::string& time) {
     sum += *number * (part == 1 ? 86400 : unit);
     if (part > 1) unit /= 60;
   }
-  return sum;
+  return sum == 0 ? no_limit : sum;
 }
 
 std::string output_pattern(const fs::path& folder, std::string_view file) {

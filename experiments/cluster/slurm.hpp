@@ -27,8 +27,8 @@ std::string unfit_scratch(const std::string& text);
 /// or when the folder is not absolute.
 std::filesystem::path scratch_here(const std::string& text);
 
-/// Seconds of a time limit: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS". Nothing
-/// for anything else.
+/// Seconds of a time limit: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS". Infinity
+/// where Slurm sets no limit: "UNLIMITED", "INFINITE" and 0. Nothing for anything else.
 std::optional<double> slurm_seconds(const std::string& time);
 
 /// Value of `--output`: patterns in `file` are kept, those in the folder's name are escaped.

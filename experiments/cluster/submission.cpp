@@ -253,7 +253,7 @@ Submission prepare_submission(Store& store, const Proposal& proposal, json facts
       merge_stores(own, {store.folder()}, with_packings(store, share.runs));
     }
     facts["command"] = array_job(made, store.folder(), proposal.job).command;
-    store.record_submission("CampaignSubmitted", facts, seen);
+    store.record(kSubmissions, {"CampaignSubmitted", facts}, seen);
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(made.folder(store.folder()), ignored);

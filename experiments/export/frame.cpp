@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "core/diagnostics.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -21,7 +21,7 @@ bool enters_frames(const Provider& one) {
 void add_columns(const Measures& measures, Frame& frame) {
   for (const Measure* measure : all_measures(MeasureKind::grains)) {
     const auto found = measures.of_grains.find(measure->name);
-    std::vector<double> values(frame.grains, std::nan(""));
+    std::vector<double> values(frame.grains, measure->scale.whole ? -1 : std::nan(""));
     if (found != measures.of_grains.end()) values = found->second;
     values.resize(frame.particles(), measure->scale.of_wall_grains);
     frame.columns.push_back({std::string(measure->name), measure->scale.whole, std::move(values)});
@@ -52,7 +52,7 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
                {"scale", scale_name(selected.scale)},
                {"variant", selected.variant},
                {"seed", selected.seed}};
-  frame.checkpoint = record.sha256;
+  frame.sha256 = record.sha256;
   for (const auto& [column, value] : facts_of(record, measures)) {
     // Members of Frame.
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
@@ -63,36 +63,19 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
     if (find_field(key) == nullptr) continue;  // a forged store may hold it
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
-}
-
-/// After add_facts().
-void add_contacts(const Checkpoint& c, const WallPose& pose, const Measures& measures,
-                  Frame& frame) {
-  double stiffness = measures.number("raised_stiffness_N_per_m");  // only of a stiffening
-  for (const auto& [key, value] : frame.parameters) {
-    if (key == "stiffness_N_per_m" && std::isnan(stiffness)) stiffness = value.get<double>();
+  frame.stiffness_N_per_m = measures.number("raised_stiffness_N_per_m");  // only of a stiffening
+  const nlohmann::json stated = member_of(parameters, "stiffness_N_per_m");
+  if (std::isnan(frame.stiffness_N_per_m) && stated.is_number()) {
+    frame.stiffness_N_per_m = stated.get<double>();
   }
-  const auto add = [&](const Contact& contact) {
-    const auto other = static_cast<std::size_t>(contact.other) + 1;
-    const bool of_grains = contact.kind == Contact::Kind::grain;
-    frame.contacts.push_back({.grain = static_cast<std::size_t>(contact.grain) + 1,
-                              .other = of_grains ? other
-                                       : contact.kind == Contact::Kind::wall_grain
-                                           ? frame.grains + other
-                                           : 0,
-                              .side = of_grains ? 0 : 1 + static_cast<std::int32_t>(contact.side),
-                              .overlap = contact.overlap,
-                              .force = stiffness * contact.overlap * c.units.diameter_m,
-                              .normal = contact.normal});
-  };
-  for_each_contact(c.cell, c.state.position, pose, add);
 }
 
 }  // namespace
 
 std::string frame_name(const Frame& frame) {
-  const bool settles = frame.cycle == 0 && frame.step > 0;
-  return settles ? fmt::format("step{}", frame.step) : fmt::format("{}", frame.cycle);
+  const double cycle = frame.checkpoint.cycle;
+  const std::uint64_t step = frame.checkpoint.state.step;
+  return cycle == 0 && step > 0 ? fmt::format("step{}", step) : fmt::format("{}", cycle);
 }
 
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
@@ -101,18 +84,14 @@ Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, con
   const Measures measures = (sources == nullptr ? alone : *sources)
                                 .measures_of(record, every, checkpoint,
                                              analyse_stored(record, checkpoint), enters_frames);
-  const WallPose pose = pose_of(checkpoint);
   const double rate = measures.number("shear_rate_per_s");  // only of a shear
   Frame frame;
-  static_cast<Particles&>(frame) = particles_of(checkpoint.cell, pose, checkpoint.state,
-                                                std::isnan(rate) ? 0 : rate, checkpoint.units);
-  frame.step = checkpoint.state.step;
-  frame.time_s = checkpoint.time_s;
-  frame.cycle = checkpoint.cycle;
-  frame.theta = checkpoint.theta;
+  static_cast<Particles&>(frame) =
+      particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,
+                   std::isnan(rate) ? 0 : rate, checkpoint.units);
+  frame.checkpoint = checkpoint;
   add_facts(record, run, measures, frame);
   add_columns(measures, frame);
-  add_contacts(checkpoint, pose, measures, frame);
   frame.continued = continued(checkpoint, run.stage);
   return frame;
 }

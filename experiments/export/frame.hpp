@@ -2,6 +2,7 @@
 // One checkpoint for export: every particle with its measures, in SI units.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,33 +23,22 @@ struct FrameColumn {
   std::vector<double> values;
 };
 
-/// A contact of two particles, once, or of a grain with a plane.
-struct FrameContact {
-  std::size_t grain = 0, other = 0;  ///< numbers of the particles from 1; other 0: a plane
-  std::int32_t side = 0;             ///< of a wall contact, as Frame::type; 0 between grains
-  double overlap = 0;                ///< [d]
-  double force = 0;                  ///< [N]; NaN if the stiffness is unknown
-  Eigen::Vector3d normal;            ///< unit vector towards `grain`, the direction of its force
-};
-
 /// Particles in SI units. Measures of wall grains are 0, classes -1. Velocities of grains and of
-/// the moving wall are half a time step before `step`, velocities of the tilting walls at `step`.
+/// the moving wall are half a time step before the state's step, velocities of the tilting walls at
+/// this step.
 struct Frame : Particles {
-  std::uint64_t step = 0;
-  double time_s = 0;
-  double cycle = 0;
-  double theta = 0;  ///< tilt [rad]
+  Checkpoint checkpoint;
+  std::string sha256;  ///< of the checkpoint's file
 
   /// Facts of the run, texts and numbers: id, experiment, scale, variant and seed; the parameters
   /// that distinguish runs, by their keys in a manifest.
   std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
-  std::string checkpoint;  ///< SHA-256 of its file
   /// The measures of the frame by their names in `table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// The measures of each grain (analysis/measures.hpp); NaN if unknown.
+  /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
   std::vector<FrameColumn> columns;
-  std::vector<FrameContact> contacts;  ///< by `grain`
+  double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
 
   /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
   std::optional<LammpsTask> continued;

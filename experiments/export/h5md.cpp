@@ -46,8 +46,8 @@ class Trajectory {
     const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns here are rows there
     const Eigen::Vector3d origin = frame.origin * nm_per_m;
     const Eigen::Matrix3Xd position = frame.position * nm_per_m;
-    put("particles/all/step", H5T_STD_U64LE, {}, &frame.step);
-    put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.time_s, "s");
+    put("particles/all/step", H5T_STD_U64LE, {}, &frame.checkpoint.state.step);
+    put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.checkpoint.time_s, "s");
     element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
     // Not part of H5MD.
     element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
@@ -58,18 +58,21 @@ class Trajectory {
     image.row(2) = Eigen::Map<const Eigen::RowVectorXi>(frame.image.data(), image.cols());
     element("particles/all/image", H5T_STD_I32LE, {particles_, 3}, image.data());
     for (const FrameColumn& column : frame.columns) {
-      const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
-      element("particles/all/" + column.name, column.whole ? H5T_STD_I32LE : H5T_IEEE_F64LE,
-              {particles_},
-              column.whole ? static_cast<const void*>(whole.data()) : column.values.data());
+      const std::string path = "particles/all/" + column.name;
+      if (column.whole) {
+        const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
+        element(path, H5T_STD_I32LE, {particles_}, whole.data());
+      } else {
+        element(path, H5T_IEEE_F64LE, {particles_}, column.values.data());
+      }
     }
     const Handle hash(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
     require(H5Tset_size(hash.get(), kHashDigits), "a text type");
-    std::string checkpoint = frame.checkpoint;
+    std::string checkpoint = frame.sha256;
     checkpoint.resize(kHashDigits, '\0');
     element("observables/checkpoint", hash.get(), {}, checkpoint.data());
-    element("observables/cycle", H5T_IEEE_F64LE, {}, &frame.cycle);
-    element("observables/theta", H5T_IEEE_F64LE, {}, &frame.theta, "rad");
+    element("observables/cycle", H5T_IEEE_F64LE, {}, &frame.checkpoint.cycle);
+    element("observables/theta", H5T_IEEE_F64LE, {}, &frame.checkpoint.theta, "rad");
     for (const auto& [name, value] : frame.scalars) {
       element("observables/" + name, H5T_IEEE_F64LE, {}, &value);
     }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string_view>
 
+#include "core/diagnostics.hpp"
 #include "experiments/export/formats.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/file.hpp"
@@ -38,18 +39,19 @@ std::string quoted(std::string text) {
 
 std::string xyz_comment(const Frame& f, Lengths lengths) {
   const bool si = lengths == Lengths::metres;
+  const Checkpoint& c = f.checkpoint;
   const double d = 2 * f.radius;
   const Eigen::Matrix3d e = f.edges / (si ? 1 : d);
   const Eigen::Vector3d o = f.origin / (si ? 1 : d);
   std::string line = fmt::format(
       "Lattice=\"{:.17g}\" Origin=\"{:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
-      fmt::join(e.reshaped(), " "), fmt::join(o, " "), f.time_s, f.step, f.cycle, f.theta);
+      fmt::join(e.reshaped(), " "), fmt::join(o, " "), c.time_s, c.state.step, c.cycle, c.theta);
   for (const FrameColumn& column : f.columns) {
     line += fmt::format(":{}:{}:1", column.name, column.whole ? 'I' : 'R');
   }
   line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
-                      si ? "m/s" : "d/s", d, quoted(f.checkpoint));
+                      si ? "m/s" : "d/s", d, quoted(f.sha256));
   for (const auto* facts : {&f.run, &f.parameters}) {
     for (const auto& [key, value] : *facts) {
       if (value == "") continue;  // ASE would take the next key for its value
@@ -69,8 +71,8 @@ std::string lammps_title(const Frame& f) {
   return fmt::format(
       "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, run "
       "{:.64}, cell {:.17g} {:.17g} {:.17g} {:.17g} 0 {:.17g} tilt {:.17g}",
-      f.step, f.cycle, f.run.front().second.get<std::string>(), f.origin.x(), high.x(),
-      f.origin.y(), high.y(), high.z(), f.edges(0, 1));
+      f.checkpoint.state.step, f.checkpoint.cycle, f.run.front().second.get<std::string>(),
+      f.origin.x(), high.x(), f.origin.y(), high.y(), high.z(), f.edges(0, 1));
 }
 
 }  // namespace
@@ -106,10 +108,16 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
 FrameWriter contacts_writer(const std::filesystem::path& folder) {
   return [folder](const Frame& f) {
     std::string text = "grain,other,wall_side,overlap_d,force_N,normal_x,normal_y,normal_z\n";
-    for (const FrameContact& c : f.contacts) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.17g},{:.17g},{:.17g}\n", c.grain,
-                     c.other, c.side, c.overlap, c.force, fmt::join(c.normal, ","));
-    }
+    const Checkpoint& c = f.checkpoint;
+    for_each_contact(c.cell, c.state.position, pose_of(c), [&](const Contact& one) {
+      const bool pair = one.kind == Contact::Kind::grain;
+      const bool plane = one.kind == Contact::Kind::wall_plane;
+      const auto other = static_cast<std::size_t>(one.other) + (pair ? 1 : f.grains + 1);
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.17g},{:.17g},{:.17g}\n", one.grain + 1,
+                     plane ? 0 : other, pair ? 0 : 1 + static_cast<int>(one.side), one.overlap,
+                     f.stiffness_N_per_m * one.overlap * c.units.diameter_m,
+                     fmt::join(one.normal, ","));
+    });
     NewFile(folder / fmt::format("contacts_{}.csv", frame_name(f))).add(text);
   };
 }
@@ -117,7 +125,8 @@ FrameWriter contacts_writer(const std::filesystem::path& folder) {
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t count) {
   using Json = nlohmann::ordered_json;
   return [folder, count, frames = std::make_shared<Json>(Json::array())](const Frame& f) {
-    Json frame = {{"cycle", f.cycle}, {"time_s", f.time_s}, {"checkpoint", f.checkpoint}};
+    const Checkpoint& c = f.checkpoint;
+    Json frame = {{"cycle", c.cycle}, {"time_s", c.time_s}, {"checkpoint", f.sha256}};
     for (const auto& [name, value] : f.scalars) frame[name] = value;  // NaN as null
     frames->push_back(std::move(frame));
     if (frames->size() < count) return;

@@ -58,8 +58,8 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
   const auto add_field = [&](const std::string& name, double value) {
     piece += out.array(name, "Float64", 1, std::vector<double>{value}, "NumberOfTuples=\"1\" ");
   };
-  add_field("cycle", f.cycle);
-  add_field("TimeValue", f.time_s);
+  add_field("cycle", f.checkpoint.cycle);
+  add_field("TimeValue", f.checkpoint.time_s);
   for (const auto& [name, value] : f.scalars) {
     if (std::isfinite(value)) add_field(name, value);
   }
@@ -72,9 +72,10 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
            out.array("radius", "Float64", 1, std::vector<double>(f.particles(), f.radius));
   piece += out.array("type", "Int32", 1, f.type);
   for (const FrameColumn& column : f.columns) {
-    const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
-    piece += column.whole ? out.array(column.name, "Int32", 1, whole)
-                          : out.array(column.name, "Float64", 1, column.values);
+    const std::vector<double>& all = column.values;
+    piece += column.whole ? out.array(column.name, "Int32", 1,
+                                      std::vector<std::int32_t>(all.begin(), all.end()))
+                          : out.array(column.name, "Float64", 1, all);
   }
   piece += "</PointData>\n<Verts>\n" +
            out.array("connectivity", "Int64", 1, count_from(0, f.particles())) +
@@ -110,7 +111,7 @@ FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames) 
     sets += fmt::format(
         "<DataSet timestep=\"{0:.17g}\" part=\"0\" name=\"grains\" file=\"{1}\"/>\n"
         "<DataSet timestep=\"{0:.17g}\" part=\"1\" name=\"cell\" file=\"{2}\"/>\n",
-        f.cycle == 0 ? f.time_s : f.cycle, grains, cell);
+        f.checkpoint.cycle == 0 ? f.checkpoint.time_s : f.checkpoint.cycle, grains, cell);
     if (--left > 0) return;
     write_output(folder / "frames.pvd",
                  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" "

@@ -19,6 +19,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/events.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
@@ -80,7 +81,7 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
     if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
   }
   facts["made"] = host_facts();
-  store.record_figure(name, facts);
+  store.record("figure/" + name, {events::kFigureGenerated, facts});
 }
 
 /// "drag/desk", or "desk" for a figure of all experiments: the path of its files in the folder for

@@ -7,6 +7,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -52,25 +53,23 @@ void require_memory(const StageInputs& inputs) {
       inputs.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
-std::unique_ptr<Protocol> make_protocol(const StageInputs& inputs, const Stage& stage,
-                                        const Scene& scene) {
+Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scene& scene) {
   const Parameters& p = inputs.parameters;
   const std::uint64_t cycles = stage.target_cycles;
   if (inputs.file && !inputs.file->settles) {
-    return std::make_unique<CyclicShear>(Drive{}, 0, 0);  // the grains stay where they are
+    return cyclic_shear({}, 0, {});  // the grains stay where they are
   }
   if (inputs.stage == StageKind::prepare) {
-    return std::make_unique<Settle>(
-        SettleParameters{p.settle_force_tolerance, p.settle_kinetic_tolerance,
-                         p.settle_time_limit_s, p.max_overlap_diameters},
-        scene);
+    const SettleParameters settle{p.settle_force_tolerance, p.settle_kinetic_tolerance,
+                                  p.settle_time_limit_s, p.max_overlap_diameters};
+    return {.advance = std::bind_front(&Settle::advance, Settle(settle, scene))};
   }
   if (inputs.stage == StageKind::stiffen) {
-    StiffenParameters stiffen{p.stiffness_steps_per_decade, cycles, {}};
-    stiffen.minimize.force_tolerance = p.minimize_force_tolerance;
-    return std::make_unique<Stiffen>(stiffen, scene);
+    StiffenParameters parameters{p.stiffness_steps_per_decade, cycles, {}};
+    parameters.minimize.force_tolerance = p.minimize_force_tolerance;
+    return stiffen(parameters, scene);
   }
-  return std::make_unique<CyclicShear>(drive(p), cycles, cycles, cadences_of(stage.asks, drive(p)));
+  return cyclic_shear(drive(p), cycles, cadences_of(stage.asks, drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
@@ -96,7 +95,7 @@ struct ReadyStage {
   Stage stage;
   StageInputs inputs;
   Scene scene;
-  std::unique_ptr<Protocol> protocol;
+  Protocol protocol;
 };
 
 /// The watchdog's overlap limit is the largest that a manifest of the run states.
@@ -110,7 +109,7 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
   limit = overlap_limit(store, stage, limit);
   require_memory(inputs);
   const Scene scene = make_scene(inputs);
-  auto protocol = make_protocol(inputs, stage, scene);
+  Protocol protocol = make_protocol(inputs, stage, scene);
   return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
@@ -208,7 +207,7 @@ Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene
   checkpoint.state = state;
   checkpoint.cycle = cycle;
   checkpoint.time_s = static_cast<double>(state.step) * plan.scene.time_step;
-  checkpoint.theta = tilt(plan.protocol->drive(), state.step).theta;
+  checkpoint.theta = tilt(plan.protocol.drive, state.step).theta;
   checkpoint.units = units(plan.inputs.parameters);
   const WallPose pose = pose_of(checkpoint);
   const Diagnostics facts = diagnose(cell, scene, state, pose);
@@ -266,7 +265,7 @@ class OwnEngine final : public Engine {
   StageProgress advance_by(std::uint64_t most) {
     const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
     const double before = thread_seconds();
-    progress_ = plan_.protocol->advance(simulation_, steps);
+    progress_ = plan_.protocol.advance(simulation_, steps);
     core_seconds_ += threads_ * (thread_seconds() - before);  // its threads share the work equally
     return progress_;
   }
@@ -311,16 +310,16 @@ class LammpsEngine final : public Engine {
   LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(checkpoint_cadence(plan.stage.asks) * cycle_steps(plan.protocol->drive())),
+        stride_(checkpoint_cadence(plan.stage.asks) * cycle_steps(plan.protocol.drive)),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),
         step_(first_) {
-    const std::uint64_t end = plan.protocol->last_step();
+    const std::uint64_t end = plan.protocol.last_step;
     if (first_ >= end) return;
     const LammpsTask task{.cell = cell_,
                           .scene = plan.scene,
-                          .drive = plan.protocol->drive(),
+                          .drive = plan.protocol.drive,
                           .state = state_,
                           .end = end,
                           .stride = stride_,
@@ -358,7 +357,7 @@ class LammpsEngine final : public Engine {
     if (!frame) return false;
     state_ = std::move(*frame);
     Simulation watched = make_simulation(plan_, {cell_, state_}, 1);
-    watched.advance(plan_.protocol->drive(), 1);
+    watched.advance(plan_.protocol.drive, 1);
     watched.check();
     step_ = state_.step;
     return true;
@@ -366,9 +365,9 @@ class LammpsEngine final : public Engine {
 
   StageProgress progress(bool at_frame) const {
     StageProgress progress;
-    const auto per_cycle = static_cast<double>(cycle_steps(plan_.protocol->drive()));
+    const auto per_cycle = static_cast<double>(cycle_steps(plan_.protocol.drive));
     progress.cycle = static_cast<double>(step_) / per_cycle;
-    progress.finished = state_.step >= plan_.protocol->last_step();
+    progress.finished = state_.step >= plan_.protocol.last_step;
     progress.checkpoint_due = progress.finished || (at_frame && step_ % stride_ == 0);
     return progress;
   }
@@ -559,7 +558,7 @@ class StageAttempt {
     if (!options_.report || since < 0.2) return;
     const auto steps = static_cast<double>(engine.evaluations() - reported_evaluations_);
     const double rate = 1e-6 * steps * static_cast<double>(plan_.stage.grains) / since;
-    const std::uint64_t target = plan_.stage.target_cycles, end = plan_.protocol->last_step();
+    const std::uint64_t target = plan_.stage.target_cycles, end = plan_.protocol.last_step;
     const std::string where = target > 0 ? fmt::format("cycle {:.2f} of {}", cycle, target)
                                          : fmt::format("step {}", engine.step());
     const double mean_rate = static_cast<double>(engine.step() - first_step_) / started_.seconds();
@@ -707,7 +706,8 @@ Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& 
                           {"host", host_facts()}};
   if (result.from) facts["from"] = {{"sha256", result.from->sha256}, {"step", result.from->step}};
   if (result.divergence) facts.update(to_json(*result.divergence));
-  store.record_replay(record.run, !result.divergence, facts);
+  store.record(run_stream(record.run),
+               {result.divergence ? "ReplayDiverged" : "ReplayVerified", facts});
   return result;
 }
 

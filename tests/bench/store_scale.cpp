@@ -87,7 +87,9 @@ void measure(const fs::path& folder, int runs, int checkpoints) {
     Store store(folder, Access::write);
     const fs::path probe = folder / "probe";
     for (int i = 0; i < 300; ++i) {
-      each.push_back(seconds([&] { store.record_figure("bench", {{"i", i}}); }));
+      each.push_back(seconds([&] {
+        store.record("figure/bench", {"FigureGenerated", {{"i", i}}});
+      }));
       plain.push_back(seconds([&] { sync_one_page(probe); }));
     }
     fs::remove(probe);

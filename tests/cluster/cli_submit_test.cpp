@@ -99,6 +99,7 @@ TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
     expect(2, joined({"submit", manifest_, "--dry-run"}, words));
   }
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leave no time"});
+  expect(0, {"submit", manifest_, "--dry-run", "--time", "0"}, {"--time=0"});
 }
 
 TEST_F(Submit, QueuesBothJobsOnceAndRecordsThem) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 
 #include "experiments/cluster/submission.hpp"
 #include "provenance/errors.hpp"
@@ -129,6 +130,9 @@ TEST(TimeLimit, IsReadAsBySlurm) {
   EXPECT_EQ(slurm_seconds("2-3"), (2 * 24 + 3) * 3600);
   EXPECT_EQ(slurm_seconds("2-3:04"), (2 * 24 + 3) * 3600 + 240);
   EXPECT_EQ(slurm_seconds("2-3:04:05"), (2 * 24 + 3) * 3600 + 245);
+  for (const char* text : {"0", "0:00", "UNLIMITED", "infinite"}) {
+    EXPECT_EQ(slurm_seconds(text), std::numeric_limits<double>::infinity()) << text;
+  }
   for (const char* text :
        {"", "-", "1-", "-1", "a", "1h", "1:2:3:4", "1.5", "1:", ":1", "99999999999"}) {
     EXPECT_FALSE(slurm_seconds(text)) << text;

@@ -204,8 +204,8 @@ TEST_F(Submitted, TwoAtOnceAreDistinguished) {
 
 TEST_F(Submitted, CanBeReadFromTheLog) {
   const Submission made = submit(shares());
-  store_.record_submission("JobQueued",
-                           {{"submission", made.id}, {"job", "17"}, {"fold_job", "18"}});
+  store_.record(kSubmissions,
+                {"JobQueued", {{"submission", made.id}, {"job", "17"}, {"fold_job", "18"}}});
   const auto known = read_submissions(store_);
   ASSERT_EQ(known.size(), 1U);
   EXPECT_EQ(known[0].id, made.id);
@@ -220,7 +220,7 @@ TEST_F(Submitted, CanBeReadFromTheLog) {
 TEST_F(Submitted, RejectsAnEventThatNamesAPathOrHasNoTasks) {
   for (const char* id : {"../../../x", "0123456789ab"}) {
     Store store(folder_.path() / std::to_string(id[0]), Access::create);
-    store.record_submission("CampaignSubmitted", {{"submission", id}});
+    store.record(kSubmissions, {"CampaignSubmitted", {{"submission", id}}});
     EXPECT_THROW(read_submissions(store), StoreDamaged);
   }
 }

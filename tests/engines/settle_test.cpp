@@ -66,7 +66,7 @@ Settling settled_by_lammps(const Packing& loose, const SettleParameters& paramet
     const std::uint64_t end = protocol.next_check(settled.state.step);
     const LammpsTask task{.cell = loose.cell,
                           .scene = check.scene(),
-                          .drive = protocol.drive(),
+                          .drive = {},
                           .state = std::move(settled.state),
                           .end = end,
                           .stride = end,

@@ -59,7 +59,7 @@ TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
     facts["outputs"] = {{"S2a\x1b[2J.csv", "\u202e"}};
     facts["inputs"].clear();
     facts["analysis_version"] = "\x1b]0;1\x07";
-    store.record_figure(name, facts);
+    store.record("figure/" + name, {"FigureGenerated", facts});
   }
   const Outcome shown = expect(0, {"show", name}, {"S2\\x1b[2J\\u202e"});
   EXPECT_EQ(shown.out.find_first_of("\x1b\x07"), std::string::npos) << shown.out;
@@ -80,6 +80,29 @@ TEST_F(CommandLineLineage, ChecksAPublishedFile) {
   write("other.csv", "a,b\n");
   expect_refused({"show", "other.csv"}, {"unknown to this store"});
   expect_refused({"show", "missing.csv"}, {});
+}
+
+// An early record lacks parameters that later programs name, and states constants.
+TEST_F(CommandLineLineage, ACrateHasTheParametersThatShowHas) {
+  const std::string store = std::string(SHEARCELL_TEST_DATA) + "/store_v1", id = "a61190aacbad";
+  expect(0, {"export", id, "--to", "ro-crate", "--out", "old", "--store", store});
+  const nlohmann::json shown = json({"show", id, "--store", store, "--json"});
+  std::map<std::string, nlohmann::json> stated;
+  const auto crate = nlohmann::json::parse(read_bytes(path("old/ro-crate-metadata.json")));
+  for (const nlohmann::json& entity : crate.at("@graph")) {
+    if (entity.at("@id").get<std::string>().starts_with("#parameter-" + id)) {
+      stated[entity.at("name")] = entity.at("value");
+    }
+  }
+  const nlohmann::json &parameters = shown.at("parameters"), &record = shown.at("resolved");
+  for (const auto& [name, value] : parameters.items()) EXPECT_EQ(stated[name], value) << name;
+  std::size_t constants = 0;
+  for (const auto& [name, value] : record.at("parameters").items()) {
+    if (parameters.contains(name)) continue;
+    EXPECT_FALSE(stated.contains(name)) << name;
+    ++constants;
+  }
+  EXPECT_GT(constants, 0U);
 }
 
 TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {

@@ -71,7 +71,7 @@ TEST_F(Scales, ShowFindsRecordsOfAnOlderVersion) {
   expect(0, {"figures", "S2", "--out", "out"});
   {
     Store store(path("shearcell-store"), Access::write);
-    store.record_figure("tiny/S2", store.figures().at(0).provenance);
+    store.record("figure/tiny/S2", {"FigureGenerated", store.figures().at(0).provenance});
   }
   const auto event = [&](const std::string& name) {
     return json({"show", name, "--json"}).at("event").get<std::uint64_t>();
@@ -80,7 +80,7 @@ TEST_F(Scales, ShowFindsRecordsOfAnOlderVersion) {
   for (const char* name : {"S2", "tiny/base/S2"}) EXPECT_EQ(event(name), old) << "the newest";
   {
     Store store(path("shearcell-store"), Access::write);
-    store.record_figure("tiny/base/S2", store.figures().at(0).provenance);
+    store.record("figure/tiny/base/S2", {"FigureGenerated", store.figures().at(0).provenance});
   }
   for (const char* name : {"S2", "tiny/S2", "tiny/base/S2"}) EXPECT_GT(event(name), old) << name;
   expect(0, {"show", "out/tiny/base/S2a.csv"}, {"matches"});

@@ -53,8 +53,9 @@ Damage forged(const std::function<void(Event&)>& change) {
       change(event);
       event.prev_hash = prev;
       prev = event.hash = event_hash(event);
-      log.run("UPDATE events SET type = " + sql_text(event.type) + ", schema = " +
-              std::to_string(event.schema) + ", recorded_at = " + sql_text(event.recorded_at) +
+      log.run("UPDATE events SET stream = " + sql_text(event.stream) +
+              ", type = " + sql_text(event.type) + ", schema = " + std::to_string(event.schema) +
+              ", recorded_at = " + sql_text(event.recorded_at) +
               ", payload = " + sql_text(event.payload) + ", prev_hash = '" + event.prev_hash +
               "', hash = '" + event.hash + "' WHERE seq = " + std::to_string(event.seq));
     }

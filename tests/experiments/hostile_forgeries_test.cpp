@@ -21,6 +21,13 @@ Damage member(const std::string& path, const json& value) {
   });
 }
 
+/// Of checkpoints.
+Damage without_times() {
+  return rebuilt(forged([](Event& e) {
+    if (e.type == "CheckpointRecorded") e.recorded_at.clear();
+  }));
+}
+
 Damage recorded(const std::string& path, const json& value) {
   return event("CheckpointRecorded", [=](json& b) { b[json::json_pointer(path)] = value; });
 }
@@ -72,6 +79,9 @@ std::vector<Case> forged_events() {
       reported("variant", "verify", 4, member("/membership/variant", "fluid=none"), "fluid=none"),
       reported("manifest_text", "verify", 4,
                event("ManifestRegistered", [](json& b) { b["text"] = "a: 1"; }), "SHA-256"),
+      reported("no_time", "verify", 4, without_times(), "does not say when it was recorded"),
+      reported("no_time_in_a_crate", "export RUN --to ro-crate --out x", 0, without_times()),
+      reported("no_time_in_show", "show RUN", 0, without_times()),
   };
 }
 
@@ -211,7 +221,7 @@ std::vector<Case> other_faults() {
     Store store(s, Access::write);
     store.rebuild();
     const json facts = store.figures().front().provenance;
-    store.record_figure("S2", facts);
+    store.record("figure/S2", {"FigureGenerated", facts});
   };
   return {
       reported("lease_without_end", "resume", 0, lease(58), "elsewhere, process 77", "60 s"),
@@ -268,6 +278,33 @@ TEST_F(UnusualStore, AMovedStoreIsNotWrittenTo) {
   EXPECT_TRUE(verified.at("ok"));
   EXPECT_EQ(verified.at("orphans"), 0) << "the old process wrote into the new store";
   expect(0, {"verify", "--store", "moved"});
+}
+
+// `show ''` asks for any run.
+TEST_F(UnusualStore, NoRunHasAnEmptyId) {
+  campaign(tiny_manifest("  grains: 200\n"), {"--cycles", "1"});
+  const fs::path store = path("shearcell-store");
+  const auto expect_read = [&] {
+    const std::string crate = path("crate").string();
+    for (const Arguments& words : {Arguments{"status"}, Arguments{"table"}, Arguments{"show", ""},
+                                   Arguments{"report"}, Arguments{"figures", "S2"},
+                                   Arguments{"export", "", "--to", "ro-crate", "--out", crate}}) {
+      const Outcome outcome = run(words);
+      EXPECT_TRUE(outcome.signal == 0 && outcome.code != 1) << words[0] << ": " << outcome.err;
+      fs::remove_all(crate);
+    }
+  };
+  forged([](Event& e) {
+    if (e.type == "RunDeclared" && e.body().at("kind") == "shear") e.stream = "run/";
+  })(store);
+  expect(4, {"verify"}, {"the id of the run is not a SHA-256"});
+  expect(4, {"rebuild"}, {"the id of the run is not a SHA-256"});
+  sql("PRAGMA user_version = 1")(store);  // readers derive the tables from the events
+  expect_read();
+  sql("PRAGMA user_version = 3; DELETE FROM runs WHERE kind = 'shear'; UPDATE runs SET id = ''")(
+      store);
+  expect_read();
+  expect(4, {"verify"});
 }
 
 TEST_F(UnusualStore, AFolderMayHaveAnyName) {

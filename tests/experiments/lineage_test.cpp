@@ -158,7 +158,7 @@ TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
     for (const char* key : {"cycles", "state_hash", "states_sha256"}) input.erase(key);
     input["checkpoints"] = now.inputs[i].checkpoints;
   }
-  store_.record_figure("S2", old);
+  store_.record("figure/S2", {"FigureGenerated", old});
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
   ASSERT_EQ(lineage.inputs.size(), now.inputs.size());
   for (std::size_t i = 0; i < now.inputs.size(); ++i) {
@@ -168,7 +168,7 @@ TEST_F(FigureLineageTest, ReadsARecordOfFiles) {
   }
   EXPECT_TRUE(check_inputs(store_, lineage).empty());
   old["inputs"][0]["checkpoints"][1] = std::string(64, 'a');
-  store_.record_figure("S2", old);
+  store_.record("figure/S2", {"FigureGenerated", old});
   const auto faults = check_inputs(store_, figure_lineage(store_, figure_records(store_).back()));
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_EQ(faults[0].run, now.inputs[0].run);
@@ -182,7 +182,7 @@ TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
   for (const auto& [key, value] : others.items()) {
     nlohmann::json changed = facts;
     changed["inputs"][1][key] = value;
-    store_.record_figure("S2", changed);
+    store_.record("figure/S2", {"FigureGenerated", changed});
     const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
     const std::vector<Finding> faults = check_inputs(store_, lineage);
     ASSERT_EQ(faults.size(), 1U) << key;
@@ -218,7 +218,7 @@ TEST_F(FigureLineageTest, FindsTheCyclesOfTheRecord) {
                                                    {{{-1, 1e300, 1e-300}}, 2},
                                                    {{}, 0}}) {
     facts["inputs"][1]["cycles"] = cycles;
-    store_.record_figure("S2", facts);
+    store_.record("figure/S2", {"FigureGenerated", facts});
     const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
     EXPECT_EQ(lineage.inputs.at(1).checkpoints.size(), held) << to_text(cycles);
   }
@@ -229,7 +229,7 @@ TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   nlohmann::json old = figure_records(store_).at(0).provenance;
   old.erase("made");
   old.erase("analysis_version");
-  store_.record_figure("S2", old);
+  store_.record("figure/S2", {"FigureGenerated", old});
   const FigureLineage lineage = figure_lineage(store_, figure_records(store_).back());
   EXPECT_EQ(lineage.inputs.size(), 4U);
   EXPECT_TRUE(to_json(lineage).at("made").is_null());
@@ -241,7 +241,7 @@ TEST_F(FigureLineageTest, ReadsAnOldRecordAndRejectsABrokenOne) {
   for (const nlohmann::json& broken :
        {nlohmann::json{{"inputs", 3}}, with_cycles({"0"}),
         nlohmann::json{{"inputs", {{{"run", "x"}}}}}, nlohmann::json::object()}) {
-    store_.record_figure("S2", broken);
+    store_.record("figure/S2", {"FigureGenerated", broken});
     EXPECT_THROW(figure_lineage(store_, figure_records(store_).back()), StoreDamaged)
         << broken.dump();
   }

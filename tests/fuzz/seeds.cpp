@@ -69,11 +69,12 @@ fs::path make_store(const fs::path& folder) {
                           {"manifest", manifest}, {"variant", "base"},    {"seed", 1},
                           {"checkpoints", inputs}};  // as earlier versions recorded it
   const auto record = [&] {
-    store.record_figure("S2", {{"figure", "S2"},
-                               {"scale", "smoke"},
-                               {"analysis_version", 1},
-                               {"inputs", {input}},
-                               {"outputs", {{"S2a.csv", sha256_hex(kCsv)}}}});
+    store.record("figure/S2", {"FigureGenerated",
+                               {{"figure", "S2"},
+                                {"scale", "smoke"},
+                                {"analysis_version", 1},
+                                {"inputs", {input}},
+                                {"outputs", {{"S2a.csv", sha256_hex(kCsv)}}}}});
   };
   record();
   input.erase("checkpoints");

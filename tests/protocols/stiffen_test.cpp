@@ -34,8 +34,8 @@ struct Reached {
   StageProgress progress;
 };
 
-std::vector<Reached> stiffen(const State& from, std::uint64_t most_steps = kAtOnce) {
-  const Stiffen protocol(kNine, settled().scene);
+std::vector<Reached> stiffened(const State& from, std::uint64_t most_steps = kAtOnce) {
+  const Protocol protocol = stiffen(kNine, settled().scene);
   Simulation simulation(settled().cell, settled().scene, from);
   std::vector<Reached> stops;
   do {
@@ -46,7 +46,7 @@ std::vector<Reached> stiffen(const State& from, std::uint64_t most_steps = kAtOn
 }
 
 const std::vector<Reached>& nine() {
-  static const std::vector<Reached> stops = stiffen(settled().state);
+  static const std::vector<Reached> stops = stiffened(settled().state);
   return stops;
 }
 
@@ -91,9 +91,9 @@ TEST(Stiffen, IsAtRestAtEachOfNineStiffnesses) {
 TEST(Stiffen, ContinuesFromAnyStateAndInAnyChunks) {
   const State& end = nine().back().state;
   for (const std::size_t n : {0U, 4U, 7U}) {
-    EXPECT_TRUE(same_bits(stiffen(nine()[n].state, 3).back().state, end)) << n;
+    EXPECT_TRUE(same_bits(stiffened(nine()[n].state, 3).back().state, end)) << n;
   }
-  EXPECT_TRUE(same_bits(stiffen(end).back().state, end)) << "nothing is left to do";
+  EXPECT_TRUE(same_bits(stiffened(end).back().state, end)) << "nothing is left to do";
 }
 
 }  // namespace

@@ -53,8 +53,9 @@ void perform(Store& store, const Act& act) {
   if (what == "fail") store.fail_stage(id, "an overlap");
   if (what == "complete") store.complete_stage(id, {}, some);
   if (what == "figure")
-    store.record_figure("S" + std::to_string(act.run), {{"inputs", {act.amount}}});
-  if (what == "replay") store.record_replay(id, true, {{"step", act.amount}});
+    store.record("figure/S" + std::to_string(act.run),
+                 {"FigureGenerated", {{"inputs", {act.amount}}}});
+  if (what == "replay") store.record(run_stream(id), {"ReplayVerified", {{"step", act.amount}}});
   if (what == "manifest") store.register_manifest("a: " + std::to_string(act.amount), "a.yaml", {});
   if (what == "prune") {
     store.prune(store.prunable({.runs = {id}, .keep_every = act.amount}));

@@ -87,7 +87,7 @@ TEST_F(MergeTest, ThreeOverlappingStoresEqualOneCompleteStore) {
     a.register_manifest(manifest, "a.yaml", {{"n", 1}});
     advance(a, 0, 3, 3);
     advance(a, 1, 2, 4);
-    a.record_figure("S2", {{"inputs", "of a"}});
+    a.record("figure/S2", {"FigureGenerated", {{"inputs", "of a"}}});
   }
   {
     Store b = open("b");
@@ -100,7 +100,7 @@ TEST_F(MergeTest, ThreeOverlappingStoresEqualOneCompleteStore) {
     c.register_manifest("c: 1\n", "c.yaml", {{"n", 3}});
     advance(c, 0, 4, 5);
     advance(c, 2, 2, 2);
-    c.record_figure("S2", {{"inputs", "of c"}});  // the later one
+    c.record("figure/S2", {"FigureGenerated", {{"inputs", "of c"}}});  // the later one
   }
   {
     Store whole = open("whole");
@@ -110,7 +110,7 @@ TEST_F(MergeTest, ThreeOverlappingStoresEqualOneCompleteStore) {
     advance(whole, 1, 4, 4);
     advance(whole, 0, 4, 5);
     advance(whole, 2, 2, 2);
-    whole.record_figure("S2", {{"inputs", "of c"}});
+    whole.record("figure/S2", {"FigureGenerated", {{"inputs", "of c"}}});
   }
   const auto expected = facts("whole");
   ASSERT_EQ(expected.at("runs").size(), 3u);

@@ -241,9 +241,9 @@ TEST_F(StoreTest, FindsARunByItsPrefix) {
 }
 
 TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
-  store_.record_figure("S2a", {{"inputs", {1}}});
-  store_.record_figure("S2b", {{"inputs", {2}}});
-  store_.record_figure("S2a", {{"inputs", {3}}});
+  store_.record("figure/S2a", {"FigureGenerated", {{"inputs", {1}}}});
+  store_.record("figure/S2b", {"FigureGenerated", {{"inputs", {2}}}});
+  store_.record("figure/S2a", {"FigureGenerated", {{"inputs", {3}}}});
   const std::vector<FigureRecord> figures = store_.figures();
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].name, "S2a");
@@ -252,8 +252,10 @@ TEST_F(StoreTest, KeepsTheNewestRecordOfEachFigure) {
 }
 
 TEST_F(StoreTest, RejectsARecordThatItCouldNotReadAgain) {
-  EXPECT_THROW(store_.record_figure("S2a", {{"inputs", std::string(65 << 20, 'x')}}), UsageError);
-  store_.record_figure("S2b", {{"inputs", {2}}});
+  EXPECT_THROW(
+      store_.record("figure/S2a", {"FigureGenerated", {{"inputs", std::string(65 << 20, 'x')}}}),
+      UsageError);
+  store_.record("figure/S2b", {"FigureGenerated", {{"inputs", {2}}}});
   EXPECT_EQ(open().figures().size(), 1u);
 }
 

@@ -38,9 +38,9 @@ class VerifyTest : public ::testing::Test {
     store.fail_stage(run_id(1), "unstable");
     store.reject_checkpoint(run_id(1), records_.back().sha256, "test");
     store.prune({records_[0]});
-    store.record_replay(run_id(0), true, {{"step", 2}});
+    store.record(run_stream(run_id(0)), {"ReplayVerified", {{"step", 2}}});
     store.declare_stage(sample_run(0, 9));
-    store.record_figure("S2a", {{"inputs", {records_[2].sha256}}});
+    store.record("figure/S2a", {"FigureGenerated", {{"inputs", {records_[2].sha256}}}});
     head_ = store.head();
     events_ = store.events();
     fs::copy_file(log_, path_.parent_path() / "kept");
