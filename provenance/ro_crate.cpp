@@ -115,7 +115,7 @@ json add_host(Graph& graph, const Maker& maker) {
 }
 
 /// Seed, resolved parameters and number of cycles of a run.
-json add_parameters(Graph& graph, const CrateFacts& facts, const Stage& run) {
+json add_parameters(Graph& graph, const Stage& run) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
     given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", run.id, name)},
@@ -129,9 +129,7 @@ json add_parameters(Graph& graph, const CrateFacts& facts, const Stage& run) {
       add(key, value);
       continue;
     }
-    for (const auto& [name, inner] : value.items()) {
-      if (std::ranges::count(facts.left_out, name) == 0) add(name, inner);
-    }
+    for (const auto& [name, inner] : value.items()) add(name, inner);
   }
   if (run.target_cycles > 0) add("target_cycles", run.target_cycles);
   return given;
@@ -207,9 +205,8 @@ std::string title_of(const Stage& run) {
 
 }  // namespace
 
-CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence,
-                       std::vector<std::string> left_out) {
-  CrateFacts facts{run_lineage(store, run), {}, std::move(licence), std::move(left_out)};
+CrateFacts crate_facts(const Store& store, const std::string& run) {
+  CrateFacts facts{run_lineage(store, run), {}};
   for (const RunLineage& stage : facts.stages) {
     for (const Ask& member : stage.stage.asks) {
       if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
@@ -239,7 +236,7 @@ json ro_crate_metadata(const CrateFacts& facts) {
         given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
-    given.parameters = add_parameters(graph, facts, stage.stage);
+    given.parameters = add_parameters(graph, stage.stage);
     for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
       actions.push_back(add_attempt(graph, facts, stage, a, given));
     }
@@ -305,32 +302,26 @@ void make_folder(const fs::path& path) {
 
 }  // namespace
 
-std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
-                                        const fs::path& folder, const std::string& licence,
-                                        const std::vector<std::string>& left_out) {
-  const CrateFacts facts = crate_facts(store, run, licence, left_out);
+std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
+                                        const fs::path& folder) {
   make_folder(folder);
-  if (!fs::is_empty(folder) && !is_crate_of(folder, run)) {
+  if (!fs::is_empty(folder) && !is_crate_of(folder, facts.stages.back().stage.id)) {
     throw std::invalid_argument(folder.string() +
                                 ": the folder is not an export of this run; name another one");
   }
   const ObjectStore objects(store.folder());
   std::vector<std::string> written;
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
-  std::set<std::string> done;
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
-      if (!c.kept() || !done.insert(c.record.sha256).second) continue;
-      const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
       const std::string path = crate_path_of_checkpoint(c.record.sha256);
+      if (!c.kept()) {  // an earlier export wrote it before it was pruned or rejected
+        fs::remove(folder / path);
+        continue;
+      }
+      const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
-    }
-  }
-  // An earlier export wrote what was pruned or rejected since.
-  for (const RunLineage& stage : facts.stages) {
-    for (const CheckpointHistory& c : stage.checkpoints) {
-      if (!done.contains(c.sha256())) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
     }
   }
   for (const ManifestText& manifest : facts.manifests) {

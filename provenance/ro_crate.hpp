@@ -16,14 +16,11 @@ namespace shearcell {
 struct CrateFacts {
   std::vector<RunLineage> stages;  ///< the first stage first, the run itself last
   std::vector<ManifestText> manifests;
-  std::string licence;  ///< URI of the licence of the data, or ""
-  /// Parameters that a record states and the run did not have (Identity::recorded_as).
-  std::vector<std::string> left_out = {};
+  std::string licence = {};  ///< URI of the licence of the data, or ""
 };
 
 /// Throws NotFound for an unknown run.
-CrateFacts crate_facts(const Store& store, const std::string& run, std::string licence = "",
-                       std::vector<std::string> left_out = {});
+CrateFacts crate_facts(const Store& store, const std::string& run);
 
 /// Paths in the crate. They consist of hashes, so recorded text cannot lead out of the folder.
 std::string crate_path_of_checkpoint(const std::string& sha256);
@@ -38,9 +35,7 @@ nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 /// the same run, which is updated: files of checkpoints that are no longer kept are deleted.
 /// Returns the files, relative to the folder. Throws std::invalid_argument for any other folder and
 /// StoreDamaged for a damaged checkpoint; then a new folder is incomplete.
-std::vector<std::string> write_ro_crate(const Store& store, const std::string& run,
-                                        const std::filesystem::path& folder,
-                                        const std::string& licence = "",
-                                        const std::vector<std::string>& left_out = {});
+std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
+                                        const std::filesystem::path& folder);
 
 }  // namespace shearcell

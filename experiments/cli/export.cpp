@@ -15,7 +15,7 @@
 #include "core/drive.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/export/formats.hpp"
-#include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/identity.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
@@ -163,13 +163,15 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-/// Parameters that records state at a fixed value.
-std::vector<std::string> constants_of_records() {
-  std::vector<std::string> names;
-  for (const Field& field : schema()) {
-    if (!field.identity.recorded_as.empty()) names.emplace_back(field.name);
+/// A crate states the parameters that the runs had, as `show` prints them.
+CrateFacts crate_of(const Store& store, const std::string& run, const std::string& licence) {
+  CrateFacts facts = crate_facts(store, run);
+  facts.licence = licence;
+  for (RunLineage& stage : facts.stages) {
+    nlohmann::json& resolved = stage.stage.resolved;
+    if (resolved.is_object()) resolved["parameters"] = effective_parameters(resolved);
   }
-  return names;
+  return facts;
 }
 
 /// The place that names the run.
@@ -183,7 +185,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out) {
   if (format.writer == nullptr) {
-    return write_ro_crate(store, run.stage.id, out, options.licence, constants_of_records());
+    return write_ro_crate(store, crate_of(store, run.stage.id, options.licence), out);
   }
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';

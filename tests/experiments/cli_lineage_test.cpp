@@ -82,6 +82,31 @@ TEST_F(CommandLineLineage, ChecksAPublishedFile) {
   expect_refused({"show", "missing.csv"}, {});
 }
 
+// An early record lacks parameters that later programs name, and states constants.
+TEST_F(CommandLineLineage, ACrateHasTheParametersThatShowHas) {
+  const std::string store = path("early").string(), id = "a61190aacbad";
+  std::filesystem::copy(std::string(SHEARCELL_TEST_DATA) + "/store_v1", store,
+                        std::filesystem::copy_options::recursive);
+  expect(0, {"export", id, "--to", "ro-crate", "--out", "old", "--store", store});
+  const nlohmann::json shown = json({"show", id, "--store", store, "--json"});
+  std::map<std::string, nlohmann::json> stated;
+  const auto crate = nlohmann::json::parse(read_bytes(path("old/ro-crate-metadata.json")));
+  for (const nlohmann::json& entity : crate.at("@graph")) {
+    if (entity.at("@id").get<std::string>().starts_with("#parameter-" + id)) {
+      stated[entity.at("name")] = entity.at("value");
+    }
+  }
+  const nlohmann::json &parameters = shown.at("parameters"), &record = shown.at("resolved");
+  for (const auto& [name, value] : parameters.items()) EXPECT_EQ(stated[name], value) << name;
+  std::size_t constants = 0;
+  for (const auto& [name, value] : record.at("parameters").items()) {
+    if (parameters.contains(name)) continue;
+    EXPECT_FALSE(stated.contains(name)) << name;
+    ++constants;
+  }
+  EXPECT_GT(constants, 0U);
+}
+
 TEST_F(CommandLineLineage, ExportsACrateAndOverwritesNothing) {
   const std::string id = last_run();
   expect(0, {"export", id.substr(0, 12), "--to", "ro-crate", "--out", "a/crate"});
