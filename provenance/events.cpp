@@ -36,11 +36,7 @@ constexpr std::array<Step, 3> kSteps = {{
 
 template <class T>
 constexpr bool has_fields = requires(T& value) {
-  T::fields(value, [](const char*, auto&) {});
-};
-template <class T>
-constexpr bool has_optional_fields = requires(T& value) {
-  T::optional_fields(value, [](const char*, auto&) {});
+  T::fields(value, [](const char*, auto&, bool = false) {});
 };
 template <class T>
 constexpr bool is_optional = requires(T& value) {
@@ -66,24 +62,19 @@ void read(const json& from, const char* key, T& value) {
 
 template <class T>
 void read_fields(const json& from, T& value) {
-  T::fields(value, [&from](const char* name, auto& v) { read(from, name, v); });
-  if constexpr (has_optional_fields<T>) {
-    T::optional_fields(value, [&from](const char* name, auto& v) {
-      if (from.contains(name)) read(from, name, v);
-    });
-  }
+  T::fields(value, [&from](const char* name, auto& v, bool if_stated = false) {
+    if (!if_stated || from.contains(name)) read(from, name, v);
+  });
 }
 
 template <class T>
 json written(const T& value) {
   if constexpr (has_fields<T>) {
     json inner;
-    T::fields(value, [&inner](const char* name, const auto& v) { inner[name] = written(v); });
-    if constexpr (has_optional_fields<T>) {
-      T::optional_fields(value, [&inner](const char* name, const auto& v) {
-        if (json given = written(v); !given.empty()) inner[name] = std::move(given);
-      });
-    }
+    T::fields(value, [&inner](const char* name, const auto& v, bool if_stated = false) {
+      json given = written(v);
+      if (!if_stated || !given.empty()) inner[name] = std::move(given);
+    });
     return inner;
   } else if constexpr (is_optional<T>) {
     return value ? json(*value) : json();

@@ -16,7 +16,8 @@
 namespace shearcell::events {
 
 // `fields` names each member once, for reading and for writing. All members are required in a
-// payload; optional ones may be null.
+// payload, except those with `true`, which are written only if they are stated; optional ones may
+// be null.
 
 struct ManifestRegistered {
   static constexpr std::string_view kType = "ManifestRegistered";
@@ -104,8 +105,8 @@ struct CheckpointRecorded : CheckpointFile {
     CheckpointFile::fields(e, field);
     field("time_s", e.checkpoint.time_s), field("observables", e.checkpoint.observables);
     field("wall_seconds", e.effort.wall_seconds), field("particle_steps", e.effort.particle_steps);
+    field("core_seconds", e.effort.core_seconds, true);
   }
-  static void optional_fields(auto& e, auto field) { field("core_seconds", e.effort.core_seconds); }
 };
 
 struct CheckpointRejected {

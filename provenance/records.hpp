@@ -40,10 +40,8 @@ struct Ask : Place {
     field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
     field("labels", m.swept), field("seed", m.seed), field("manifest", m.manifest);
     field("checkpoint_every", m.checkpoint_every);
-  }
-  /// Members that are recorded only if they are stated.
-  static void optional_fields(auto& m, auto field) {
-    field("until", m.until), field("checkpoint_phases", m.checkpoint_phases);
+    // Recorded only if they are stated.
+    field("until", m.until, true), field("checkpoint_phases", m.checkpoint_phases, true);
   }
 };
 
