@@ -19,20 +19,16 @@ using nlohmann::json;
 namespace events {
 namespace {
 
-/// Converts payloads of one type from layout `from` to the next. Null stands for values that the
-/// older layout did not record. Steps of one type are in ascending order.
-struct Step {
+/// Members that layout 2 added to a type: null in payloads of layout 1, which did not record them.
+struct Added {
   std::string_view type;
-  std::uint64_t from;
-  void (*convert)(json&);
+  const char* member;
 };
 
-constexpr std::array<Step, 3> kSteps = {{
-    {RunStarted::kType, 1,
-     [](json& payload) { payload["process"] = payload["parent_checkpoint"] = nullptr; }},
-    {RunResumed::kType, 1, [](json& payload) { payload["process"] = nullptr; }},
-    {RunCompleted::kType, 1, [](json& payload) { payload["target_cycles"] = nullptr; }},
-}};
+constexpr std::array<Added, 4> kAdded = {{{RunStarted::kType, "process"},
+                                          {RunStarted::kType, "parent_checkpoint"},
+                                          {RunResumed::kType, "process"},
+                                          {RunCompleted::kType, "target_cycles"}}};
 
 template <class T>
 constexpr bool has_fields = requires(T& value) {
@@ -122,11 +118,7 @@ NewEvent encode(const Any& event) {
 }
 
 std::uint64_t newest_schema(std::string_view type) {
-  std::uint64_t newest = 1;
-  for (const Step& step : kSteps) {
-    if (step.type == type) newest = std::max(newest, step.from + 1);
-  }
-  return newest;
+  return std::ranges::count(kAdded, type, &Added::type) > 0 ? 2 : 1;
 }
 
 }  // namespace events
@@ -146,8 +138,8 @@ json Event::body() const {
                     "to {}; use the newer shearcell that wrote it",
                     seq, type, schema, newest));
   }
-  for (const events::Step& step : events::kSteps) {
-    if (step.type == type && step.from >= schema) step.convert(body);
+  for (const events::Added& added : events::kAdded) {
+    if (added.type == type && schema < newest) body[added.member] = nullptr;
   }
   return body;
 }
