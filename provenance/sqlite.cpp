@@ -262,18 +262,13 @@ std::vector<std::byte> Statement::blob(int column) const {
 std::vector<std::string> Statement::cells() const {
   std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
-    switch (sqlite3_column_type(handle_.get(), column)) {
-      case SQLITE_NULL:
-        row.emplace_back("NULL");
-        break;
-      case SQLITE_INTEGER:
-        row.push_back(std::to_string(sqlite3_column_int64(handle_.get(), column)));
-        break;
-      case SQLITE_FLOAT:
-        row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal: every bit counts
-        break;
-      default:
-        row.push_back(fmt::format("'{}'", text(column)));
+    const int type = sqlite3_column_type(handle_.get(), column);  // before text() converts it
+    if (type == SQLITE_FLOAT) {
+      row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal: every bit counts
+    } else if (type == SQLITE_INTEGER) {
+      row.push_back(text(column));
+    } else {
+      row.push_back(type == SQLITE_NULL ? "NULL" : "'" + text(column) + "'");
     }
   }
   return row;
