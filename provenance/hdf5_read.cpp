@@ -194,11 +194,11 @@ void Object::read_message(std::uint64_t type, Bytes body) {
       Cursor cursor(body);
       cursor.take(1);
       if ((cursor.number(1) & 1) != 0) cursor.take(8);
-      if (cursor.number(8) != kNowhere) plain_ = false;  // links in a heap
+      if (cursor.number(8) != kNowhere) fail("has links in a heap");
       return;
     }
     default:
-      plain_ = false;  // a filter, an external file, an old or dense group, ...
+      fail("has an unsupported layout");  // a filter, an external file, an old or dense group, ...
   }
 }
 
@@ -235,26 +235,21 @@ void Object::read_attribute(Bytes body) {
 void Object::read_layout(Bytes body) {
   Cursor cursor(body);
   if (layout_) fail("has two layouts");
-  if (cursor.number(1) == 3 && cursor.number(1) == 1) {  // contiguous
-    const std::uint64_t address = cursor.number(8);
-    layout_ = Layout{address, cursor.number(8)};
-  } else {
-    plain_ = false;
-  }
+  if (cursor.number(1) != 3 || cursor.number(1) != 1)
+    fail("is not stored contiguously in this file");
+  const std::uint64_t address = cursor.number(8);
+  layout_ = Layout{address, cursor.number(8)};
 }
 
 Object Object::child(const std::string& name) const {
   const auto found = links_.find(name);
-  if (found == links_.end()) {
-    refuse(below(name),
-           plain_ ? "is missing" : "is missing, or its group has an unsupported layout");
-  }
+  if (found == links_.end()) refuse(below(name), "is missing");
   if (!found->second) refuse(below(name), "is not a hard link");
   return {file_, *found->second, below(name)};
 }
 
 std::vector<std::string> Object::names() const {
-  if (!plain_ || layout_) fail("is not a group of a supported layout");
+  if (layout_) fail("is not a group");
   std::vector<std::string> found;
   for (const auto& [name, address] : links_) found.push_back(name);
   return found;
@@ -301,7 +296,7 @@ std::string Object::text(const std::string& name) const {
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);
-  if (!dataset.plain_ || !dataset.layout_ || !dataset.links_.empty()) {
+  if (!dataset.layout_ || !dataset.links_.empty()) {
     dataset.fail("is not stored contiguously in this file");
   }
   if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has another number type");

@@ -82,7 +82,6 @@ class Object {
   std::map<std::string, Attribute> attributes_;
   std::optional<Bytes> type_, space_;  ///< of a dataset
   std::optional<Layout> layout_;
-  bool plain_ = true;  ///< without filter, external file and dense storage
 };
 
 }  // namespace shearcell::hdf5
