@@ -27,7 +27,7 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
 }
 
 // Generalized forces of the grains on the walls. A point of a wall at height y is displaced in x by
-// (y - top) tan(theta); the horizontal walls move as a whole, with the y of their planes.
+// (y - top) tan(theta); a horizontal wall moves as a whole: its y is that of its plane.
 struct WallForces {
   double on_tilt = 0;  // conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
   // Conjugate to the moving wall's height times tan(theta) [m d/s^2]: sum of f_x on a moving bottom

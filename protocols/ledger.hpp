@@ -27,12 +27,13 @@ struct Ledger {
   double missing() const { return stored() + dissipation() - work_of_walls; }
 };
 
-/// Simulates `steps` steps from `start`, and adds up work and losses every `stride` steps by the
-/// trapezoidal and the rectangle rule. Each sample finds the contacts with walls without neighbour
-/// lists, which takes as long as 15 steps. Measured over a cycle at Table I's time step (45600
-/// steps), N = 600 and 5200: with stride 8 the balance errs by at most 0.6 % of the dissipation
-/// (A = 0.1), as with stride 1, and the ledger takes three to four times as long as the cycle
-/// itself; with stride 16 two to three times, and an error of 1 %. Throws NumericalFailure.
+/// Simulates `steps` steps from `start`, and every `stride` steps adds the work (trapezoidal rule)
+/// and the losses (rectangle rule, from the later state). Each sample finds the contacts with walls
+/// without neighbour lists, which takes as long as 15 steps. Measured over a cycle at Table I's
+/// time step (45600 steps), N = 600 and 5200: with stride 8 the balance errs by at most 0.6 % of
+/// the dissipation (A = 0.1), as with stride 1, and the ledger takes three to four times as long as
+/// the cycle itself; with stride 16 two to three times, and an error of 1 %. Throws
+/// NumericalFailure.
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
               std::uint64_t steps, std::uint64_t stride = 1);
 

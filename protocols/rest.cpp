@@ -7,7 +7,8 @@ namespace shearcell {
 
 State rested(const Cell& cell, const Scene& scene, State state, double seconds) {
   const auto steps = static_cast<std::uint64_t>(std::llround(seconds / scene.time_step));
-  // The pause behind a cycle of one step.
+  // Only the pause of this drive is used. It follows a cycle of one step, so the state begins at
+  // step 1.
   const Drive pause{.amplitude = 0, .steps_per_cycle = 1, .pause_steps = steps};
   state.step = 1;
   Simulation simulation(cell, scene, state);

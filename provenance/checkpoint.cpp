@@ -277,7 +277,9 @@ void require_plausible(const Checkpoint& checkpoint) {
     if (std::abs(length) > kLongestCell) refuse("/restart/cell", "is larger than any cell");
   }
   // An analysis takes memory for each layer and for each periodic image that a grain may reach.
-  if (cell.depth < 0.1 * cell.width) refuse("/restart/cell", "is flatter than any cell");
+  if (cell.depth < 0.1 * cell.width) {
+    refuse("/restart/cell", "has a depth of less than a tenth of its width");
+  }
   const double moving = checkpoint.state.wall_height;
   const double height =
       std::max({cell.top, cell.bottom, moving}) - std::min({cell.top, cell.bottom, moving});

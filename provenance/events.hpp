@@ -152,7 +152,8 @@ struct StoreMerged {
   }
 };
 
-/// Of a type whose payload is kept as given, or that this program does not know.
+/// Any other event: no struct describes its payload (FigureGenerated, JobQueued, ...), or this
+/// program does not know its type.
 struct Other {};
 
 using Any =

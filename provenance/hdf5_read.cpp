@@ -78,7 +78,7 @@ class Cursor {
   Bytes rest_;
 };
 
-/// Compares a datatype message; zeros may follow it.
+/// Whether a datatype message begins with these bytes; padding after them is ignored.
 bool is_type(Bytes found, std::string_view wanted) {
   return found.size() >= wanted.size() &&
          std::memcmp(found.data(), wanted.data(), wanted.size()) == 0;

@@ -44,8 +44,8 @@ struct Attempt {
   std::string why;  ///< of a failure or interruption; "" otherwise
   /// Recorded host, build and libraries; an object, maybe empty.
   nlohmann::json host = nlohmann::json::object();
-  std::string from_run;                  ///< run of the initial state; "" for a new filling
-  std::string from_checkpoint;           ///< SHA-256 of the initial state; "" for a new filling
+  std::string from_run;  ///< run of the initial state; "" if it began from loose grains or a file
+  std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
   std::vector<std::string> checkpoints;  ///< SHA-256 of its checkpoints, in order
 };
 

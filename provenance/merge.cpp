@@ -121,8 +121,9 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 
 using Stream = std::vector<const Event*>;  // in the order of the log
 
-/// An attempt is copied when it recorded a checkpoint that is news, or when it ended the run in a
-/// further state than the store's.
+/// Every attempt is copied when the store does not have the run. Else an attempt is copied when it
+/// recorded a checkpoint that is news, or when it ended the run in a further state than the
+/// store's.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< the event that set its state

@@ -29,8 +29,8 @@ sqlite::Database empty_projections(const std::string& name);
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
 /// nothing. Throws StoreDamaged when the payload lacks what its type requires.
 void apply(sqlite::Database& database, const Event& event);
-/// Checks the digest of a manifest, then applies the event. Returns why the event cannot be
-/// applied, or "".
+/// Applies the event, then checks its time and the SHA-256 of a registered manifest or file of
+/// grains. Returns what is wrong, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.

@@ -21,7 +21,7 @@ class ProgramError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The text as one word for a POSIX shell and for fish, in single quotes only if it needs them.
+/// The text as one word for a POSIX shell, in single quotes only if it needs them.
 std::string shell_word(std::string_view text);
 
 /// The executable file of this name: the name itself if it has a slash, else the first on PATH.
