@@ -84,7 +84,9 @@ TEST_F(CommandLineLineage, ChecksAPublishedFile) {
 
 // An early record lacks parameters that later programs name, and states constants.
 TEST_F(CommandLineLineage, ACrateHasTheParametersThatShowHas) {
-  const std::string store = std::string(SHEARCELL_TEST_DATA) + "/store_v1", id = "a61190aacbad";
+  const std::string store = path("early").string(), id = "a61190aacbad";
+  std::filesystem::copy(std::string(SHEARCELL_TEST_DATA) + "/store_v1", store,
+                        std::filesystem::copy_options::recursive);
   expect(0, {"export", id, "--to", "ro-crate", "--out", "old", "--store", store});
   const nlohmann::json shown = json({"show", id, "--store", store, "--json"});
   std::map<std::string, nlohmann::json> stated;
