@@ -42,7 +42,6 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   GrainMeasures& grains = analysis.grains;
 
   VoronoiDiagram diagram = voronoi(cell, pose, positions);
-  grains.q6 = bond_order_q6(diagram);
   grains.cell_volume = std::move(diagram.volume);
   grains.cell_surface = std::move(diagram.surface);
   Overlaps contact = overlaps(cell, pose, positions);
@@ -50,7 +49,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   grains.contacts = std::move(contact.contacts);
   grains.interior = interior_grains(cell, pose, positions);
 
-  all.grains = grains.q6.size();
+  all.grains = grains.cell_volume.size();
   all.interior_grains = static_cast<std::size_t>(
       std::count(grains.interior.begin(), grains.interior.end(), std::uint8_t{1}));
   const PackingFractions fractions =
@@ -65,6 +64,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   for (std::size_t i = 0; i < all.grains; ++i) {
     grains.phi_local.push_back(
         local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]));
+    grains.q6.push_back(bond_order_q6(diagram.faces_of(i), grains.cell_surface[i]));
     grains.structure.push_back(structure(grains.phi_local[i], grains.q6[i]));
   }
   find_crystallites(diagram, analysis);
@@ -74,10 +74,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
 
 Analysis analyse(const Checkpoint& checkpoint) {
   Analysis analysis = analyse(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  GrainMeasures& grains = analysis.grains;
-  PackingMechanics found = mechanics(checkpoint, grains.cell_volume, grains.interior);
-  analysis.mechanics = found.packing;
-  grains.pressure = std::move(found.grain_pressure);
+  analysis.mechanics = mechanics(checkpoint, analysis.grains.cell_volume, analysis.grains.interior);
   return analysis;
 }
 
@@ -93,8 +90,9 @@ double mean_surface(const GrainMeasures& grains) {
   return interior_mean(grains, [&](std::size_t i) { return grains.cell_surface[i]; });
 }
 
-Provider packing_provider() {
-  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+std::vector<Provider> packing_providers() {
+  using enum MeasureKind;
+  const auto scalars_of = [](const MeasureInput& input) -> nlohmann::json {
     const PackingMeasures& m = input.analysis->measures;
     return {{"grains", m.grains},  // N is a parameter of the run, so it is not a measure
             {"interior_grains", m.interior_grains},
@@ -108,55 +106,9 @@ Provider packing_provider() {
             {"crystallites", m.crystallites},
             {"largest_crystallite", m.largest_crystallite}};
   };
-  using enum MeasureKind;
-  return {.name = "scalars",
-          .parameters = crystal_criteria(),
-          .measures = {{.name = "interior_grains",
-                        .unit = "1",
-                        .meaning = "N_inves, grains at least 1.5 d from the wall surfaces",
-                        .kind = count,
-                        .words = "N_inves"},
-                       {"phi", "1", "volume fraction of interior grains (Eq. S4)"},
-                       {"phi_uncorrected", "1",
-                        "phi_u, the same without a correction for overlaps (Eq. S2)"},
-                       {.name = "crystalline_percent",
-                        .unit = "%",
-                        .meaning = "crystalline grains among interior grains",
-                        .words = "percentage crystalline"},
-                       {"fcc_percent", "%", "FCC grains among interior grains"},
-                       {"hcp_percent", "%", "HCP grains among interior grains"},
-                       {.name = "mean_overlap_d",
-                        .unit = "d",
-                        .meaning = "mean overlap of touching grains (Eq. S3)",
-                        .words = "mean overlap"},
-                       {.name = "contacts_per_grain",
-                        .unit = "1",
-                        .meaning = "contacts with grains and wall grains, mean over all grains",
-                        .words = "contacts per grain"},
-                       {"crystallites", "1", "number of crystallites of interior grains", count},
-                       {"largest_crystallite", "1", "grains in the largest crystallite", count}},
-          .compute = compute,
-          .read_more = [](const nlohmann::json&, Measures& measures) {
-            const double phi = measures.number("phi");
-            if (phi < 0 || phi > 1) throw AnalysisError("a cached phi is not in 0 to 1");
-          }};
-}
-
-Provider crystallite_provider() {
-  return {
-      .name = "crystallites",
-      .parameters = crystal_criteria(),
-      .compute = [](const MeasureInput& input) { return to_json(input.analysis->crystallites); },
-      .read_more =
-          [](const nlohmann::json& result, Measures& measures) {
-            measures.crystallite_map = read_crystallite_map(result);
-          }};
-}
-
-Provider grain_provider() {
-  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+  const auto grains_of = [](const MeasureInput& input) -> nlohmann::json {
     const GrainMeasures& grains = input.analysis->grains;
-    std::vector<double> pressure = grains.pressure;
+    std::vector<double> pressure = input.analysis->mechanics->grain_pressure;
     const double unit_Pa = mechanical_units(input).stress_Pa;
     for (double& one : pressure) one *= unit_Pa;
     std::vector<std::int32_t> crystallite = grains.crystallites.label;
@@ -175,24 +127,57 @@ Provider grain_provider() {
                    .scale = std::move(scale),
                    .words = words};
   };
-  return {.name = "grains",
-          .parameters = crystal_criteria(),
-          .measures = {of_grains("phi_local", "1", "volume fraction of its cell", "phi_local",
-                                 {.low = 0.55, .high = 0.74}),
-                       of_grains("q6", "1", "bond order (Eq. S1)", "q6", {.low = 0.2, .high = 0.6}),
-                       of_grains("overlap", "d", "largest overlap", "largest overlap",
-                                 {.low = 0, .high = 0.02}),
-                       of_grains("grain_pressure_Pa", "Pa", "of its contacts over its cell",
-                                 "pressure", {.low = 0, .high = 3, .parameter = "pressure_Pa"}),
-                       of_grains("contacts", "1", "contacts with grains and wall grains",
-                                 "contacts", {.low = 0, .high = 12, .whole = true}),
-                       of_grains("structure", "1", "0 disordered, 1 FCC, 2 HCP", "structure",
-                                 {.classes = {"disordered", "FCC", "HCP"},
-                                  .whole = true,
-                                  .of_wall_grains = -1}),
-                       of_grains("crystallite", "1", "0 none; 1, 2, ... by their lowest grain id",
-                                 "crystallites", {.whole = true, .of_wall_grains = -1})},
-          .compute = compute};
+  return {
+      {.name = "scalars",
+       .parameters = crystal_criteria(),
+       .measures = {{.name = "interior_grains",
+                     .unit = "1",
+                     .meaning = "N_inves, grains at least 1.5 d from the wall surfaces",
+                     .kind = count,
+                     .words = "N_inves"},
+                    {"phi", "1", "volume fraction of interior grains (Eq. S4)"},
+                    {"phi_uncorrected", "1",
+                     "phi_u, the same without a correction for overlaps (Eq. S2)"},
+                    {.name = "crystalline_percent",
+                     .unit = "%",
+                     .meaning = "crystalline grains among interior grains",
+                     .words = "percentage crystalline"},
+                    {"fcc_percent", "%", "FCC grains among interior grains"},
+                    {"hcp_percent", "%", "HCP grains among interior grains"},
+                    {.name = "mean_overlap_d",
+                     .unit = "d",
+                     .meaning = "mean overlap of touching grains (Eq. S3)",
+                     .words = "mean overlap"},
+                    {.name = "contacts_per_grain",
+                     .unit = "1",
+                     .meaning = "contacts with grains and wall grains, mean over all grains",
+                     .words = "contacts per grain"},
+                    {"crystallites", "1", "number of crystallites of interior grains", count},
+                    {"largest_crystallite", "1", "grains in the largest crystallite", count}},
+       .compute = scalars_of,
+       .read_more =
+           [](const nlohmann::json&, Measures& measures) {
+             const double phi = measures.number("phi");
+             if (phi < 0 || phi > 1) throw AnalysisError("a cached phi is not in 0 to 1");
+           }},
+      {.name = "grains",
+       .parameters = crystal_criteria(),
+       .measures = {of_grains("phi_local", "1", "volume fraction of its cell", "phi_local",
+                              {.low = 0.55, .high = 0.74}),
+                    of_grains("q6", "1", "bond order (Eq. S1)", "q6", {.low = 0.2, .high = 0.6}),
+                    of_grains("overlap", "d", "largest overlap", "largest overlap",
+                              {.low = 0, .high = 0.02}),
+                    of_grains("grain_pressure_Pa", "Pa", "of its contacts over its cell",
+                              "pressure", {.low = 0, .high = 3, .parameter = "pressure_Pa"}),
+                    of_grains("contacts", "1", "contacts with grains and wall grains", "contacts",
+                              {.low = 0, .high = 12, .whole = true}),
+                    of_grains("structure", "1", "0 disordered, 1 FCC, 2 HCP", "structure",
+                              {.classes = {"disordered", "FCC", "HCP"},
+                               .whole = true,
+                               .of_wall_grains = -1}),
+                    of_grains("crystallite", "1", "0 none; 1, 2, ... by their lowest grain id",
+                              "crystallites", {.whole = true, .of_wall_grains = -1})},
+       .compute = grains_of}};
 }
 
 }  // namespace shearcell

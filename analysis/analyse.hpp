@@ -38,7 +38,6 @@ struct GrainMeasures {
   std::vector<std::int32_t> contacts;   ///< with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
-  std::vector<double> pressure;        ///< [k/d]; of a checkpoint
   std::vector<Structure> structure;    ///< of every grain, near the walls too
   std::vector<std::uint8_t> interior;  ///< 1 or 0
   Crystallites crystallites;           ///< of crystalline interior grains

@@ -8,17 +8,18 @@
 namespace shearcell {
 
 std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure, double least) {
-  struct OverRuns {
+  struct Members {
+    std::vector<const FigureRun*> runs;  // one for each number
     std::vector<double> phi;
     std::vector<double> value;
   };
-  std::map<std::int64_t, OverRuns> bins;
+  std::map<std::int64_t, Members> bins;
   for (const FigureRun* run : runs) {
-    std::map<std::int64_t, OverRuns> own;
+    std::map<std::int64_t, Members> own;
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       const double phi = checkpoint.measures.number("phi");
       if (!std::isfinite(phi)) continue;
-      OverRuns& bin = own[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
+      Members& bin = own[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
       bin.phi.push_back(phi);
       const double value = checkpoint.measures.number(measure);
       bin.value.push_back(value < least ? least : value);
@@ -26,6 +27,7 @@ std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure, dou
     for (const auto& [bin, checkpoints] : own) {
       const RunStatistics value = over_runs(checkpoints.value);
       if (!value.mean) continue;
+      bins[bin].runs.push_back(run);
       bins[bin].phi.push_back(over_runs(checkpoints.phi).mean.value());
       bins[bin].value.push_back(*value.mean);
     }
@@ -33,8 +35,9 @@ std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure, dou
   std::vector<PhiBin> result;
   for (const auto& [bin, found] : bins) {
     const auto low = static_cast<double>(bin);
-    result.push_back(
-        {low * phi_bin, (low + 1) * phi_bin, over_runs(found.phi), over_runs(found.value)});
+    result.push_back({low * phi_bin, (low + 1) * phi_bin,
+                      over_runs(over_packings(found.runs, found.phi)),
+                      over_runs(over_packings(found.runs, found.value))});
   }
   return result;
 }

@@ -15,7 +15,7 @@ namespace shearcell {
 inline constexpr double phi_bin = 0.002;
 
 /// All checkpoints with low <= phi < high. Each run counts once, with the mean of its checkpoints
-/// there, so that errors are over independent runs.
+/// there, and runs of one packing count as one run, so that errors are over independent runs.
 struct PhiBin {
   double low = 0;
   double high = 0;

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "analysis/error.hpp"
-#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -94,7 +93,7 @@ Text operator+(Text first, const Text& second) {
   return first;
 }
 
-Text text_with_formulas(std::string_view text) {
+Text formula(std::string_view text) {
   Text result;
   const auto add = [&](std::string_view part, const char* style) {
     if (part.empty()) return;
@@ -108,12 +107,12 @@ Text text_with_formulas(std::string_view text) {
     text.remove_prefix(part.size());
     return part;
   };
-  for (bool formula = false; !text.empty();) {
+  for (bool inside = false; !text.empty();) {
     const char c = text.front();
     if (c == '$') {
-      formula = !formula;
+      inside = !inside;
       take(1);
-    } else if (formula && (c == '_' || c == '^') && text.size() > 1) {
+    } else if (inside && (c == '_' || c == '^') && text.size() > 1) {
       take(1);
       const bool braces = text.front() == '{';
       if (braces) take(1);
@@ -126,7 +125,7 @@ Text text_with_formulas(std::string_view text) {
     } else {
       const bool latin = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
       const bool greek = (static_cast<unsigned char>(c) & 0xFE) == 0xCE;  // its first byte of two
-      add(take(greek ? 2 : 1), formula && (latin || greek) ? "i" : "");
+      add(take(greek ? 2 : 1), inside && (latin || greek) ? "i" : "");
     }
   }
   return result;
@@ -152,12 +151,6 @@ std::string to_csv(const FigureTable& table) {
     add_line(row, [](const TableValue& value) { return std::visit(FieldText{}, value); });
   }
   return text;
-}
-
-std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder) {
-  std::filesystem::path path = folder / (table.name + ".csv");
-  write_output(path, to_csv(table));
-  return path;
 }
 
 std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -27,25 +26,13 @@ struct Text {
   Text() = default;
   Text(const char* plain) : Text(std::string(plain)) {}  // NOLINT: a label is often plain
   Text(std::string plain) { parts.push_back({std::move(plain), ""}); }  // NOLINT
-  Text(std::string text, std::string style) {
-    parts.push_back({std::move(text), std::move(style)});
-  }
   bool empty() const { return parts.empty(); }
 };
 Text operator+(Text first, const Text& second);
-inline Text italic(std::string text) {
-  return {std::move(text), "i"};
-}
-inline Text subscript(std::string text) {
-  return {std::move(text), "sub"};
-}
-inline Text superscript(std::string text) {
-  return {std::move(text), "sup"};
-}
 
 /// Text in which formulas stand between `$`, as in TeX: letters are italic there, and `_` and `^`
 /// lower and raise the next character or the text in the next braces: "drag $v_{fluid}$".
-Text text_with_formulas(std::string_view text);
+Text formula(std::string_view text);
 
 /// Empty (not measured, or no error from one run), a number, a whole number, or text.
 struct TableValue : std::variant<std::monostate, double, std::int64_t, std::string> {
@@ -148,7 +135,7 @@ struct TextTable {
 
 /// One panel: its data and one way to draw them. With neither chart nor text it is not drawn.
 struct FigureTable {
-  std::string name;                  ///< "S2a": letters, digits, '-' and '_'
+  std::string name = {};             ///< "S2a": letters, digits, '-' and '_'
   std::vector<std::string> columns;  ///< with the unit at the end where there is one
   std::vector<TableRow> rows = {};
   Chart chart = {};
@@ -161,9 +148,6 @@ std::string csv_field(const std::string& text);
 /// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits; a number
 /// that is not finite leaves its field empty.
 std::string to_csv(const FigureTable& table);
-
-/// Writes FOLDER/NAME.csv and returns its path. Throws std::runtime_error when it cannot.
-std::filesystem::path write_csv(const FigureTable& table, const std::filesystem::path& folder);
 
 /// The points of one series, without its shift. Points of which x or y is not a finite number are
 /// left out.

@@ -35,7 +35,7 @@ struct Values {
   std::map<Missing, std::size_t> missing;
   std::size_t not_positive = 0;  ///< values without a logarithm, which are left out
   bool enough = true;            ///< three quarters of each group have a number
-  Entered entered = entered_with({"value", "missing"});
+  FigureTable entered = entered_with({"value", "missing"});
 
   void take(const Scalar& scalar, RunGroup group, const Number& number) {
     std::size_t without = 0;
@@ -81,9 +81,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   } else if (runs < least_runs) {
     add(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
-  Verdict verdict = decide(claim, quantity, estimate, runs, std::move(note));
-  verdict.entered = std::move(values.entered);
-  return verdict;
+  return decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
 }
 
 /// Differences a - b of the packings that both groups have: each of the mean over its runs.
@@ -264,13 +262,13 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
   return waits;
 }
 
-Entered entered_with(const std::vector<std::string>& columns) {
-  Entered entered{{"group", "seed", "packing"}};
+FigureTable entered_with(const std::vector<std::string>& columns) {
+  FigureTable entered{.columns = {"group", "seed", "packing"}};
   entered.columns.insert(entered.columns.end(), columns.begin(), columns.end());
   return entered;
 }
 
-void enter(const FigureRun& run, const TableRow& values, Entered& entered) {
+void enter(const FigureRun& run, const TableRow& values, FigureTable& entered) {
   TableRow& row = entered.rows.emplace_back(TableRow{run.variant, run.seed, packing_of(run)});
   row.insert(row.end(), values.begin(), values.end());
 }
@@ -290,21 +288,18 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
   } else if (!estimate) {
     add(note, fmt::format("{} is at cycle 0 in every run of one group, or in no run", event));
   }
-  Verdict verdict =
-      decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
-             runs, std::move(note));
-  verdict.counted = Counted::runs_per_variant;
-  verdict.entered = entered_with({"cycle", "missing"});
+  FigureTable entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {
     for (const FigureRun* run : group) {
       RunValue cycle = {0, Missing::checkpoint};
       for (const Waiting& wait : waits(RunGroup(&run, 1))) {
         cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
       }
-      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, verdict.entered);
+      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
     }
   }
-  return verdict;
+  return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
+                estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
 }
 
 namespace {
@@ -377,7 +372,7 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
   if (waits && !same) how = higher ? "later" : "earlier";
   if (!same && claim.margin > 0) {
     how += " by more than " + (waits ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
-                               : claim.relative ? fmt::format("{} %", 100 * claim.margin)
+                               : claim.relative ? fmt::format("{:.6g} %", 100 * claim.margin)
                                                 : fmt::format("{}", claim.margin));
   }
   std::string text = claim.statement;

@@ -25,8 +25,6 @@ struct PublishedSpec {
   std::optional<double> value = {};
   double error = 0;                              ///< of the value; 0: not stated
   std::vector<std::vector<double>> points = {};  ///< x, y and perhaps the error of y
-
-  bool operator==(const PublishedSpec&) const = default;
 };
 
 /// A claim that a manifest states.
@@ -54,8 +52,6 @@ struct ClaimSpec {
   /// As PlotSpec::listed. A side that is not one variant then has no runs; otherwise it is an
   /// error.
   bool listed = false;
-
-  bool operator==(const ClaimSpec&) const = default;
 };
 
 /// One number per run.
@@ -135,8 +131,8 @@ Figure claim_figure(const ClaimSpec& claim);
 
 /// An empty table of what entered a verdict: group (the run's variant), seed, packing, then these
 /// columns.
-Entered entered_with(const std::vector<std::string>& columns);
+FigureTable entered_with(const std::vector<std::string>& columns);
 /// Adds the row of a run, with the values of the columns after group, seed and packing.
-void enter(const FigureRun& run, const TableRow& values, Entered& entered);
+void enter(const FigureRun& run, const TableRow& values, FigureTable& entered);
 
 }  // namespace shearcell

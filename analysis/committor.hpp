@@ -32,7 +32,7 @@ struct Followed {
   /// Grains of its largest descendant one cycle after the start, two cycles after it, ...; 0 where
   /// it has none.
   std::vector<std::int32_t> sizes = {};
-  /// In the cycle after those it was swallowed, and is followed no further.
+  /// It was swallowed in the cycle after the last one of `sizes`. It is not followed further.
   bool merged = false;
 };
 

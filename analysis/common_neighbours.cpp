@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/common_neighbours.hpp"
+// The lattice of each grain by common neighbours, wall grains included.
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,8 @@
 
 namespace shearcell {
 namespace {
+
+enum class Lattice : std::uint8_t { none, fcc, hcp, bcc };
 
 constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are within 1.2
 constexpr std::size_t kMost = 14;
@@ -126,12 +128,14 @@ Lattice body_centred(std::span<const Neighbour> near) {
   return first_shell == 8 && second_shell == 6 ? Lattice::bcc : Lattice::none;
 }
 
-}  // namespace
-
-std::vector<Lattice> common_neighbour_analysis(const Cell& cell, const WallPose& pose,
-                                               const Eigen::Matrix3Xd& grains) {
+/// Adaptive common neighbour analysis (Stukowski, Modelling Simul. Mater. Sci. Eng. 20, 045021
+/// (2012)) of each grain. Wall grains are neighbours too. FCC and HCP are decided by the 12 nearest
+/// neighbours, with bonds up to (1 + sqrt 2) / 2 times their mean distance, BCC by 14. A grain with
+/// fewer neighbours within 1.5 d is in no lattice.
+std::vector<Lattice> lattices_of(const Checkpoint& c) {
   std::vector<Lattice> lattices;
-  for (const std::vector<Neighbour>& of_grain : neighbours_of_all(cell, pose, grains)) {
+  for (const std::vector<Neighbour>& of_grain :
+       neighbours_of_all(c.cell, pose_of(c), c.state.position)) {
     const std::span near(of_grain);
     Lattice lattice = Lattice::none;
     if (near.size() >= 12) lattice = close_packed(near.first(12));
@@ -141,18 +145,11 @@ std::vector<Lattice> common_neighbour_analysis(const Cell& cell, const WallPose&
   return lattices;
 }
 
-namespace {
-
-std::vector<Lattice> lattices_of(const MeasureInput& input) {
-  const Checkpoint& c = *input.checkpoint;
-  return common_neighbour_analysis(c.cell, pose_of(c), c.state.position);
-}
-
 }  // namespace
 
-Provider lattice_provider() {
+std::vector<Provider> lattice_providers() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    const std::vector<Lattice> lattice = lattices_of(input);
+    const std::vector<Lattice> lattice = lattices_of(*input.checkpoint);
     const auto percent = [&](Lattice wanted) {
       return percent_of_interior(input.analysis->grains,
                                  [&](std::size_t i) { return lattice[i] == wanted; });
@@ -163,30 +160,27 @@ Provider lattice_provider() {
             {"cna_hcp_percent", hcp},
             {"cna_bcc_percent", percent(Lattice::bcc)}};
   };
-  return {.name = "lattices",
-          .parameters = interior_criteria(),
-          .measures = {{"cna_crystalline_percent", "%",
-                        "FCC and HCP grains among interior grains, by common neighbour analysis"},
-                       {"cna_fcc_percent", "%", "FCC grains likewise"},
-                       {"cna_hcp_percent", "%", "HCP grains likewise"},
-                       {"cna_bcc_percent", "%", "BCC grains likewise"}},
-          .compute = compute};
-}
-
-Provider grain_lattice_provider() {
-  return {.name = "grain_lattices",
-          .parameters = nlohmann::json::object(),
-          .measures = {{.name = "lattice",
-                        .unit = "1",
-                        .meaning = "by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC",
-                        .kind = MeasureKind::grains,
-                        .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
-                                  .whole = true,
-                                  .of_wall_grains = -1},
-                        .words = "lattice by common neighbours"}},
-          .compute = [](const MeasureInput& input) {
-            return nlohmann::json{{"lattice", lattices_of(input)}};
-          }};
+  return {{.name = "lattices",
+           .parameters = interior_criteria(),
+           .measures = {{"cna_crystalline_percent", "%",
+                         "FCC and HCP grains among interior grains, by common neighbour analysis"},
+                        {"cna_fcc_percent", "%", "FCC grains likewise"},
+                        {"cna_hcp_percent", "%", "HCP grains likewise"},
+                        {"cna_bcc_percent", "%", "BCC grains likewise"}},
+           .compute = compute},
+          {.name = "grain_lattices",
+           .parameters = nlohmann::json::object(),
+           .measures = {{.name = "lattice",
+                         .unit = "1",
+                         .meaning = "by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC",
+                         .kind = MeasureKind::grains,
+                         .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
+                                   .whole = true,
+                                   .of_wall_grains = -1},
+                         .words = "lattice by common neighbours"}},
+           .compute = [](const MeasureInput& input) {
+             return nlohmann::json{{"lattice", lattices_of(*input.checkpoint)}};
+           }}};
 }
 
 }  // namespace shearcell

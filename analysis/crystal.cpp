@@ -8,8 +8,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "analysis/error.hpp"
+#include "analysis/measures.hpp"
 
 namespace shearcell {
 namespace {
@@ -97,6 +99,36 @@ void check(const CrystalliteMap& map) {
   if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("they lie in no cell");
 }
 
+/// Arrays as little-endian bytes, reals as JSON numbers.
+json packed_map(const MeasureInput& input) {
+  const CrystalliteMap& map = input.analysis->crystallites;
+  json centres = json::array();
+  for (const Eigen::Vector3d& c : map.centre) centres.push_back({c.x(), c.y(), c.z()});
+  return {{"grain", packed(map.grain)},
+          {"label", packed(map.label)},
+          {"size", packed(map.size)},
+          {"centre_d", centres},
+          {"width_d", map.width},
+          {"bottom_d", map.bottom},
+          {"top_d", map.top}};
+}
+
+/// The inverse. The result is not trusted: throws AnalysisError when arrays do not fit together.
+void read_map(const json& result, Measures& measures) {
+  CrystalliteMap map;
+  map.grain = unpacked(result, "grain");
+  map.label = unpacked(result, "label");
+  map.size = unpacked(result, "size");
+  for (const auto& [x, y, z] : result.at("centre_d").get<std::vector<std::array<double, 3>>>()) {
+    map.centre.emplace_back(x, y, z);
+  }
+  result.at("width_d").get_to(map.width);
+  result.at("bottom_d").get_to(map.bottom);
+  result.at("top_d").get_to(map.top);
+  check(map);
+  measures.crystallite_map = std::move(map);
+}
+
 }  // namespace
 
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
@@ -107,14 +139,6 @@ double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
     sums.add(face.area / surface, bond.x(), bond.y(), bond.z());
   }
   return sums.norm();
-}
-
-std::vector<double> bond_order_q6(const VoronoiDiagram& diagram) {
-  std::vector<double> q6(diagram.volume.size());
-  for (std::size_t i = 0; i < q6.size(); ++i) {
-    q6[i] = bond_order_q6(diagram.faces_of(i), diagram.surface[i]);
-  }
-  return q6;
 }
 
 Structure structure(double phi_local, double q6, double least_phi_local, double tolerance) {
@@ -181,35 +205,11 @@ CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cel
   return map;
 }
 
-json to_json(const CrystalliteMap& map) {
-  json centres = json::array();
-  for (const Eigen::Vector3d& c : map.centre) centres.push_back({c.x(), c.y(), c.z()});
-  return {{"grain", packed(map.grain)},
-          {"label", packed(map.label)},
-          {"size", packed(map.size)},
-          {"centre_d", centres},
-          {"width_d", map.width},
-          {"bottom_d", map.bottom},
-          {"top_d", map.top}};
-}
-
-CrystalliteMap read_crystallite_map(const json& result) {
-  CrystalliteMap map;
-  try {
-    map.grain = unpacked(result, "grain");
-    map.label = unpacked(result, "label");
-    map.size = unpacked(result, "size");
-    for (const auto& [x, y, z] : result.at("centre_d").get<std::vector<std::array<double, 3>>>()) {
-      map.centre.emplace_back(x, y, z);
-    }
-    result.at("width_d").get_to(map.width);
-    result.at("bottom_d").get_to(map.bottom);
-    result.at("top_d").get_to(map.top);
-  } catch (const json::exception& problem) {
-    refuse(problem.what());
-  }
-  check(map);
-  return map;
+std::vector<Provider> crystallite_providers() {
+  return {{.name = "crystallites",
+           .parameters = crystal_criteria(),
+           .compute = packed_map,
+           .read_more = read_map}};
 }
 
 }  // namespace shearcell

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -20,9 +19,6 @@ namespace shearcell {
 /// face is part of the cell's whole surface A_i. Perfect FCC 0.57452, HCP 0.48476, BCC 0.56694,
 /// simple cubic 0.35355.
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface);
-
-/// q6 of every grain, by grain id.
-std::vector<double> bond_order_q6(const VoronoiDiagram& diagram);
 
 /// Criteria of Rietz et al., Phys. Rev. Lett. 120, 055701 (2018), as in supplement A.
 inline constexpr double crystalline_phi_local = 0.72;  ///< phi_local is above this
@@ -66,11 +62,5 @@ struct CrystalliteMap {
 /// crystallites that are small compared with the period.
 CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions);
-
-/// Arrays as little-endian bytes, reals as JSON numbers.
-nlohmann::json to_json(const CrystalliteMap& map);
-
-/// The inverse. The JSON is not trusted: throws AnalysisError when arrays do not fit together.
-CrystalliteMap read_crystallite_map(const nlohmann::json& result);
 
 }  // namespace shearcell

@@ -109,9 +109,9 @@ std::string wrong_in_expression(const std::string& text) {
   try {
     Parser checked(text);
     checked.parser.Eval();
-    if (checked.parser.GetNumResults() > 1) return "is no expression: it gives several numbers";
+    if (checked.parser.GetNumResults() > 1) return "is not an expression: it gives several numbers";
   } catch (const mu::ParserError& error) {
-    return fmt::format("is no expression: {}", error.GetMsg());
+    return fmt::format("is not an expression: {}", error.GetMsg());
   }
   return "";
 }

@@ -19,9 +19,9 @@ std::vector<std::string> names_in(std::string_view text);
 /// What an expression may contain, for messages.
 std::string expression_syntax();
 
-/// What is wrong with the expression, whatever its names mean, such as "is no expression: ..."; ""
-/// if it can be evaluated. Wrong is anything outside expression_syntax() and a text of more than
-/// 200 bytes.
+/// What is wrong with the expression, whatever its names mean, such as "is not an expression:
+/// ..."; "" if it can be evaluated. Wrong is anything outside expression_syntax() and a text of
+/// more than 200 bytes.
 std::string wrong_in_expression(const std::string& text);
 
 /// The value of a name.

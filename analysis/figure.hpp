@@ -67,10 +67,10 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table` is of all experiments: their runs, each once per experiment, with the last checkpoint,
-/// which is not measured; or other figures. `curves` and `groups` show the runs of one experiment:
-/// `curves` one curve for each variant, `groups` the means over variants with the same values of
-/// the figure's `keys`.
+/// `table`: made of the runs of all experiments, each with its last checkpoint, which is not
+/// measured; or made of other figures. `curves`: runs of one experiment, one curve for each
+/// variant. `groups`: runs of one experiment, one mean for all variants with the same values of
+/// `keys`.
 enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement, of plots and claims in a manifest, or of other figures (without

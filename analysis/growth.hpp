@@ -19,8 +19,8 @@ namespace shearcell {
 /// many grains are in larger crystallites as elsewhere are left out.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  std::size_t absorbed =
-      0;  ///< likewise, but the one with most of them is mostly an older, larger one
+  /// Likewise, but most grains of the crystallite that they end in come from a larger one.
+  std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half are in smaller ones
   std::size_t vanished = 0;  ///< more than half are in smaller ones or in none
 
@@ -80,8 +80,9 @@ class GrowthCurve {
   /// the bootstrap's; an end is infinite if all sizes grow, or none does, in too many selections of
   /// runs.
   std::optional<Estimate> critical_size() const;
-  /// That excess alone decides: the same if delta_rho is not smoothed, but may only rise with size
-  /// (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). Tests critical_size(), with a larger error.
+  /// The size from which on the excess of those that grew is greatest. An unsmoothed delta_rho that
+  /// may only rise with size crosses zero there (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)).
+  /// Tests critical_size(), with a larger error.
   std::optional<Estimate> monotone_critical_size() const;
   /// Where the critical size of 90 % of repetitions with so many runs would lie.
   Interval repeated_critical_size(std::size_t runs) const;

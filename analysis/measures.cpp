@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "analysis/error.hpp"
@@ -13,40 +14,21 @@ namespace shearcell {
 
 using nlohmann::json;
 
-// Each is beside the function that computes its measures.
-using MakeProvider = Provider();
-MakeProvider packing_provider, crystallite_provider, grain_provider;   // analyse.cpp
-MakeProvider mechanics_provider;                                       // mechanics.cpp
-MakeProvider lattice_provider, grain_lattice_provider;                 // common_neighbours.cpp
-MakeProvider core_provider, profile_provider, wall_distance_provider;  // profiles.cpp
-MakeProvider sensitivity_provider;                                     // profiles.cpp
-MakeProvider motion_provider, grain_motion_provider;                   // motion.cpp
-MakeProvider pair_correlation_provider, structure_factor_provider;     // pair_structure.cpp
-MakeProvider drive_provider, ledger_provider, rest_provider;           // run_measures.cpp
-MakeProvider record_provider, cost_provider;                           // run_measures.cpp
-MakeProvider onset_provider;                                           // onset.cpp
+// Each is defined in the file that computes the measures.
+using MakeProviders = std::vector<Provider>();
+MakeProviders packing_providers, crystallite_providers, mechanics_providers, lattice_providers,
+    pair_structure_providers, profile_providers, motion_providers, onset_providers, run_providers;
 
 std::span<const Provider> all_providers() {
-  static const std::vector<Provider> all = {packing_provider(),
-                                            crystallite_provider(),
-                                            mechanics_provider(),
-                                            lattice_provider(),
-                                            core_provider(),
-                                            motion_provider(),
-                                            drive_provider(),
-                                            ledger_provider(),
-                                            rest_provider(),
-                                            record_provider(),
-                                            onset_provider(),
-                                            cost_provider(),
-                                            pair_correlation_provider(),
-                                            structure_factor_provider(),
-                                            profile_provider(),
-                                            wall_distance_provider(),
-                                            sensitivity_provider(),
-                                            grain_provider(),
-                                            grain_lattice_provider(),
-                                            grain_motion_provider()};
+  static const std::vector<Provider> all = [] {
+    std::vector<Provider> list;
+    for (MakeProviders* of_file : {packing_providers, crystallite_providers, mechanics_providers,
+                                   lattice_providers, pair_structure_providers, profile_providers,
+                                   motion_providers, onset_providers, run_providers}) {
+      std::ranges::move(of_file(), std::back_inserter(list));
+    }
+    return list;
+  }();
   return all;
 }
 

@@ -2,8 +2,9 @@
 // Measures by their names, for tables, plots, claims, exports, the report and Python.
 //
 // A provider computes some measures of a checkpoint, or of a whole run, in one function. To add
-// measures, write a provider beside the function that computes them and add it to the list in
-// measures.cpp. Elsewhere only single measures are named, where a figure or a page needs them.
+// measures, write a provider beside the function that computes them and add it to the providers of
+// that file, which measures.cpp lists. Elsewhere only single measures are named, where a figure or
+// a page needs them.
 #pragma once
 
 #include <cstddef>
@@ -99,7 +100,8 @@ struct RunFacts {
 
 /// What measures of a checkpoint are computed from.
 struct MeasureInput {
-  const Analysis* analysis = nullptr;  ///< of the checkpoint; a simulation must not count on it
+  /// Of the checkpoint; may be null for a provider that simulates.
+  const Analysis* analysis = nullptr;
   const Checkpoint* checkpoint = nullptr;
   /// The checkpoint of the same run `cycles` earlier, valid until the next call; null if the run
   /// has no such checkpoint.

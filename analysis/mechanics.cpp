@@ -139,8 +139,8 @@ void set_coordination(std::size_t grains, std::span<const Touch> touches, Select
 
 }  // namespace
 
-PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
-                           Selected interior) {
+Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
+                    Selected interior) {
   const State& state = checkpoint.state;
   const auto grains = static_cast<std::size_t>(state.position.cols());
   double volume = 0;
@@ -159,7 +159,8 @@ PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double>
   m.elastic_energy = 0.5 * sums.squares / count;
   m.kinetic_energy = 0.5 * state.velocity.squaredNorm() / count;
   m.height = state.position.row(1).mean() - pose_of(checkpoint).bottom;
-  return {m, std::move(sums.trace)};
+  m.grain_pressure = std::move(sums.trace);
+  return m;
 }
 
 MechanicalUnits mechanical_units(const MeasureInput& input) {
@@ -174,7 +175,7 @@ MechanicalUnits mechanical_units(const MeasureInput& input) {
   return {k / d, m / d, k * d, k * d * d, m * d * d, m * run.number("gravity_m_per_s2") * d};
 }
 
-Provider mechanics_provider() {
+std::vector<Provider> mechanics_providers() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     const Mechanics& m = *input.analysis->mechanics;
     const MechanicalUnits units = mechanical_units(input);
@@ -207,43 +208,43 @@ Provider mechanics_provider() {
             {"gravitational_energy_per_grain_J", m.height * units.weight_J}};
   };
   return {
-      .name = "mechanics",
-      .parameters = with(interior_criteria(), {{"units", "SI"}}),
-      .measures =
-          {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
-           {"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
-           {"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-           {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-           {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
-           {"stress_xy_Pa", "Pa",
-            "shear stress of interior grains, with the sign of the others: a growing shear_strain "
-            "makes it negative"},
-           {"stress_xz_Pa", "Pa", "shear stress of interior grains"},
-           {"stress_yz_Pa", "Pa", "shear stress of interior grains"},
-           {"kinetic_pressure_Pa", "Pa",
-            "kinetic part of the pressure, of velocities less the mean flow"},
-           {"coordination", "1", "contacts per interior grain"},
-           {"rattlers_percent", "%",
-            "interior grains with fewer than four contacts with walls and grains that are not "
-            "rattlers"},
-           {"coordination_without_rattlers", "1",
-            "contacts of interior grains that are not rattlers with walls and such grains, per "
-            "such grain"},
-           {"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
-           {"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
-           {"force_top_x_N", "N", "force of the grains on the top wall"},
-           {"force_top_y_N", "N", "force of the grains on the top wall"},
-           {"force_left_x_N", "N", "force of the grains on the left wall"},
-           {"force_left_y_N", "N", "force of the grains on the left wall"},
-           {"force_right_x_N", "N", "force of the grains on the right wall"},
-           {"force_right_y_N", "N", "force of the grains on the right wall"},
-           {"elastic_energy_per_grain_J", "J",
-            "elastic energy of all contacts over the number of grains"},
-           {"kinetic_energy_per_grain_J", "J",
-            "kinetic energy over the number of grains, half a time step earlier"},
-           {"gravitational_energy_per_grain_J", "J",
-            "weight times mean height above the bottom wall"}},
-      .compute = compute};
+      {.name = "mechanics",
+       .parameters = with(interior_criteria(), {{"units", "SI"}}),
+       .measures =
+           {{"contact_pressure_Pa", "Pa", "mean normal stress of interior grains, from contacts"},
+            {"deviator_Pa", "Pa", "sqrt(s:s / 2) of the deviatoric stress s of interior grains"},
+            {"stress_xx_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+            {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+            {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
+            {"stress_xy_Pa", "Pa",
+             "shear stress of interior grains, with the sign of the others: a growing shear_strain "
+             "makes it negative"},
+            {"stress_xz_Pa", "Pa", "shear stress of interior grains"},
+            {"stress_yz_Pa", "Pa", "shear stress of interior grains"},
+            {"kinetic_pressure_Pa", "Pa",
+             "kinetic part of the pressure, of velocities less the mean flow"},
+            {"coordination", "1", "contacts per interior grain"},
+            {"rattlers_percent", "%",
+             "interior grains with fewer than four contacts with walls and grains that are not "
+             "rattlers"},
+            {"coordination_without_rattlers", "1",
+             "contacts of interior grains that are not rattlers with walls and such grains, per "
+             "such grain"},
+            {"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
+            {"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
+            {"force_top_x_N", "N", "force of the grains on the top wall"},
+            {"force_top_y_N", "N", "force of the grains on the top wall"},
+            {"force_left_x_N", "N", "force of the grains on the left wall"},
+            {"force_left_y_N", "N", "force of the grains on the left wall"},
+            {"force_right_x_N", "N", "force of the grains on the right wall"},
+            {"force_right_y_N", "N", "force of the grains on the right wall"},
+            {"elastic_energy_per_grain_J", "J",
+             "elastic energy of all contacts over the number of grains"},
+            {"kinetic_energy_per_grain_J", "J",
+             "kinetic energy over the number of grains, half a time step earlier"},
+            {"gravitational_energy_per_grain_J", "J",
+             "weight times mean height above the bottom wall"}},
+       .compute = compute}};
 }
 
 }  // namespace shearcell

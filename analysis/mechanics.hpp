@@ -33,18 +33,14 @@ struct Mechanics {
   double elastic_energy = 0;  ///< of contacts, those with walls included, per grain [k d^2]
   double kinetic_energy = 0;  ///< per grain, half a step earlier [m d^2/s^2]
   double height = 0;          ///< mean, above the bottom wall's plane [d]
-};
-
-struct PackingMechanics {
-  Mechanics packing;
   /// Pressure of each grain [k/d]: trace / 3 of the sum over the contacts of the grain, also with
   /// walls, over the volume of its cell.
   std::vector<double> grain_pressure;
 };
 
 /// `cell_volume` [d^3] and `interior` (1 or 0) have one entry per grain.
-PackingMechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
-                           std::span<const std::uint8_t> interior);
+Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
+                    std::span<const std::uint8_t> interior);
 
 /// SI values of the units of Mechanics.
 struct MechanicalUnits {

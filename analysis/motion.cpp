@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/motion.hpp"
-
+// How grains moved between two checkpoints of one run.
 #include <Eigen/LU>
 #include <cmath>
 #include <cstddef>
@@ -13,6 +12,23 @@
 
 namespace shearcell {
 namespace {
+
+/// Neighbours of a grain for its motion are at most this far away [d]: about the first minimum of
+/// g(r).
+constexpr double motion_neighbour_d = 1.5;
+/// A grain returned if it is within this distance of where it was [d].
+constexpr double reversible_d = 0.01;
+
+/// One column or entry per grain, by grain id.
+struct Motion {
+  /// In the frame of the tilted walls, x - (y - y_top) tan(theta), so that a cell that has only
+  /// been sheared moves no grain [d].
+  Eigen::Matrix3Xd displacement;
+  /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998), as a mean over the neighbours at the
+  /// earlier time [d^2]: what is left of their relative motion after the best affine deformation.
+  /// Not a number for a grain with fewer than four neighbours, or all in one plane.
+  std::vector<double> nonaffine;
+};
 
 Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   const WallPose pose = pose_of(checkpoint);
@@ -47,8 +63,7 @@ struct Neighbours {
   }
 };
 
-}  // namespace
-
+/// Throws AnalysisError if the checkpoints do not have the same grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   if (earlier.state.position.cols() != later.state.position.cols()) {
     throw AnalysisError("two checkpoints of one run have different numbers of grains");
@@ -72,6 +87,8 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
+/// One entry per grain: 1 for a crystalline grain with a neighbour that is not crystalline; else 0.
+/// `crystalline` has 1 or 0 for each grain.
 std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                                            std::span<const std::uint8_t> crystalline) {
   std::vector<std::uint8_t> boundary(crystalline.size(), 0);
@@ -83,8 +100,6 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                 });
   return boundary;
 }
-
-namespace {
 
 nlohmann::json motion_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis->grains;
@@ -126,36 +141,8 @@ nlohmann::json motion_of(const MeasureInput& input) {
 
 }  // namespace
 
-Provider motion_provider() {
+std::vector<Provider> motion_providers() {
   using enum MeasureKind;
-  return {
-      .name = "motion",
-      .parameters = with(crystal_criteria(),
-                         {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
-      .measures =
-          {{"msd_1_cycle_d2", "d^2",
-            "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
-            number, 1},
-           {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
-           {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
-           {"d2min_1_cycle_d2", "d^2",
-            "mean non-affine squared displacement D^2_min of interior grains over 1 cycle", number,
-            1},
-           {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
-           {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
-           {"reversible_percent", "%",
-            "interior grains at most 0.01 d from where they were a cycle before", number, 1},
-           {"msd_inside_crystal_d2", "d^2",
-            "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
-            number, 1},
-           {"msd_crystal_boundary_d2", "d^2",
-            "the same of crystalline grains with other neighbours", number, 1},
-           {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline", number, 1}},
-      .compute = motion_of,
-      .earlier = {1, 10, 100}};
-}
-
-Provider grain_motion_provider() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     const Checkpoint* earlier = input.earlier ? input.earlier(1) : nullptr;
     if (earlier == nullptr) return nlohmann::json::object();
@@ -164,24 +151,49 @@ Provider grain_motion_provider() {
     return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
             {"d2min_d2", moved.nonaffine}};
   };
-  return {.name = "grain_motion",
-          .parameters = {{"neighbour_d", motion_neighbour_d}},
-          .measures = {{.name = "displacement_d",
-                        .unit = "d",
-                        .meaning = "displacement over the cycle before",
-                        .kind = MeasureKind::grains,
-                        .cycles_back = 1,
-                        .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
-                        .words = "displacement in a cycle"},
-                       {.name = "d2min_d2",
-                        .unit = "d^2",
-                        .meaning = "D^2_min over the cycle before",
-                        .kind = MeasureKind::grains,
-                        .cycles_back = 1,
-                        .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
-                        .words = "non-affine motion in a cycle"}},
-          .compute = compute,
-          .earlier = {1}};
+  return {
+      {.name = "motion",
+       .parameters = with(crystal_criteria(),
+                          {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
+       .measures =
+           {{"msd_1_cycle_d2", "d^2",
+             "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
+             number, 1},
+            {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
+            {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
+            {"d2min_1_cycle_d2", "d^2",
+             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle", number,
+             1},
+            {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
+            {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
+            {"reversible_percent", "%",
+             "interior grains at most 0.01 d from where they were a cycle before", number, 1},
+            {"msd_inside_crystal_d2", "d^2",
+             "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
+             number, 1},
+            {"msd_crystal_boundary_d2", "d^2",
+             "the same of crystalline grains with other neighbours", number, 1},
+            {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline", number, 1}},
+       .compute = motion_of,
+       .earlier = {1, 10, 100}},
+      {.name = "grain_motion",
+       .parameters = {{"neighbour_d", motion_neighbour_d}},
+       .measures = {{.name = "displacement_d",
+                     .unit = "d",
+                     .meaning = "displacement over the cycle before",
+                     .kind = MeasureKind::grains,
+                     .cycles_back = 1,
+                     .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
+                     .words = "displacement in a cycle"},
+                    {.name = "d2min_d2",
+                     .unit = "d^2",
+                     .meaning = "D^2_min over the cycle before",
+                     .kind = MeasureKind::grains,
+                     .cycles_back = 1,
+                     .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
+                     .words = "non-affine motion in a cycle"}},
+       .compute = compute,
+       .earlier = {1}}};
 }
 
 }  // namespace shearcell

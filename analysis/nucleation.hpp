@@ -82,8 +82,8 @@ inline constexpr double rate_step = 0.0005;
 /// Analysis of Survival Data, 1984). If runs share a packing, the drop of the logarithm that the
 /// interval allows is multiplied by the ratio of the variance of the score between packings to that
 /// between independent runs, where that is larger than 1 (L. Pace, A. Salvan, N. Sartori, Stat.
-/// Sinica 21, 129 (2011)). None unless an event could have been in a larger cell (by the number of
-/// grains N) at about that phi, and an event in a smaller one; none for fewer than least_runs
+/// Sinica 21, 129 (2011)). None unless runs of a larger cell (more grains N) were at about the phi
+/// of some event, and runs of a smaller cell at that of some event; none for fewer than least_runs
 /// packings.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region);
 

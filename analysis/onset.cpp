@@ -95,7 +95,7 @@ RunValue at_onset(const FigureRun& run) {
 
 }  // namespace
 
-Provider onset_provider() {
+std::vector<Provider> onset_providers() {
   const auto of_run = [](const char* name, const char* meaning, auto* value, const char* words,
                          bool waits = false) {
     return Measure{.name = name,
@@ -110,28 +110,29 @@ Provider onset_provider() {
   const auto critical = [](const FigureRun& run) { return measured(critical_size_for(run)); };
   using R = RunOnset;
   return {
-      .name = "onsets",
-      .measures =
-          {of_run("critical_size",
-                  "grains of a critical crystallite in the supplement, by the nearest amplitude",
-                  +critical, "the critical size"),
-           of_run("onset_size_cycle",
-                  "cycle of the onset by method 1, where the largest crystallite reaches the "
-                  "critical size",
-                  at_onset<onset_by_size, &R::cycle>, "the cycle of the onset", true),
-           of_run("onset_size_phi", "volume fraction at that onset",
-                  at_onset<onset_by_size, &R::phi>, "phi at the onset"),
-           of_run(
-               "onset_slope_cycle",
-               "cycle of the onset by method 2, where the logarithm of its size rises most steeply",
-               at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by its slope"),
-           of_run("onset_slope_phi", "volume fraction at that onset",
-                  at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
-      .from = ComputedFrom::history};
+      {.name = "onsets",
+       .measures =
+           {of_run("critical_size",
+                   "grains of a critical crystallite in the supplement, by the nearest amplitude",
+                   +critical, "the critical size"),
+            of_run("onset_size_cycle",
+                   "cycle of the onset by method 1, where the largest crystallite reaches the "
+                   "critical size",
+                   at_onset<onset_by_size, &R::cycle>, "the cycle of the onset", true),
+            of_run("onset_size_phi", "volume fraction at that onset",
+                   at_onset<onset_by_size, &R::phi>, "phi at the onset"),
+            of_run("onset_slope_cycle",
+                   "cycle of the onset by method 2, where the logarithm of its size rises most "
+                   "steeply",
+                   at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by its slope"),
+            of_run("onset_slope_phi", "volume fraction at that onset",
+                   at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
+       .from = ComputedFrom::history}};
 }
 
 Onset onset(RunGroup runs, OnsetMethod method) {
   Onset result;
+  std::vector<const FigureRun*> with_onset;
   std::vector<double> phi;
   std::vector<double> cycle;
   for (const FigureRun* run : runs) {
@@ -140,11 +141,13 @@ Onset onset(RunGroup runs, OnsetMethod method) {
     if (found.observed == Observed::before_start) ++result.before_start;
     if (found.observed == Observed::unclear) ++result.unclear;
     if (found.observed != Observed::yes) continue;
+    with_onset.push_back(run);
     phi.push_back(found.phi);
     cycle.push_back(found.cycle);
   }
+  phi = over_packings(with_onset, phi);
   result.phi = over_runs(phi);
-  result.cycle = over_runs(cycle);
+  result.cycle = over_runs(over_packings(with_onset, cycle));
   result.phi_error = bootstrap_error(phi.size(), [&](std::span<const std::size_t> selection) {
     std::vector<double> selected;
     for (const std::size_t run : selection) selected.push_back(phi[run]);

@@ -40,12 +40,12 @@ RunOnset onset_by_slope(const FigureRun& run);
 
 using OnsetMethod = RunOnset (*)(const FigureRun& run);
 
-/// The onset over independent runs. Censored runs do not enter the mean, which is therefore biased
-/// towards early onsets; they are counted.
+/// The onset over independent runs; runs of one packing count as one run. Censored runs do not
+/// enter the mean, which is therefore biased towards early onsets; they are counted.
 struct Onset {
-  RunStatistics phi;                ///< over observed runs
-  std::optional<double> phi_error;  ///< of the mean, bootstrap over runs
-  RunStatistics cycle;              ///< over observed runs
+  RunStatistics phi;                ///< over packings of observed runs
+  std::optional<double> phi_error;  ///< of the mean, bootstrap over packings
+  RunStatistics cycle;              ///< over packings of observed runs
   std::size_t never = 0;            ///< runs that end before
   std::size_t before_start = 0;     ///< runs that begin after
   std::size_t unclear = 0;          ///< runs in which the method finds none

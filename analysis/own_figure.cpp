@@ -24,11 +24,13 @@ namespace {
 /// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
 MeasureColumn column_of(std::string_view measure, std::string_view of) {
   std::string name(measure);
-  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of == "d^2" ? "d2" : of);
+  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of);
   if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
   if (const auto slash = unit.find('/'); slash != std::string::npos) {
     unit.replace(slash, 1, "_per_");  // "m/s"
   }
+  std::ranges::replace(unit, ' ', '_');
+  std::erase(unit, '^');
   if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   return {std::move(name), std::move(unit), std::string(measure)};
 }
@@ -65,14 +67,16 @@ Axis named_axis(std::string_view measure, std::string_view unit) {
   const bool has_unit = name.size() < measure.size();
   std::ranges::replace(name, '_', ' ');
   if (!has_unit) return {.name = std::move(name)};
-  return {.name = std::move(name), .unit = Text(unit == "d^2" ? "d²" : std::string(unit))};
+  std::string of(unit);
+  while (of.find("^2") != std::string::npos) of.replace(of.find("^2"), 2, "²");
+  return {.name = std::move(name), .unit = Text(of)};
 }
 
 Axis axis_of(const std::string& key) {
-  if (key == "cycle") return cycle_axis();
-  if (key == "phi") return phi_axis();
-  if (key == "crystalline_percent") return crystalline_axis();
-  if (key == "mean_overlap_d") return overlap_axis();
+  if (key == "cycle") return cycle_axis;
+  if (key == "phi") return phi_axis;
+  if (key == "crystalline_percent") return crystalline_axis;
+  if (key == "mean_overlap_d") return overlap_axis;
   if (const Measure* measure = find_plotted(key)) return named_axis(key, measure->unit);
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
@@ -92,14 +96,14 @@ void adapt(Axis& axis, const std::string& label, bool log) {
   axis.log = log;
   if (log) axis.low = {};
   if (label.empty()) return;
-  axis.name = text_with_formulas(label);
+  axis.name = formula(label);
   axis.symbol = axis.unit = {};
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const FigureRun> runs) {
   if (const Measure* y = find_curve(plot.y)) return named_axis(y->x, y->x_unit);
   if (!plot.x_symbol.empty()) {
-    return {.symbol = italic(plot.x_symbol),
+    return {.symbol = formula("$" + plot.x_symbol + "$"),
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
   }
   if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
@@ -387,7 +391,7 @@ std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
   for (const SeriesSpec& one : plot.series) {
     CurveStyle& stated =
         styles.emplace_back(CurveStyle{.where = one.where, .of_manifest = !plot.listed});
-    stated.title = text_with_formulas(one.label);
+    stated.title = formula(one.label);
     const auto name = std::ranges::find(colour_names, one.colour);
     stated.colour = name == colour_names.end()
                         ? one.colour
@@ -403,7 +407,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
   std::vector<std::string> sources;
   int point = 6;
   for (const PublishedSpec& one : plot.published) {
-    Series series{.title = text_with_formulas(one.label), .colour = "#000000", .point = point};
+    Series series{.title = formula(one.label), .colour = "#000000", .point = point};
     if (one.value) {
       series.point = 0;
       series.join = Join::dashes;
@@ -420,7 +424,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
       if (p.size() > 2) series.points.back().y_error = p[2];
     }
     chart.series.push_back(std::move(series));
-    sources.push_back(fmt::format("{}: {}", plain_text(text_with_formulas(one.label)), one.source));
+    sources.push_back(fmt::format("{}: {}", plain_text(formula(one.label)), one.source));
   }
   if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }
@@ -507,7 +511,8 @@ FigureResult plot_runs(const PlotSpec& plot, std::span<const FigureRun> given,
     const nlohmann::json value = plot.panel.empty() ? nullptr : parameter_of(run, plot.panel);
     panels[value].push_back(std::move(run));
   }
-  if (panels.empty() && !less.empty()) panels[nullptr] = {};  // says so
+  // An empty panel, whose caption says why.
+  if (panels.empty() && !less.empty()) panels[nullptr] = {};
   for (const auto& [value, members] : panels) {
     FigureTable& table = result.tables.emplace_back(draw(plot, members, names));
     table.chart.x = x_axis(plot, members);

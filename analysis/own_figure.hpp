@@ -54,19 +54,15 @@ inline constexpr auto kNames<Marker> = names_in_order<Marker>("none", "square", 
 /// what varies (analysis/figures/curves.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
-  std::string label = {};   ///< with formulas (text_with_formulas)
+  std::string label = {};   ///< with formulas (formula)
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::optional<Marker> marker = {};
-
-  bool operator==(const SeriesSpec&) const = default;
 };
 
 /// A further column of a plot's CSV.
 struct ColumnSpec {
   std::string measure;
   std::string name = {};  ///< of the column, without unit; "": that of the measure
-
-  bool operator==(const ColumnSpec&) const = default;
 };
 
 struct PlotSpec {
@@ -95,12 +91,10 @@ struct PlotSpec {
   /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
-  /// A manifest lists the figure in `figures` and does not state it. Labels of that manifest then
-  /// come before those of `series`, and styles are used only if the runs differ in no other
-  /// parameters.
+  /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
+  /// user's manifest then replace those of `series`. Styles of `series` are used only if the runs
+  /// differ in no other parameters.
   bool listed = false;
-
-  bool operator==(const PlotSpec&) const = default;
 };
 
 /// "fluid=still, walls=rough" of parameters and their values.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/measures.hpp"
 #include "analysis/near_grains.hpp"
 #include "analysis/packing_fraction.hpp"
 
@@ -17,7 +18,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Eigen::Matrix3Xd selected(const Eigen::Matrix3Xd& grains, std::span<const std::uint8_t> interior) {
+Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
+  const Eigen::Matrix3Xd& grains = input.checkpoint->state.position;
+  const std::vector<std::uint8_t>& interior = input.analysis->grains.interior;
   Eigen::Matrix3Xd found(3, std::count(interior.begin(), interior.end(), std::uint8_t{1}));
   Eigen::Index next = 0;
   for (Eigen::Index i = 0; i < grains.cols(); ++i) {
@@ -43,6 +46,7 @@ double pair_volume(const InteriorRegion& region, double from, double to) {
   return 4 * kPi * region.depth * (integral(to) - integral(from));
 }
 
+/// Curves are at the middles of equal bins, and not a number where nothing was counted.
 MeasuredCurve empty_bins(double width, std::size_t count) {
   MeasuredCurve function;
   for (std::size_t b = 0; b < count; ++b) {
@@ -102,25 +106,15 @@ void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
   }
 }
 
-}  // namespace
-
-InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
-  const double margin = interior_margin(cell);
-  InteriorRegion region;
-  region.tan_theta = pose.tan_theta;
-  region.bottom = pose.bottom + margin;
-  region.height = pose.top - pose.bottom - 2 * margin;
-  region.depth = cell.depth;
-  region.width = cell.width - 2 * margin / pose.cos_theta;
-  region.left = (region.bottom - pose.top) * pose.tan_theta + margin / pose.cos_theta;
-  return region;
-}
-
-MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
-                               const Eigen::Matrix3Xd& grains,
-                               std::span<const std::uint8_t> interior) {
+/// Pair correlation of the interior grains: the number of pairs at a distance r over the expected
+/// number for as many grains placed at random in the same region. The expected number follows
+/// exactly from the set covariance of the region, a parallelepiped (Ohser, Math. Operationsforsch.
+/// Statist. 14, 63 (1983)).
+MeasuredCurve pair_correlation(const MeasureInput& input) {
+  const Cell& cell = input.checkpoint->cell;
+  const WallPose pose = pose_of(*input.checkpoint);
   const InteriorRegion region = interior_region(cell, pose);
-  const Eigen::Matrix3Xd sites = selected(grains, interior);
+  const Eigen::Matrix3Xd sites = interior_sites(input);
   const double reach =
       std::min({pair_reach_d, 0.5 * region.depth, region.height, region.width * pose.cos_theta});
   if (!(reach > 0) || sites.cols() < 2) return {};
@@ -140,11 +134,12 @@ MeasuredCurve pair_correlation(const Cell& cell, const WallPose& pose,
   return g;
 }
 
-MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
-                               const Eigen::Matrix3Xd& grains,
-                               std::span<const std::uint8_t> interior) {
-  const InteriorRegion region = interior_region(cell, pose);
-  const Eigen::Matrix3Xd sites = selected(grains, interior);
+/// Structure factor of the interior grains, |sum exp(i k r)|^2 / n, as a mean over wave vectors of
+/// the region's reciprocal lattice, for which a uniform density gives zero. Each bin in |k| takes
+/// at most 48 vectors, evenly spaced in their lexical order.
+MeasuredCurve structure_factor(const MeasureInput& input) {
+  const InteriorRegion region = interior_region(input.checkpoint->cell, pose_of(*input.checkpoint));
+  const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
   // Of a packing the sum is at most a third of this. A forged cell may be far larger.
@@ -173,37 +168,38 @@ MeasuredCurve structure_factor(const Cell& cell, const WallPose& pose,
   return s;
 }
 
-namespace {
-
-/// A function of the positions of the interior grains.
-MeasuredCurve of_places(decltype(pair_correlation)* compute, const MeasureInput& input) {
-  const Checkpoint& c = *input.checkpoint;
-  return compute(c.cell, pose_of(c), c.state.position, input.analysis->grains.interior);
-}
-
 }  // namespace
 
-Provider pair_correlation_provider() {
-  return {
-      .name = "pair_correlation",
-      .parameters = with(interior_criteria(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
-      .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve, 0,
-                    "distance_d", "d"}},
-      .compute = [](const MeasureInput& input) {
-        return nlohmann::json{{"pair_correlation", to_json(of_places(pair_correlation, input))}};
-      }};
+InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
+  const double margin = interior_margin(cell);
+  InteriorRegion region;
+  region.tan_theta = pose.tan_theta;
+  region.bottom = pose.bottom + margin;
+  region.height = pose.top - pose.bottom - 2 * margin;
+  region.depth = cell.depth;
+  region.width = cell.width - 2 * margin / pose.cos_theta;
+  region.left = (region.bottom - pose.top) * pose.tan_theta + margin / pose.cos_theta;
+  return region;
 }
 
-Provider structure_factor_provider() {
+std::vector<Provider> pair_structure_providers() {
   return {
-      .name = "structure_factor",
-      .parameters = with(interior_criteria(),
-                         {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
-      .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve, 0,
-                    "wave_number_per_d", "1/d"}},
-      .compute = [](const MeasureInput& input) {
-        return nlohmann::json{{"structure_factor", to_json(of_places(structure_factor, input))}};
-      }};
+      {.name = "pair_correlation",
+       .parameters = with(interior_criteria(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
+       .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve, 0,
+                     "distance_d", "d"}},
+       .compute =
+           [](const MeasureInput& input) {
+             return nlohmann::json{{"pair_correlation", to_json(pair_correlation(input))}};
+           }},
+      {.name = "structure_factor",
+       .parameters = with(interior_criteria(),
+                          {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
+       .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve, 0,
+                     "wave_number_per_d", "1/d"}},
+       .compute = [](const MeasureInput& input) {
+         return nlohmann::json{{"structure_factor", to_json(structure_factor(input))}};
+       }}};
 }
 
 }  // namespace shearcell

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/profiles.hpp"
-
+// Measures against the height above the bottom wall and the distance from the nearest wall, and
+// against the criteria of supplement A.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
 
+#include "analysis/measures.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "analysis/voronoi.hpp"
 
 namespace shearcell {
 namespace {
+
+using nlohmann::json;
 
 // The layer of each grain, or `layers` for one near a side wall.
 std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose& pose,
@@ -43,34 +46,44 @@ double crystalline_percent(const GrainMeasures& grains, double least_phi_local, 
   });
 }
 
-}  // namespace
-
-Profiles profiles(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+/// One entry per layer of one diameter, from the plane of the bottom wall to the plane of the top
+/// wall. Grains count in the layer of their centre if they are at least 1.5 d from the surfaces of
+/// the side walls. Values of a layer without grains are not numbers.
+json profiles_of(const MeasureInput& input) {
+  const Checkpoint& checkpoint = *input.checkpoint;
+  const GrainMeasures& grains = input.analysis->grains;
   const WallPose pose = pose_of(checkpoint);
   const auto layers = static_cast<std::size_t>(std::max(1.0, std::ceil(pose.top - pose.bottom)));
   const std::vector<std::size_t> layer_of = layers_of(checkpoint, pose, layers);
-  Profiles found;
+  const double unit_Pa = mechanical_units(input).stress_Pa;
+  MeasuredCurve phi, pressure, coordination, crystalline;
   for (std::size_t l = 0; l < layers; ++l) {
     std::vector<std::uint8_t> inside(layer_of.size(), 0);
-    double count = 0, volume = 0, trace = 0, contacts = 0, crystalline = 0;
+    double count = 0, volume = 0, trace = 0, contacts = 0, ordered = 0;
     for (std::size_t i = 0; i < layer_of.size(); ++i) {
       if (layer_of[i] != l) continue;
       inside[i] = 1;
       ++count;
       volume += grains.cell_volume[i];
-      trace += grains.pressure[i] * grains.cell_volume[i];
+      trace += input.analysis->mechanics->grain_pressure[i] * grains.cell_volume[i];
       contacts += grains.contacts[i];
-      crystalline += grains.structure[i] == Structure::disordered ? 0 : 1;
+      ordered += grains.structure[i] == Structure::disordered ? 0 : 1;
     }
-    found.height.push_back(static_cast<double>(l) + 0.5);
-    found.phi.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
-    found.pressure.push_back(trace / volume);
-    found.coordination.push_back(contacts / count);
-    found.crystalline_percent.push_back(100 * crystalline / count);
+    for (MeasuredCurve* one : {&phi, &pressure, &coordination, &crystalline}) {
+      one->x.push_back(static_cast<double>(l) + 0.5);
+    }
+    phi.y.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
+    pressure.y.push_back(trace / volume * unit_Pa);
+    coordination.y.push_back(contacts / count);
+    crystalline.y.push_back(100 * ordered / count);
   }
-  return found;
+  return {{"phi_profile", to_json(phi)},
+          {"pressure_profile_Pa", to_json(pressure)},
+          {"coordination_profile", to_json(coordination)},
+          {"crystalline_profile_percent", to_json(crystalline)}};
 }
 
+/// Layers of half a diameter. Not a number for a layer without grains.
 MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   constexpr double layer = 0.5;
   const std::vector<double> distance =
@@ -84,14 +97,18 @@ MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeas
   return found;
 }
 
-Core core(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+/// phi is not a number without any grain.
+json core_of(const MeasureInput& input) {
+  const Checkpoint& checkpoint = *input.checkpoint;
   const std::vector<double> distance =
       distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
   const auto count = std::ranges::count_if(distance, [](double d) { return d >= core_distance; });
-  return {static_cast<double>(count),
-          phi_between(grains, distance, core_distance, std::numeric_limits<double>::infinity())};
+  return {{"core_grains", static_cast<double>(count)},
+          {"core_phi", phi_between(input.analysis->grains, distance, core_distance,
+                                   std::numeric_limits<double>::infinity())}};
 }
 
+/// The other criteria stay.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
   MeasuredCurve found;
   for (int n = 1; n <= 20; ++n) {
@@ -110,6 +127,7 @@ MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
   return found;
 }
 
+/// Computes the Voronoi cells again.
 MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
@@ -122,82 +140,58 @@ MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures&
   return found;
 }
 
-Provider core_provider() {
-  using enum MeasureKind;
-  return {.name = "core",
-          .parameters = with(surface_criteria(), {{"core_distance_d", core_distance}}),
-          .measures = {{"core_grains", "1", "grains at least 4 d from the wall surfaces"},
-                       {"core_phi", "1", "volume fraction of those grains (Eq. S4)"}},
-          .compute = [](const MeasureInput& input) {
-            const Core found = core(*input.checkpoint, input.analysis->grains);
-            return nlohmann::json{{"core_grains", found.grains}, {"core_phi", found.phi}};
-          }};
-}
+}  // namespace
 
-Provider profile_provider() {
+std::vector<Provider> profile_providers() {
   using enum MeasureKind;
-  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    Profiles found = profiles(*input.checkpoint, input.analysis->grains);
-    const double unit_Pa = mechanical_units(input).stress_Pa;
-    for (double& one : found.pressure) one *= unit_Pa;
-    const auto against_height = [&](const std::vector<double>& values) {
-      return to_json(MeasuredCurve{found.height, values});
-    };
-    return {{"phi_profile", against_height(found.phi)},
-            {"pressure_profile_Pa", against_height(found.pressure)},
-            {"coordination_profile", against_height(found.coordination)},
-            {"crystalline_profile_percent", against_height(found.crystalline_percent)}};
-  };
-  return {.name = "profiles",
-          .parameters = with(crystal_criteria(), {{"units", "SI"}}),
-          .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, 0,
-                        "height_d", "d"},
-                       {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
-                        curve, 0, "height_d", "d"},
-                       {"coordination_profile", "1",
-                        "contacts per grain of a layer, with grains and wall grains", curve, 0,
-                        "height_d", "d"},
-                       {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
-                        0, "height_d", "d"}},
-          .compute = compute};
-}
-
-Provider wall_distance_provider() {
-  using enum MeasureKind;
-  return {.name = "wall_distance",
-          .parameters = surface_criteria(),
-          .measures =
-              {{"phi_by_wall_distance", "1",
-                "volume fraction of a layer by its distance from the nearest wall surface (Eq. S4)",
-                curve, 0, "wall_distance_d", "d"}},
-          .compute = [](const MeasureInput& input) {
-            return nlohmann::json{
-                {"phi_by_wall_distance",
-                 to_json(phi_by_wall_distance(*input.checkpoint, input.analysis->grains))}};
-          }};
-}
-
-Provider sensitivity_provider() {
-  using enum MeasureKind;
-  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
+  const auto sensitivity = [](const MeasureInput& input) -> json {
     const GrainMeasures& grains = input.analysis->grains;
     return {{"crystalline_by_q6_window_percent", to_json(crystalline_by_window(grains))},
             {"crystalline_by_phi_local_percent", to_json(crystalline_by_phi_local(grains))},
             {"largest_by_face", to_json(largest_by_face(*input.checkpoint, grains))}};
   };
-  return {.name = "sensitivity",
-          .parameters = crystal_criteria(),
-          .measures = {{"crystalline_by_q6_window_percent", "%",
-                        "crystalline grains, if |q6 - q6 of a lattice| is below this", curve, 0,
-                        "q6_window", "1"},
-                       {"crystalline_by_phi_local_percent", "%",
-                        "crystalline grains, if phi_local is above this", curve, 0,
-                        "phi_local_threshold", "1"},
-                       {"largest_by_face", "1",
-                        "grains in the largest crystallite, if grains are connected by faces of at "
-                        "least this share of the mean cell surface",
-                        curve, 0, "connecting_face", "1"}},
-          .compute = compute};
+  return {
+      {.name = "core",
+       .parameters = with(surface_criteria(), {{"core_distance_d", core_distance}}),
+       .measures = {{"core_grains", "1", "grains at least 4 d from the wall surfaces"},
+                    {"core_phi", "1", "volume fraction of those grains (Eq. S4)"}},
+       .compute = core_of},
+      {.name = "profiles",
+       .parameters = with(crystal_criteria(), {{"units", "SI"}}),
+       .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, 0,
+                     "height_d", "d"},
+                    {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
+                     curve, 0, "height_d", "d"},
+                    {"coordination_profile", "1",
+                     "contacts per grain of a layer, with grains and wall grains", curve, 0,
+                     "height_d", "d"},
+                    {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve, 0,
+                     "height_d", "d"}},
+       .compute = profiles_of},
+      {.name = "wall_distance",
+       .parameters = surface_criteria(),
+       .measures =
+           {{"phi_by_wall_distance", "1",
+             "volume fraction of a layer by its distance from the nearest wall surface (Eq. S4)",
+             curve, 0, "wall_distance_d", "d"}},
+       .compute =
+           [](const MeasureInput& input) {
+             return json{{"phi_by_wall_distance", to_json(phi_by_wall_distance(
+                                                      *input.checkpoint, input.analysis->grains))}};
+           }},
+      {.name = "sensitivity",
+       .parameters = crystal_criteria(),
+       .measures = {{"crystalline_by_q6_window_percent", "%",
+                     "crystalline grains, if |q6 - q6 of a lattice| is below this", curve, 0,
+                     "q6_window", "1"},
+                    {"crystalline_by_phi_local_percent", "%",
+                     "crystalline grains, if phi_local is above this", curve, 0,
+                     "phi_local_threshold", "1"},
+                    {"largest_by_face", "1",
+                     "grains in the largest crystallite, if grains are connected by faces of at "
+                     "least this share of the mean cell surface",
+                     curve, 0, "connecting_face", "1"}},
+       .compute = sensitivity}};
 }
 
 }  // namespace shearcell

@@ -67,81 +67,70 @@ json record_of(const MeasureInput& input) {
 
 }  // namespace
 
-Provider drive_provider() {
-  return {
-      .name = "drive",
-      .measures = {{"shear_strain", "1", "tan(theta), theta the tilt of the side walls"},
-                   {"shear_rate_per_s", "1/s",
-                    "rate of change of shear_strain; after a pause, of the shear that follows"}},
-      .compute = drive_of,
-      .from = ComputedFrom::record};
-}
-
-// The balance is that of protocols/ledger.hpp. It takes three to four times as long as the cycle.
-Provider ledger_provider() {
+std::vector<Provider> run_providers() {
   using enum MeasureKind;
-  return {.name = "ledger",
-          .parameters = {{"stride", ledger_stride}},
-          .measures =
-              {{"work_of_walls_per_cycle_J", "J",
-                "work of the tilting walls on all grains in the cycle that ends here", number, 1},
-               {"dissipation_per_cycle_J", "J",
-                "energy that all grains and the moving wall lost by drag in that cycle", number, 1},
-               {"energy_stored_per_cycle_J", "J",
-                "change of all elastic, kinetic and gravitational energy and of the load's in that "
-                "cycle",
-                number, 1}},
-          .compute = ledger_of,
-          .earlier = {1},
-          .from = ComputedFrom::simulation,
-          .cost = "3 to 4 times as long as the cycle"};
-}
-
-// Compares protocols whose checkpoints are recorded at different rates of shear
-// (protocols/rest.hpp).
-Provider rest_provider() {
-  return {.name = "rest",
-          .parameters = {{"rest_s", rest_s}},
-          .measures = {{.name = "phi_at_rest",
-                        .unit = "1",
-                        .meaning = "volume fraction of interior grains (Eq. S4) after 0.1 s "
-                                   "between walls that are held in place",
-                        .words = "phi at rest"}},
-          .compute = rest_of,
-          .from = ComputedFrom::simulation,
-          .cost = "a twentieth of a cycle"};
-}
-
-Provider cost_provider() {
-  return {.name = "cost",
-          .measures = {{.name = "core_time_s",
-                        .unit = "s",
-                        .meaning = "processor time of the run's steps up to its end, over all "
-                                   "attempts on whatever machines; without its packing, and in "
-                                   "full for each experiment that shares the run. Where none was "
-                                   "recorded, wall-clock time times processes",
-                        .kind = MeasureKind::run,
-                        .of_run = [](const FigureRun& run) { return measured(run.core_time_s); },
-                        .words = "the core time",
-                        .reach = "its end"}},
-          .from = ComputedFrom::history};
-}
-
-Provider record_provider() {
-  return {.name = "record",
-          .measures = {{"time_s", "s", "simulated time since the stage began"},
-                       {"cell_height_d", "d", "distance of the bottom and top wall"},
-                       {"largest_overlap_d", "d",
-                        "largest overlap of two grains, or of a grain and a wall grain"},
-                       {"kinetic_energy_per_grain_m_d2_per_s2", "m d^2/s^2",
-                        "mean kinetic energy; m is the mass of a grain"},
-                       {"wall_force_imbalance", "1",
-                        "load less contact force on the moving wall, over P A_w"},
-                       {"raised_stiffness_N_per_m", "N/m", "spring constant of a stiffening"},
-                       {"force_residual_P_d2", "P d^2",
-                        "largest net force on a grain of a stiffening over P d^2"}},
-          .compute = record_of,
-          .from = ComputedFrom::record};
+  return {
+      {.name = "drive",
+       .measures = {{"shear_strain", "1", "tan(theta), theta the tilt of the side walls"},
+                    {"shear_rate_per_s", "1/s",
+                     "rate of change of shear_strain; after a pause, of the shear that follows"}},
+       .compute = drive_of,
+       .from = ComputedFrom::record},
+      // The balance is that of protocols/ledger.hpp. It takes three to four times as long as the
+      // cycle.
+      {.name = "ledger",
+       .parameters = {{"stride", ledger_stride}},
+       .measures =
+           {{"work_of_walls_per_cycle_J", "J",
+             "work of the tilting walls on all grains in the cycle that ends here", number, 1},
+            {"dissipation_per_cycle_J", "J",
+             "energy that all grains and the moving wall lost by drag in that cycle", number, 1},
+            {"energy_stored_per_cycle_J", "J",
+             "change of all elastic, kinetic and gravitational energy and of the load's in that "
+             "cycle",
+             number, 1}},
+       .compute = ledger_of,
+       .earlier = {1},
+       .from = ComputedFrom::simulation,
+       .cost = "3 to 4 times as long as the cycle"},
+      // Compares protocols whose checkpoints are recorded at different rates of shear
+      // (protocols/rest.hpp).
+      {.name = "rest",
+       .parameters = {{"rest_s", rest_s}},
+       .measures = {{.name = "phi_at_rest",
+                     .unit = "1",
+                     .meaning = "volume fraction of interior grains (Eq. S4) after 0.1 s "
+                                "between walls that are held in place",
+                     .words = "phi at rest"}},
+       .compute = rest_of,
+       .from = ComputedFrom::simulation,
+       .cost = "a twentieth of a cycle"},
+      {.name = "record",
+       .measures = {{"time_s", "s", "simulated time since the stage began"},
+                    {"cell_height_d", "d", "distance of the bottom and top wall"},
+                    {"largest_overlap_d", "d",
+                     "largest overlap of two grains, or of a grain and a wall grain"},
+                    {"kinetic_energy_per_grain_m_d2_per_s2", "m d^2/s^2",
+                     "mean kinetic energy; m is the mass of a grain"},
+                    {"wall_force_imbalance", "1",
+                     "load less contact force on the moving wall, over P A_w"},
+                    {"raised_stiffness_N_per_m", "N/m", "spring constant of a stiffening"},
+                    {"force_residual_P_d2", "P d^2",
+                     "largest net force on a grain of a stiffening over P d^2"}},
+       .compute = record_of,
+       .from = ComputedFrom::record},
+      {.name = "cost",
+       .measures = {{.name = "core_time_s",
+                     .unit = "s",
+                     .meaning = "processor time of the run's steps up to its end, over all "
+                                "attempts on whatever machines; without its packing, and in "
+                                "full for each experiment that shares the run. Where none was "
+                                "recorded, wall-clock time times processes",
+                     .kind = MeasureKind::run,
+                     .of_run = [](const FigureRun& run) { return measured(run.core_time_s); },
+                     .words = "the core time",
+                     .reach = "its end"}},
+       .from = ComputedFrom::history}};
 }
 
 }  // namespace shearcell

@@ -98,9 +98,9 @@ Estimate ratio(const Estimate& a, const Estimate& b);
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the
 /// truth with 90 % probability; on both sides of the truth if `both_sides`. Normal theory, with
 /// Student's t for both errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
-/// (2008), section 3.2. None if the number is more than 10000. The number is as uncertain as the
-/// square of the spread: the right number is 0.3 to 20 times that from 3 runs, and 0.5 to 4 times
-/// that from 6 runs.
+/// (2008), section 3.2. None if the number is more than 10000. The spread of a
+/// few runs is uncertain, and so is the number: the true number is 0.3 to 20 times the number found
+/// from 3 runs, and 0.5 to 4 times the number found from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 

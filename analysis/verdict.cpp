@@ -68,13 +68,15 @@ json claim_of(const Verdict& verdict) {
 }  // namespace
 
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
-               std::size_t runs, std::string note) {
+               std::size_t runs, std::string note, FigureTable entered, Counted counted) {
   Verdict verdict;
   verdict.claim = claim.text;
   verdict.quantity = std::move(quantity);
   verdict.margin = claim.margin;
   verdict.runs = runs;
+  verdict.counted = counted;
   verdict.note = std::move(note);
+  verdict.entered = std::move(entered);
   if (!estimate) return verdict;
   verdict.estimate = estimate->value;
   verdict.interval = estimate->interval;

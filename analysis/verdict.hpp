@@ -41,12 +41,6 @@ template <>
 inline constexpr auto kNames<Counted> = names_in_order<Counted>("runs", "pairs",
                                                                 "runs per variant");
 
-/// What entered a verdict, so that anyone can compute it again: rows of a CSV file.
-struct Entered {
-  std::vector<std::string> columns = {};
-  std::vector<TableRow> rows = {};
-};
-
 struct Verdict {
   std::string claim;
   std::string quantity;            ///< what is estimated, with its unit
@@ -58,8 +52,8 @@ struct Verdict {
   Counted counted = Counted::runs;
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
   std::string note;                        ///< how it was compared, what is missing
-  bool primary = false;  ///< its runs were made to decide it; others are exploratory
-  Entered entered = {};
+  bool primary = false;      ///< its runs were made to decide it; others are exploratory
+  FigureTable entered = {};  ///< rows of a CSV file, from which anyone can compute it again
 };
 
 /// agrees, supported: the interval lies where the claim puts it. differs, refuted: the interval
@@ -68,7 +62,8 @@ struct Verdict {
 /// excludes 0, or that many runs exist already, the true value is taken to be the estimate.
 /// `runs_needed` is always more than the runs of the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
-               std::size_t runs, std::string note);
+               std::size_t runs, std::string note, FigureTable entered = {},
+               Counted counted = Counted::runs);
 
 /// The number of claims with each ruling, without rulings that no claim has.
 std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);

@@ -93,7 +93,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
     const GrowthCurve curve(counts);
     const std::size_t k = all.size();
     all.push_back({.style = {{{"amplitude_rad", amplitude}},
-                             italic("A") + fmt::format(" = {}", amplitude),
+                             formula(fmt::format("$A$ = {}", amplitude)),
                              amplitude_colours[k % amplitude_colours.size()],
                              curve_symbol(k)},
                    .amplitude = amplitude,
@@ -126,11 +126,7 @@ std::vector<ChartPoint> smooth_points(const AmplitudeGrowth& one) {
 Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
-      .y = {.symbol = italic("Δρ") + " = " + italic("ρ") + subscript("g") + " − " + italic("ρ") +
-                      subscript("s"),
-            .low = -1.05,
-            .high = 1.05,
-            .clip = true},
+      .y = {.symbol = formula("$Δρ$ = $ρ_g$ − $ρ_s$"), .low = -1.05, .high = 1.05, .clip = true},
       .lines = {{.at = 0, .title = "growth as probable as shrinking"}},
       .note = fmt::format("curves are smoothed over {} in ln(size)", GrowthCurve::bandwidth)};
   for (const AmplitudeGrowth& one : all) {
@@ -185,7 +181,7 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
     row.insert(row.end(), {one.repeated.low, one.repeated.high, one.published->critical_size,
                            one.published_bin().runs.size()});
   }
-  table.chart = {.x = amplitude_axis(),
+  table.chart = {.x = amplitude_axis,
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
                  .series = {{.title = "supplement",
                              .colour = "#888888",
@@ -253,8 +249,9 @@ FigureTable largest_table(std::span<const FigureRun> runs, std::span<const Ampli
 }
 
 /// The counts that give a critical size, of each run.
-Entered growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
-  Entered entered =
+FigureTable growth_entered(std::span<const AmplitudeGrowth* const> amplitudes,
+                           std::int64_t cycles) {
+  FigureTable entered =
       entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
   for (const AmplitudeGrowth* one : amplitudes) {
     for (const FigureRun* run : one->all_runs) {
@@ -312,17 +309,16 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
       "that shrink by vanishing",
       in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
       all.vanished, all.smaller());
+  const AmplitudeGrowth* const alone = &one;
   Verdict verdict =
       decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
                           published),
               margin_critical_size},
              fmt::format("critical size, relative difference from {} grains", published), relative,
-             runs.size(), note);
-  if (critical && high / low > 1 + 2 * margin_critical_size) {
+             runs.size(), note, growth_entered({&alone, 1}, one.published->n_bin));
+  if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
     verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
   }
-  const AmplitudeGrowth* const alone = &one;
-  verdict.entered = growth_entered({&alone, 1}, one.published->n_bin);
   return verdict;
 }
 
@@ -342,15 +338,12 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
     const auto size = [&](std::size_t k) { return *sized[k]->after.at(cycles_compared).critical; };
     growth = mapped(ratio(size(1), size(0)), [](double r) { return r - 1; });
   }
-  Verdict verdict =
-      decide({.text = "C: the critical size grows with A", .claimed = Relation::higher},
-             "critical size at the largest amplitude relative to that at the smallest, "
-             "less 1",
-             growth, growth ? growth->runs : 0, note);
-  verdict.counted = Counted::runs_per_variant;
   if (!growth) sized.clear();
-  verdict.entered = growth_entered(sized, cycles_compared);
-  return verdict;
+  return decide({.text = "C: the critical size grows with A", .claimed = Relation::higher},
+                "critical size at the largest amplitude relative to that at the smallest, "
+                "less 1",
+                growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
+                Counted::runs_per_variant);
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ std::vector<Amplitude> amplitudes_of(std::span<const FigureRun> runs) {
     Amplitude& one =
         all.emplace_back(Amplitude{.amplitude = amplitude,
                                    .style = {.where = {},
-                                             .title = italic("A") + fmt::format(" = {}", amplitude),
+                                             .title = formula(fmt::format("$A$ = {}", amplitude)),
                                              .colour = safe_colours[k % safe_colours.size()],
                                              .point = curve_symbol(k)},
                                    .published = published_nearest(amplitude).critical_size});
@@ -276,8 +276,8 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
 }
 
 /// What enters a verdict: a row for each crystallite, one of size 0 for each control.
-Entered fates_of(std::initializer_list<const Amplitude*> amplitudes) {
-  Entered entered =
+FigureTable fates_of(std::initializer_list<const Amplitude*> amplitudes) {
+  FigureTable entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
   for (const Amplitude* one : amplitudes) {
     for (const auto* subjects : {&one->crystallites, &one->controls}) {
@@ -312,14 +312,12 @@ Verdict size_is_published(const Amplitude& one) {
       counted(packings, "packing"), counted(one.left_out, "state"), grown_size, note_on(one, size));
   if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
   if (size) size->spread /= one.published;
-  Verdict verdict = decide(
+  return decide(
       {fmt::format("C: at A = {} rad half of the crystallites of {} grains grow", one.amplitude,
                    one.published),
        margin_critical_size},
       fmt::format("size of which half grow, relative difference from {} grains", one.published),
-      size, packings, note);
-  verdict.entered = fates_of({&one});
-  return verdict;
+      size, packings, note, fates_of({&one}));
 }
 
 /// The supplement's size grows from the one amplitude to the other. Their clones are taken as
@@ -328,15 +326,12 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;
   if (before && after) growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
-  Verdict verdict =
-      decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
-                                  high.amplitude, low.amplitude),
-              .claimed = Relation::higher},
-             "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
-             note_on(low, before) + "; " + note_on(high, after));
-  verdict.counted = Counted::runs_per_variant;
-  verdict.entered = fates_of({&low, &high});
-  return verdict;
+  return decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
+                                     high.amplitude, low.amplitude),
+                 .claimed = Relation::higher},
+                "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
+                note_on(low, before) + "; " + note_on(high, after), fates_of({&low, &high}),
+                Counted::runs_per_variant);
 }
 
 }  // namespace

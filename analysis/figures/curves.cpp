@@ -220,30 +220,6 @@ std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const Cu
   return curves;
 }
 
-Axis cycle_axis() {
-  return {.name = "shear cycle", .symbol = italic("n"), .whole = true};
-}
-
-Axis phi_axis() {
-  return {.name = "volume fraction", .symbol = italic("ϕ")};
-}
-
-Axis crystalline_axis() {
-  return {.name = "percentage crystalline", .unit = "%", .low = 0};
-}
-
-Axis overlap_axis() {
-  return {.name = "mean overlap", .symbol = Text("⟨") + italic("δ") + "⟩", .unit = italic("d")};
-}
-
-Axis amplitude_axis() {
-  return {.name = "amplitude", .symbol = italic("A"), .unit = "rad", .low = 0, .high = 0.12};
-}
-
-Axis onset_axis() {
-  return {.name = "onset", .symbol = italic("ϕ")};
-}
-
 std::vector<ReferenceLine> onset_lines(bool vertical) {
   std::vector<ReferenceLine> lines;
   for (const double error : {-published_onset_error, published_onset_error}) {
@@ -314,7 +290,7 @@ FigureTable against_cycle(const std::string& name, std::span<const Curve> curves
       row.emplace_back(over(point, measures.front()).runs);
     }
   }
-  table.chart = {.x = cycle_axis(),
+  table.chart = {.x = cycle_axis,
                  .y = std::move(y),
                  .series = series_of(curves, columns_against("cycle", measures.front()))};
   std::vector<Series> single;
@@ -344,7 +320,7 @@ FigureTable against_phi(const std::string& name, std::span<const Curve> curves,
   }
   SeriesColumns columns = columns_against("phi_mean", measure);
   columns.x_error = "phi_standard_error";
-  table.chart = {.x = phi_axis(), .y = std::move(y), .series = series_of(curves, columns)};
+  table.chart = {.x = phi_axis, .y = std::move(y), .series = series_of(curves, columns)};
   return table;
 }
 

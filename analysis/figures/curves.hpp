@@ -49,12 +49,14 @@ struct Curve {
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const CurveStyle> styles);
 
 // The axes that several figures share.
-Axis cycle_axis();
-Axis phi_axis();
-Axis crystalline_axis();
-Axis overlap_axis();
-Axis amplitude_axis();  ///< 0 to 0.12 rad
-Axis onset_axis();      ///< phi at the onset
+inline const Axis cycle_axis = {.name = "shear cycle", .symbol = formula("$n$"), .whole = true};
+inline const Axis phi_axis = {.name = "volume fraction", .symbol = formula("$ϕ$")};
+inline const Axis crystalline_axis = {.name = "percentage crystalline", .unit = "%", .low = 0};
+inline const Axis overlap_axis = {
+    .name = "mean overlap", .symbol = formula("⟨$δ$⟩"), .unit = formula("$d$")};
+inline const Axis amplitude_axis = {
+    .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
+inline const Axis onset_axis = {.name = "onset", .symbol = formula("$ϕ$")};
 
 /// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
 std::vector<ReferenceLine> onset_lines(bool vertical = false);

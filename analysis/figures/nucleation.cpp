@@ -38,13 +38,13 @@ std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns
   std::vector<Series> series;
   for (const auto& [group, runs] : groups) {
     const std::size_t k = series.size();
-    series.push_back({.title = italic("A") + fmt::format(" = {}, ", group.first) + italic("N") +
-                               fmt::format(" = {}", group.second),
-                      .colour = safe_colours[k % safe_colours.size()],
-                      .point = curve_symbol(k),
-                      .join = join,
-                      .columns = columns,
-                      .filter = {"group", name_of(group)}});
+    series.push_back(
+        {.title = formula(fmt::format("$A$ = {}, $N$ = {}", group.first, group.second)),
+         .colour = safe_colours[k % safe_colours.size()],
+         .point = curve_symbol(k),
+         .join = join,
+         .columns = columns,
+         .filter = {"group", name_of(group)}});
   }
   return series;
 }
@@ -69,7 +69,7 @@ FigureTable survival_table(const Groups& groups) {
     if (longest != waits.end()) add(longest->cycle, before);
   }
   table.chart = {
-      .x = cycle_axis(),
+      .x = cycle_axis,
       .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
       .series = series_by(groups, {.x = "cycle", .y = "share_without_onset"}, Join::line)};
   for (Series& series : table.chart.series) series.point = 0;
@@ -95,7 +95,7 @@ FigureTable rate_table(const Groups& groups, Region region, const std::string& n
                             bin.interval.low, bin.interval.high});
     }
   }
-  table.chart = {.x = phi_axis(),
+  table.chart = {.x = phi_axis,
                  .y = {.name = "onsets per grain and cycle", .log = true},
                  .series = series_by(groups,
                                      {.x = "phi_low",
@@ -130,22 +130,22 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
   const std::vector<const FigureRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all, region);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  Verdict verdict =
-      decide({claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1", excess,
-             excess ? excess->runs : all.size(),
-             excess ? fmt::format("maximum likelihood; walls would give {:.2f}", walls - 1)
-                    : "three runs, and runs of two sizes with onsets at the same phi, are needed");
-  verdict.entered =
+  FigureTable entered =
       entered_with({"amplitude_rad", "grains", "phi", "cycles", "grain_cycles", "onsets"});
   for (const FigureRun* run : all) {
     for (const auto& [step, one] : exposures_of(*run, region, rate_step)) {
       enter(*run,
             {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi, one.cycles,
              one.grain_cycles, one.onsets},
-            verdict.entered);
+            entered);
     }
   }
-  return {std::move(verdict)};
+  return {decide({claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1",
+                 excess, excess ? excess->runs : all.size(),
+                 excess
+                     ? fmt::format("maximum likelihood; walls would give {:.2f}", walls - 1)
+                     : "three runs, and runs of two sizes with onsets at the same phi, are needed",
+                 std::move(entered))};
 }
 
 }  // namespace

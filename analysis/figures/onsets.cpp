@@ -99,8 +99,8 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
       onset_points("largest crystallite is critical", "#0072b2", 9, "amplitude_rad", {"method", 1});
   Series by_slope = onset_points("steepest growth", "#009e73", 13, "amplitude_rad", {"method", 2});
   by_slope.shift = 0.001;
-  table.chart = {.x = amplitude_axis(),
-                 .y = onset_axis(),
+  table.chart = {.x = amplitude_axis,
+                 .y = onset_axis,
                  .series = {{.title = "experiment",
                              .colour = "#e69f00",
                              .points = {{experiment_amplitude_rad,
@@ -152,7 +152,7 @@ std::vector<CurveStyle> styles_for(std::span<const FigureRun> runs) {
       styles.push_back(
           {{{"amplitude_rad", amplitude},
             {"gravity_m_per_s2", *std::ranges::find_if(gravities, fits)}},
-           italic("A") + fmt::format(" = {}, {}", amplitude, has ? "gravity" : "no gravity"),
+           formula(fmt::format("$A$ = {}, {}", amplitude, has ? "gravity" : "no gravity")),
            colour,
            has ? open + 1 : open});
     }
@@ -197,8 +197,8 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
         {o.curve->variant, o.amplitude, o.gravity ? "on" : "off", o.onset.cycle.mean}, o.onset));
   }
   table.chart = {
-      .x = amplitude_axis(),
-      .y = onset_axis(),
+      .x = amplitude_axis,
+      .y = onset_axis,
       .series = {onset_points("gravity", "#000000", 5, "amplitude_rad", {"gravity", "on"}),
                  onset_points("no gravity", "#d55e00", 7, "amplitude_rad", {"gravity", "off"})},
       .lines = onset_lines()};
@@ -210,10 +210,10 @@ FigureTable onset_table(std::span<const CurveOnset> onsets) {
 std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
   std::vector<FigureTable> panels = {
       against_phi("S6_crystalline", curves, {"crystalline", "percent", "crystalline_percent"},
-                  crystalline_axis()),
+                  crystalline_axis),
       against_phi("S6_contacts", curves, {"contacts_per_grain", "", "contacts_per_grain"},
                   {.name = "contacts per grain"}),
-      against_phi("S6_overlap", curves, {"overlap", "d", "mean_overlap_d"}, overlap_axis())};
+      against_phi("S6_overlap", curves, {"overlap", "d", "mean_overlap_d"}, overlap_axis)};
   for (FigureTable& panel : panels) panel.chart.lines = onset_lines(true);
   return panels;
 }
@@ -222,7 +222,7 @@ std::vector<FigureTable> structure_panels(std::span<const Curve> curves) {
 Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
   std::vector<std::pair<double, double>> points;  // ln N_inves and phi
   std::set<double> sizes;
-  Entered entered = entered_with({"interior_grains", "onset_phi"});
+  FigureTable entered = entered_with({"interior_grains", "onset_phi"});
   for (const FigureRun& run : runs) {
     const RunOnset onset = onset_by_size(run);
     if (onset.observed != Observed::yes) continue;
@@ -237,14 +237,12 @@ Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
     for (const std::size_t k : selection) chosen.push_back(points[k]);
     return least_squares_slope(chosen);
   };
-  Verdict verdict =
-      decide({"C: phi at the onset does not depend on the size of the cell", margin_onset_slope},
-             "change of phi at the onset with ln N_inves",
-             sizes.size() < 2 ? std::nullopt : bootstrapped(points.size(), slope), points.size(),
-             fmt::format("{} of {} runs have their onset, in cells of {}", points.size(),
-                         runs.size(), counted(sizes.size(), "size")));
-  verdict.entered = std::move(entered);
-  return verdict;
+  return decide({"C: phi at the onset does not depend on the size of the cell", margin_onset_slope},
+                "change of phi at the onset with ln N_inves",
+                sizes.size() < 2 ? std::nullopt : bootstrapped(points.size(), slope), points.size(),
+                fmt::format("{} of {} runs have their onset, in cells of {}", points.size(),
+                            runs.size(), counted(sizes.size(), "size")),
+                std::move(entered));
 }
 
 }  // namespace
@@ -300,10 +298,10 @@ FigureResult figure_s5b(std::span<const FigureRun> runs) {
   if (groups.size() > 1) result.verdicts.push_back(onset_is_of_any_size(runs));
   constexpr double most_grains = 20000;
   table.chart = {
-      .x = {.name = "grains", .symbol = italic("N"), .low = 0, .high = most_grains},
-      .y = onset_axis(),
+      .x = {.name = "grains", .symbol = formula("$N$"), .low = 0, .high = most_grains},
+      .y = onset_axis,
       .series = {onset_points("simulated", "#000000", 5, "grains"),
-                 {.title = Text("experiment, ") + italic("A") + " = 0.01",
+                 {.title = formula("experiment, $A$ = 0.01"),
                   .colour = "#e69f00",
                   .point = 0,
                   .join = Join::line,
@@ -319,7 +317,7 @@ FigureResult figure_s6(std::span<const FigureRun> runs) {
   const std::vector<CurveOnset> onsets = onsets_of(curves);
   const std::array<MeasureColumn, 3> measures = {
       {{"phi", "", "phi"}, {"phi_u", "", "phi_uncorrected"}, {"overlap", "d", "mean_overlap_d"}}};
-  FigureTable phi = against_cycle("S6", curves, measures, phi_axis());
+  FigureTable phi = against_cycle("S6", curves, measures, phi_axis);
   phi.chart.lines = onset_lines();
   phi.chart.series.push_back(onset_series(onsets));
   FigureResult result{{std::move(phi), onset_table(onsets)}, {}};

@@ -63,8 +63,8 @@ std::vector<Series> series_under(const Load& load) {
                               .runs = "runs"},
                   .filter = {"pressure_at", load.at}};
   };
-  return {phi_series(italic("ϕ") + subscript("u") + ", uncorrected", 6, "phi_u"),
-          phi_series(italic("ϕ"), 7, "phi")};
+  return {phi_series(formula("$ϕ_u$, uncorrected"), 6, "phi_u"),
+          phi_series(formula("$ϕ$"), 7, "phi")};
 }
 
 FigureTable table_of(std::span<const Load> loads) {
@@ -72,9 +72,9 @@ FigureTable table_of(std::span<const Load> loads) {
       .name = "S1",
       .columns = {"pressure_at", "log10_k_over_k0", "overlap_mean_d", "overlap_standard_error_d",
                   "phi_u_mean", "phi_u_standard_error", "phi_mean", "phi_standard_error", "runs"}};
-  Axis overlap = overlap_axis();
+  Axis overlap = overlap_axis;
   overlap.log = true;
-  table.chart = {.x = std::move(overlap), .y = phi_axis()};
+  table.chart = {.x = std::move(overlap), .y = phi_axis};
   for (const Load& load : loads) {
     std::map<int, std::vector<const Measures*>> packings;
     for (const FigureRun* run : load.runs) {

@@ -71,7 +71,7 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
                     .columns = {std::move(first_column), "low", "high", "probability_density",
                                 "standard_error", "crystallites", "runs"}};
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
-                 .y = {.name = "probability density", .symbol = italic("P"), .low = 0},
+                 .y = {.name = "probability density", .symbol = formula("$P$"), .low = 0},
                  .errors = "bars are standard errors over packings"};
   for (const Profile& profile : profiles) {
     for (const DensityBin& bin : density(profile.places.packings, density_bins)) {
@@ -89,10 +89,6 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
                                   .filter = {table.columns.front(), profile.key}});
   }
   return table;
-}
-
-Text ratio(const char* length, const Text& unit) {
-  return italic(length) + "/" + unit;
 }
 
 /// Share of the nuclei in one part of the cell less that in another, over all runs. `side` gives 1
@@ -123,17 +119,16 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   if (packings < least_bootstrap_runs) {
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
   }
-  Verdict verdict = decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
-                           std::move(note));
-  verdict.entered = entered_with({"place", "value"});
+  FigureTable entered = entered_with({"place", "value"});
   for (const FigureRun* run : runs) {
     for (const double place : nucleus_places(*run, axis, Seen::first)) {
       const std::optional<int> counted = side(place);
       if (!counted) continue;
-      enter(*run, {place, std::int64_t{*counted}}, verdict.entered);
+      enter(*run, {place, std::int64_t{*counted}}, entered);
     }
   }
-  return verdict;
+  return decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
+                std::move(note), std::move(entered));
 }
 
 /// The inner half of the accessible width is compared with the outer half.
@@ -161,9 +156,8 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
   // The panels of the supplement are for the softest springs; a manifest may sweep the stiffness.
   const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
   const auto softest = by_stiffness.empty() ? pointers(runs) : by_stiffness.begin()->second;
-  const auto probability = [](const Text& of) { return italic("P") + "(" + of + ")"; };
-  const Text x_over_w = ratio("x", italic("w")), y_over_h = ratio("y", italic("h"));
-  const Text y_over_nominal = ratio("y", Text("1.675 ") + italic("L"));
+  const auto probability = [](const std::string& of) { return formula("$P$(" + of + ")"); };
+  const std::string x_over_w = "$x$/$w$", y_over_h = "$y$/$h$", y_over_nominal = "$y$/1.675 $L$";
   const std::array<Profile, 3> places = {
       {{"x/w", probability(x_over_w), places_of(softest, CellAxis::x)},
        {"y/h", probability(y_over_h), places_of(softest, CellAxis::y)},
@@ -171,7 +165,7 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
   std::vector<Profile> stiffness;
   for (const auto& [k, members] : by_stiffness) {
     stiffness.push_back(
-        {k, italic("k") + fmt::format(" = {} N/m", k), places_of(members, CellAxis::y)});
+        {k, formula(fmt::format("$k$ = {} N/m", k)), places_of(members, CellAxis::y)});
   }
   std::vector<Verdict> verdicts = {
       uniform_in_the_middle(softest),
@@ -188,10 +182,11 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
                   margin_share}));
   }
   const std::span all(places);
-  return {{density_table("S7", "axis", x_over_w + ",  " + y_over_h, all.first(2)),
-           density_table("S7_heights", "axis", y_over_h + ",  " + y_over_nominal, all.last(2)),
-           density_table("S7_stiffness", "stiffness_N_per_m", y_over_h, stiffness)},
-          std::move(verdicts)};
+  return {
+      {density_table("S7", "axis", formula(x_over_w + ",  " + y_over_h), all.first(2)),
+       density_table("S7_heights", "axis", formula(y_over_h + ",  " + y_over_nominal), all.last(2)),
+       density_table("S7_stiffness", "stiffness_N_per_m", formula(y_over_h), stiffness)},
+      std::move(verdicts)};
 }
 
 }  // namespace shearcell

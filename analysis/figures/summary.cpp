@@ -81,10 +81,9 @@ FigureTable stacked(Parts parts, std::string name, std::string_view table_name) 
 /// phi at the onset against the number of interior grains, a series for each experiment.
 FigureTable onset_against_size(Parts parts) {
   FigureTable table = stacked(parts, "summary_b", "S5b");
-  table.chart = {
-      .x = {.name = "interior grains", .symbol = italic("N") + subscript("inves"), .log = true},
-      .y = onset_axis(),
-      .lines = onset_lines()};
+  table.chart = {.x = {.name = "interior grains", .symbol = formula("$N_{inves}$"), .log = true},
+                 .y = onset_axis,
+                 .lines = onset_lines()};
   std::set<std::string> experiments;
   for (const TableRow& row : table.rows) experiments.insert(std::get<std::string>(row.front()));
   for (const std::string& experiment : experiments) {
@@ -127,7 +126,7 @@ FigureTable percentage_against_phi(Parts parts) {
     return listed && column_of(table, "phi_low") && column_of(table, "crystalline_mean_percent");
   };
   FigureTable table = stacked(parts, "summary_d", is_compared);
-  table.chart = {.x = phi_axis(), .y = crystalline_axis(), .lines = onset_lines(true)};
+  table.chart = {.x = phi_axis, .y = crystalline_axis, .lines = onset_lines(true)};
   for (std::size_t k = 0; k < compared_figures.size(); ++k) {
     std::set<std::string> known;  // curves of the figure
     for (const FigurePart& part : parts) {
@@ -162,7 +161,8 @@ Verdict largest_difference(Parts parts, const std::string& quantity, const Claim
   }
   std::optional<Estimate> largest;
   std::string of;
-  Entered entered{{"experiment", "figure", "compared", "difference", "low", "high", "runs"}};
+  FigureTable entered{
+      .columns = {"experiment", "figure", "compared", "difference", "low", "high", "runs"}};
   for (const auto& [part, verdict] : all) {
     const double value = *verdict->estimate, freedom = static_cast<double>(verdict->runs) - 1;
     const double tail = (1 - confidence_level) / 2;
@@ -185,10 +185,10 @@ Verdict largest_difference(Parts parts, const std::string& quantity, const Claim
       largest ? fmt::format("{} comparisons, whose intervals all hold with 90 % (Bonferroni); the "
                             "largest is that of \"{}\"",
                             all.size(), of)
-              : "no figure of this store compares two groups");
-  verdict.counted = Counted::runs_per_variant;
-  verdict.runs_needed.reset();  // of which comparison?
-  verdict.entered = std::move(entered);
+              : "no figure of this store compares two groups",
+      std::move(entered), Counted::runs_per_variant);
+  // It would be the number for one comparison, and it is not known for which.
+  verdict.runs_needed.reset();
   return verdict;
 }
 

@@ -38,7 +38,7 @@ double time_step(const FigureRun& run) {
 const std::vector<Parameter>& parameters() {
   constexpr double published_time_step = published_period_s / published_steps_per_cycle;
   const auto plain = [](const char* name, const char* symbol, const char* unit, double published) {
-    return Parameter{name, italic(symbol), unit, published, {name}};
+    return Parameter{name, formula(fmt::format("${}$", symbol)), unit, published, {name}};
   };
   static const std::vector<Parameter> all = {
       plain("mass_kg", "m", "kg", published_mass_kg),
@@ -46,10 +46,15 @@ const std::vector<Parameter>& parameters() {
       plain("stiffness_N_per_m", "k", "N/m", published_stiffness_N_per_m),
       plain("drag_kg_per_s", "b", "kg/s", published_drag_kg_per_s),
       plain("pressure_Pa", "P", "Pa", published_pressure_Pa),
-      {"omega_rad_per_s", italic("ω"), "rad/s", 2 * pi / published_period_s, {"period_s"}, omega},
+      {"omega_rad_per_s",
+       formula("$ω$"),
+       "rad/s",
+       2 * pi / published_period_s,
+       {"period_s"},
+       omega},
       {"steps_per_cycle", "steps/cycle", "", published_steps_per_cycle, {"steps_per_cycle"}},
       {"time_step_s",
-       italic("Δt"),
+       formula("$Δt$"),
        "s",
        published_time_step,
        {"period_s", "steps_per_cycle"},
@@ -105,12 +110,12 @@ Found found_in(const RunList& runs, const Parameter& parameter) {
 }
 
 Text number_text(double value) {
-  if (value == pi) return italic("π");
+  if (value == pi) return formula("$π$");
   const double size = std::abs(value);
   if (size == 0 || (size >= 0.01 && size < 1e5)) return fmt::format("{:.6g}", value);
   const auto exponent = static_cast<int>(std::floor(std::log10(size)));
-  return fmt::format("{:.4g}×10", value / std::pow(10, exponent)) +
-         superscript((exponent < 0 ? "−" : "") + std::to_string(std::abs(exponent)));
+  return formula(fmt::format("{:.4g}×10$^{{{}{}}}$", value / std::pow(10, exponent),
+                             exponent < 0 ? "−" : "", std::abs(exponent)));
 }
 
 Text range_text(const Found& found) {

@@ -314,7 +314,8 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     write_output(made.files.back(), text);
   };
   for (const FigureTable& table : made.tables) {
-    made.files.push_back(write_csv(table, folder));
+    made.files.push_back(folder / (table.name + ".csv"));
+    write_output(made.files.back(), to_csv(table));
     try {
       const std::filesystem::path svg = draw_svg(table, folder);
       made.files.push_back(svg);

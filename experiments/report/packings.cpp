@@ -160,7 +160,7 @@ std::string frame_name(const CheckpointRecord& record) {
 json facts_of(const PackingMeasures& measures, double theta) {
   json facts = json::array();
   if (measures.interior_grains > 0) {
-    facts.push_back(to_json(italic("ϕ") + fmt::format(" = {:.4f}", measures.phi)));
+    facts.push_back(to_json(formula(fmt::format("$ϕ$ = {:.4f}", measures.phi))));
     facts.push_back(to_json(fmt::format("{:.1f} % crystalline", measures.crystalline_percent)));
     facts.push_back(to_json(fmt::format("largest crystallite {}", measures.largest_crystallite)));
   }

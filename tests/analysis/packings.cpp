@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "core/diagnostics.hpp"
 
@@ -93,6 +92,23 @@ Checkpoint checkpoint_of(const Packing& packing) {
 
 double volume_of(const Packing& p) {
   return p.cell.width * p.cell.depth * (p.pose.top - p.pose.bottom);
+}
+
+Measures measured_by(std::string_view name, MeasureInput input) {
+  static const RunFacts units{
+      .parameters = {{"stiffness_N_per_m", 1}, {"mass_kg", 1}, {"diameter_m", 1}}};
+  if (input.run == nullptr) input.run = &units;
+  Measures measures;
+  provider(name).read(provider(name).compute(input), measures);
+  return measures;
+}
+
+std::vector<double> q6_of(const VoronoiDiagram& diagram) {
+  std::vector<double> q6;
+  for (std::size_t i = 0; i < diagram.volume.size(); ++i) {
+    q6.push_back(bond_order_q6(diagram.faces_of(i), diagram.surface[i]));
+  }
+  return q6;
 }
 
 Packing empty_cell(double width, double height, double depth, double theta) {

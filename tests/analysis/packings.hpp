@@ -4,9 +4,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
+#include "analysis/measures.hpp"
 #include "core/cell.hpp"
-#include "provenance/checkpoint.hpp"
 
 namespace shearcell::test {
 
@@ -20,6 +22,12 @@ struct Packing {
 Checkpoint checkpoint_of(const Packing& packing);
 
 double volume_of(const Packing& packing);
+
+/// What a provider measures. Without a run, the units of mechanics are 1 in SI units.
+Measures measured_by(std::string_view name, MeasureInput input);
+
+/// q6 of every grain, by grain id.
+std::vector<double> q6_of(const VoronoiDiagram& diagram);
 
 /// Upright or tilted cell with smooth walls and its bottom plane at y = 0.
 Packing empty_cell(double width, double height, double depth, double theta = 0);

@@ -52,7 +52,7 @@ TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
 
 TEST(Chart, HasTheDigitsOfTheCsv) {
   const FigureTable table = table_with(
-      {}, {.x = {.name = "x", .symbol = italic("n"), .unit = "s", .low = 0},
+      {}, {.x = {.name = "x", .symbol = formula("$n$"), .unit = "s", .low = 0},
            .y = {.name = "y", .log = true},
            .series = {{.title = "t", .colour = "#123456", .points = {{1.0 / 3, 2, {}, 0.25}}}},
            .lines = {{0.646}}});
@@ -71,9 +71,9 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
   const FigureTable table = table_with(
       {{std::string("it's"), std::int64_t{1}, 0.5, 0.1},
        {std::string("b"), std::int64_t{2}, 0.6, {}}},
-      {.x = {.name = "shear cycle", .symbol = italic("n"), .whole = true},
+      {.x = {.name = "shear cycle", .symbol = formula("$n$"), .whole = true},
        .y = {.name = "a_b", .unit = "%", .low = 0},
-       .series = {{.title = italic("ϕ") + subscript("u"),
+       .series = {{.title = formula("$ϕ_u$"),
                    .colour = "#123456",
                    .join = Join::line,
                    .columns = phi_columns,

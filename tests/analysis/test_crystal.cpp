@@ -9,7 +9,6 @@
 #include <numeric>
 #include <vector>
 
-#include "analysis/common_neighbours.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "tests/analysis/packings.hpp"
 
@@ -23,7 +22,7 @@ struct Inside {
 
 Inside measure_inside(const Packing& p) {
   const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
-  const std::vector<double> q6 = bond_order_q6(d);
+  const std::vector<double> q6 = q6_of(d);
   Inside inside;
   for (std::size_t i = 0; i < q6.size(); ++i) {
     const Eigen::Vector3d centre = p.grains.col(static_cast<Eigen::Index>(i));
@@ -67,7 +66,7 @@ TEST(BondOrder, EqualsTheAdditionTheorem) {
   // (4 pi / 13) sum_m Y_6m(a) Y*_6m(b) = P_6(a . b), so q6^2 is a double sum over bonds.
   const Packing p = jammed(200, false, 0, 47);
   const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
-  const std::vector<double> q6 = bond_order_q6(d);
+  const std::vector<double> q6 = q6_of(d);
   for (std::size_t i = 0; i < q6.size(); ++i) {
     double square = 0;
     for (const VoronoiFace& a : d.faces_of(i)) {
@@ -148,9 +147,12 @@ TEST(CrystalliteMap, CentresOfMassAcrossTheSeamOfATiltedCell) {
   EXPECT_NEAR((map.centre[1] - r.col(3)).norm(), 0, 1e-12) << "at the top nothing is displaced";
 }
 
-// Share of a lattice among grains at least 2.5 d from the walls, whose neighbours are all there.
-double share(const Packing& p, shearcell::Lattice wanted) {
-  const auto found = common_neighbour_analysis(p.cell, p.pose, p.grains);
+// Share of a lattice (0 none, 1 FCC, 2 HCP, 3 BCC) among grains at least 2.5 d from the walls,
+// whose neighbours are all there.
+double share(const Packing& p, double wanted) {
+  const Checkpoint checkpoint = checkpoint_of(p);
+  const std::vector<double> found =
+      measured_by("grain_lattices", {nullptr, &checkpoint}).of_grains.at("lattice");
   double count = 0, of_lattice = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Eigen::Vector3d centre = p.grains.col(static_cast<Eigen::Index>(i));
@@ -163,11 +165,8 @@ double share(const Packing& p, shearcell::Lattice wanted) {
 }
 
 TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedCorrectly) {
-  const std::pair<test::Lattice, shearcell::Lattice> known[] = {
-      {Lattice::fcc, shearcell::Lattice::fcc},
-      {Lattice::hcp, shearcell::Lattice::hcp},
-      {Lattice::bcc, shearcell::Lattice::bcc},
-      {Lattice::simple_cubic, shearcell::Lattice::none}};
+  const std::pair<Lattice, double> known[] = {
+      {Lattice::fcc, 1}, {Lattice::hcp, 2}, {Lattice::bcc, 3}, {Lattice::simple_cubic, 0}};
   for (const auto& [kind, expected] : known) {
     Packing p = lattice(kind, 8);
     EXPECT_EQ(share(p, expected), 1) << static_cast<int>(kind);
@@ -178,7 +177,7 @@ TEST(CommonNeighbours, PerfectAndShakenLatticesAreClassifiedCorrectly) {
 
 TEST(CommonNeighbours, ADisorderedPackingHasHardlyAny) {
   const Packing p = jammed(2000, true, 0.05, 3);
-  EXPECT_GT(share(p, shearcell::Lattice::none), 0.97);
+  EXPECT_GT(share(p, 0), 0.97);
 }
 
 }  // namespace

@@ -81,12 +81,18 @@ TEST(DerivedMeasures, EveryKindOfNumberIsRestored) {
   EXPECT_TRUE(std::isnan(decode_result(encode_result(nlohmann::json(std::nan("")))).get<double>()));
 }
 
+CrystalliteMap read_crystallites(const nlohmann::json& result) {
+  Measures measures;
+  provider("crystallites").read(result, measures);
+  return measures.crystallite_map.value();
+}
+
 TEST(DerivedMeasures, CrystallitesAreRestoredBitByBit) {
   const Analysis analysis = pinned_analysis();
   const CrystalliteMap& map = analysis.crystallites;
   ASSERT_FALSE(map.grain.empty());
   const std::vector<std::byte> bytes = encode_result(crystallites_of(analysis));
-  const CrystalliteMap back = read_crystallite_map(decode_result(bytes));
+  const CrystalliteMap back = read_crystallites(decode_result(bytes));
   EXPECT_EQ(back.grain, map.grain);
   EXPECT_EQ(back.label, map.label);
   EXPECT_EQ(back.size, map.size);
@@ -103,28 +109,28 @@ TEST(DerivedMeasures, InconsistentCrystallitesAreRejected) {
   for (const char* key : {"grain", "label", "size", "centre_d", "width_d"}) {
     nlohmann::json bad = good;
     bad.erase(key);
-    EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << key;
+    EXPECT_THROW(read_crystallites(bad), AnalysisError) << key;
     bad = good;
     bad[key] = nlohmann::json::binary({1, 0, 0, 0});
-    EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << key;
+    EXPECT_THROW(read_crystallites(bad), AnalysisError) << key;
   }
   nlohmann::json bad = good;
   std::vector<std::uint8_t> labels = good.at("label").get_binary();
   labels[3] = 0x80;
   bad["label"] = nlohmann::json::binary(labels);
-  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a negative label";
+  EXPECT_THROW(read_crystallites(bad), AnalysisError) << "a negative label";
   bad = good;
   std::vector<std::uint8_t> sizes = good.at("size").get_binary();
   sizes.insert(sizes.end(), 4, 0);
   bad["size"] = nlohmann::json::binary(sizes);
   bad["centre_d"].push_back({1, 2, 3});
-  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a crystallite without grains";
+  EXPECT_THROW(read_crystallites(bad), AnalysisError) << "a crystallite without grains";
   bad = good;
   bad["centre_d"][0][1] = std::nan("");
-  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a centre that is no place";
+  EXPECT_THROW(read_crystallites(bad), AnalysisError) << "a centre that is no place";
   bad = good;
   bad["width_d"] = 0;
-  EXPECT_THROW(read_crystallite_map(bad), AnalysisError) << "a cell without width";
+  EXPECT_THROW(read_crystallites(bad), AnalysisError) << "a cell without width";
 }
 
 TEST(DerivedMeasures, AMeasureSaysWhichEarlierCheckpointItNeeds) {

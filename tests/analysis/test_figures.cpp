@@ -24,6 +24,7 @@
 #include "analysis/growth.hpp"
 #include "analysis/plot.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/file.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/text.hpp"
@@ -231,6 +232,18 @@ TEST(FigureC, APublishedSizeThatFewRunsMayGiveIsNotContradicted) {
   }
 }
 
+TEST(FigureC, NoNumberOfRunsDecidesIfTheSupplementsIntervalIsUnbounded) {
+  std::vector<FigureRun> runs;
+  for (std::uint32_t seed = 1; seed <= 14; ++seed) {
+    runs.push_back(biased_walks(seed, 0.0833, seed > 4 ? 0 : 20));  // 0: all grow
+  }
+  const Verdict found = verdict_of(find_figure("C")->make(runs),
+                                   "C: the critical size at A = 0.0833 rad is about 16 grains");
+  EXPECT_TRUE(has(found.note, "90 % of repetitions would give less than 1 to")) << found.note;
+  EXPECT_EQ(found.ruling, Ruling::undecided);
+  EXPECT_FALSE(found.runs_needed) << numbers_of(found);
+}
+
 TEST(FigureSummary, IsMadeOfTheTablesOfOtherFigures) {
   std::vector<FigureRun> onsets;
   for (const double amplitude : {0.05, 0.1}) {
@@ -349,7 +362,7 @@ class Plot : public ::testing::Test {
     if (!find_program("gnuplot")) GTEST_SKIP() << "gnuplot is not installed";
   }
   fs::path draw(const FigureTable& table) const {
-    write_csv(table, folder_.path());
+    write_output(folder_.path() / (table.name + ".csv"), to_csv(table));
     return draw_svg(table, folder_.path());
   }
   /// What visible_points.py finds in a drawing; nothing if it ran out of time.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Displacements and D^2_min of known motions.
-#include "analysis/motion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/error.hpp"
@@ -15,6 +14,16 @@
 namespace shearcell::test {
 namespace {
 
+/// Displacement [d] and D^2_min [d^2] of each grain.
+struct Moved {
+  std::vector<double> displacement, nonaffine;
+};
+Moved moved_between(const Checkpoint& earlier, const Checkpoint& later) {
+  const auto before = [&](std::uint64_t) { return &earlier; };
+  const auto found = measured_by("grain_motion", {nullptr, &later, before}).of_grains;
+  return {found.at("displacement_d"), found.at("d2min_d2")};
+}
+
 TEST(Motion, IsZeroInACellThatIsOnlySheared) {
   const Packing p = jammed(400, false, 0, 1);
   const Checkpoint upright = checkpoint_of(p);
@@ -23,8 +32,8 @@ TEST(Motion, IsZeroInACellThatIsOnlySheared) {
   const WallPose pose = pose_of(tilted);
   tilted.state.position.row(0).array() +=
       pose.tan_theta * (tilted.state.position.row(1).array() - pose.top);
-  const Motion moved = motion(upright, tilted);
-  EXPECT_LT(moved.displacement.cwiseAbs().maxCoeff(), 1e-12);
+  const Moved moved = moved_between(upright, tilted);
+  EXPECT_LT(std::ranges::max(moved.displacement), 1e-12);
   for (const double nonaffine : moved.nonaffine) EXPECT_LT(nonaffine, 1e-12);
 }
 
@@ -37,9 +46,9 @@ TEST(Motion, AnAffineDeformationIsNotNonaffine) {
   deformation << 1.02, 0.03, 0, -0.01, 0.97, 0, 0.02, 0.01, 1;
   later.state.position =
       (deformation * earlier.state.position).colwise() + Eigen::Vector3d(1, 2, 3);
-  const Motion moved = motion(earlier, later);
+  const Moved moved = moved_between(earlier, later);
   for (const double nonaffine : moved.nonaffine) EXPECT_LT(nonaffine, 1e-12);
-  EXPECT_GT(moved.displacement.colwise().norm().minCoeff(), 1);
+  EXPECT_GT(std::ranges::min(moved.displacement), 1);
 }
 
 // By the normal equations of Falk and Langer, over all pairs.
@@ -49,9 +58,10 @@ double brute_force(const Checkpoint& earlier, const Checkpoint& later, Eigen::In
     r.z() = nearest_image(r.z(), c.cell.depth, 1 / c.cell.depth);
     return r;
   };
+  const double neighbour = provider("grain_motion").parameters.at("neighbour_d");
   std::vector<Eigen::Index> near;
   for (Eigen::Index j = 0; j < earlier.state.position.cols(); ++j) {
-    if (j != i && between(earlier, j).norm() <= motion_neighbour_d) near.push_back(j);
+    if (j != i && between(earlier, j).norm() <= neighbour) near.push_back(j);
   }
   Eigen::MatrixXd before(3, static_cast<Eigen::Index>(near.size())), after = before;
   for (std::size_t k = 0; k < near.size(); ++k) {
@@ -68,12 +78,12 @@ TEST(Motion, NonaffineMotionIsThatOfALeastSquaresFit) {
   const Checkpoint earlier = checkpoint_of(p);
   jitter(p, 0.1, 4);
   const Checkpoint later = checkpoint_of(p);
-  const Motion moved = motion(earlier, later);
+  const Moved moved = moved_between(earlier, later);
   for (Eigen::Index i = 0; i < p.grains.cols(); i += 7) {
-    EXPECT_NEAR(moved.nonaffine[static_cast<std::size_t>(i)], brute_force(earlier, later, i),
-                1e-12);
-    EXPECT_EQ(moved.displacement.col(i),
-              later.state.position.col(i) - earlier.state.position.col(i));
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_NEAR(moved.nonaffine[k], brute_force(earlier, later, i), 1e-12);
+    EXPECT_NEAR(moved.displacement[k],
+                (later.state.position.col(i) - earlier.state.position.col(i)).norm(), 1e-15);
   }
 }
 
@@ -82,10 +92,12 @@ TEST(Motion, GrainsInOnePlaneHaveNoDeformation) {
   p.grains.resize(3, 9);
   for (int i = 0; i < 9; ++i) p.grains.col(i) = Eigen::Vector3d(2 + i % 3, 2 + i / 3, 3);
   const Checkpoint flat = checkpoint_of(p);
-  for (const double nonaffine : motion(flat, flat).nonaffine) EXPECT_TRUE(std::isnan(nonaffine));
+  for (const double nonaffine : moved_between(flat, flat).nonaffine) {
+    EXPECT_TRUE(std::isnan(nonaffine));
+  }
   Checkpoint fewer = flat;
   fewer.state.position.conservativeResize(3, 8);
-  EXPECT_THROW(motion(flat, fewer), AnalysisError);
+  EXPECT_THROW(moved_between(flat, fewer), AnalysisError);
 }
 
 TEST(Motion, MeansAreOverTheRightGrains) {
@@ -101,8 +113,7 @@ TEST(Motion, MeansAreOverTheRightGrains) {
   while (analysis.grains.interior[still] == 0) ++still;
   later.state.position(2, static_cast<Eigen::Index>(still)) -= 0.02;
   const auto lag = [&](std::uint64_t cycles) { return cycles == 1 ? &earlier : nullptr; };
-  Measures m;
-  provider("motion").read(provider("motion").compute({&analysis, &later, lag}), m);
+  const Measures m = measured_by("motion", {&analysis, &later, lag});
   const auto interior = static_cast<double>(analysis.measures.interior_grains);
   EXPECT_NEAR(m.numbers.at("msd_1_cycle_d2"), 4e-4 * (interior - 1) / interior, 1e-15);
   EXPECT_NEAR(m.numbers.at("reversible_percent"), 100 / interior, 1e-12);
@@ -115,9 +126,18 @@ TEST(Motion, TheBoundaryOfACrystalHasOtherNeighbours) {
   p.grains.resize(3, 4);
   for (int i = 0; i < 4; ++i) p.grains.col(i) = Eigen::Vector3d(2 + i, 4, 7.9);
   p.grains(2, 3) = 0.1;  // a neighbour across the periodic boundary
-  const std::vector<std::uint8_t> crystalline = {1, 1, 1, 0};
-  EXPECT_EQ(crystal_boundary(checkpoint_of(p), crystalline),
-            (std::vector<std::uint8_t>{0, 0, 1, 0}));
+  const Checkpoint earlier = checkpoint_of(p);
+  for (int i = 0; i < 4; ++i) p.grains(2, i) += 0.01 * (i + 1);
+  const Checkpoint later = checkpoint_of(p);
+  Analysis analysis;
+  analysis.grains.interior.assign(4, 1);
+  analysis.grains.structure.assign(4, Structure::fcc);
+  analysis.grains.structure.back() = Structure::disordered;
+  const auto before = [&](std::uint64_t) { return &earlier; };
+  const Measures m = measured_by("motion", {&analysis, &later, before});
+  EXPECT_NEAR(m.number("msd_inside_crystal_d2"), (1e-4 + 4e-4) / 2, 1e-12);
+  EXPECT_NEAR(m.number("msd_crystal_boundary_d2"), 9e-4, 1e-12);
+  EXPECT_NEAR(m.number("msd_disordered_d2"), 16e-4, 1e-12);
 }
 
 }  // namespace

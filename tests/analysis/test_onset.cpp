@@ -2,6 +2,7 @@
 // Onsets of analytic curves, and runs that do not show theirs.
 #include "analysis/onset.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,14 +69,20 @@ TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
 }
 
 TEST(Onset, CountsCensoredRuns) {
-  const std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
-                                       logistic(0.66, 10)};
+  std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
+                                 logistic(0.66, 10)};
+  for (FigureRun& run : runs) run.packing = fmt::format("of run {}", &run - runs.data());
   const Onset found = onset(pointers(runs), onset_by_slope);
   EXPECT_EQ(found.phi.runs, 3U);
   EXPECT_EQ(found.never, 1U);
   EXPECT_NEAR(found.phi.mean.value(), 0.646, 0.0006);
   ASSERT_TRUE(found.phi_error.has_value());
   EXPECT_NEAR(*found.phi_error, found.phi.standard_error.value(), 0.1 * *found.phi_error);
+  for (FigureRun& run : runs) run.packing = "of all";
+  const Onset of_clones = onset(pointers(runs), onset_by_slope);
+  EXPECT_EQ(of_clones.phi.runs, 1U);
+  EXPECT_EQ(of_clones.cycle.runs, 1U);
+  EXPECT_FALSE(of_clones.phi_error);
 }
 
 }  // namespace

@@ -37,11 +37,20 @@ TEST(PairStructure, TheInteriorRegionHoldsTheInteriorGrains) {
   }
 }
 
+/// The curve of a provider of that name.
+MeasuredCurve measured(const char* name, const Packing& p,
+                       const std::vector<std::uint8_t>& interior) {
+  const Checkpoint checkpoint = checkpoint_of(p);
+  Analysis analysis;
+  analysis.grains.interior = interior;
+  return measured_by(name, {&analysis, &checkpoint}).curves.at(name);
+}
+
 // In a tilted cell, where the shape of the region shows most.
 TEST(PairStructure, GrainsAtRandomHaveNoCorrelation) {
   Packing p = empty_cell(14, 12, 10, 0.3);
   fill(p, 20000, 0, 7);
-  const MeasuredCurve g = pair_correlation(p.cell, p.pose, p.grains, interior_of(p));
+  const MeasuredCurve g = measured("pair_correlation", p, interior_of(p));
   ASSERT_EQ(g.x.size(), 250U);
   double mean_far = 0;
   for (std::size_t b = 25; b < g.y.size(); ++b) {
@@ -54,7 +63,7 @@ TEST(PairStructure, GrainsAtRandomHaveNoCorrelation) {
 TEST(PairStructure, CountsEveryPairOnce) {
   Packing p = jammed(600, true, 0.05, 2);
   const std::vector<std::uint8_t> interior = interior_of(p);
-  const MeasuredCurve g = pair_correlation(p.cell, p.pose, p.grains, interior);
+  const MeasuredCurve g = measured("pair_correlation", p, interior);
   std::vector<double> pairs(g.x.size(), 0);
   double count = 0;
   for (Eigen::Index i = 0; i < p.grains.cols(); ++i) {
@@ -89,7 +98,7 @@ TEST(PairStructure, CountsEveryPairOnce) {
 TEST(PairStructure, StructureFactorOfGrainsAtRandomIsOne) {
   Packing p = empty_cell(14, 12, 8, 0.1);
   fill(p, 4000, 0, 3);
-  const MeasuredCurve s = structure_factor(p.cell, p.pose, p.grains, interior_of(p));
+  const MeasuredCurve s = measured("structure_factor", p, interior_of(p));
   ASSERT_EQ(s.x.size(), 100U);
   double mean = 0;
   for (std::size_t b = 20; b < s.y.size(); ++b) mean += s.y[b] / 80;
@@ -101,7 +110,7 @@ TEST(PairStructure, StructureFactorIsTheSumOverWaveVectors) {
   Packing p = jammed(600, false, 0.1, 4);
   const std::vector<std::uint8_t> interior = interior_of(p);
   const InteriorRegion region = interior_region(p.cell, p.pose);
-  const MeasuredCurve s = structure_factor(p.cell, p.pose, p.grains, interior);
+  const MeasuredCurve s = measured("structure_factor", p, interior);
   std::vector<double> sum(8, 0), count(8, 0);
   double grains = 0;
   for (const std::uint8_t inside : interior) grains += inside;

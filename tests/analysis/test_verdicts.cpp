@@ -82,9 +82,10 @@ TEST(Verdict, HeadlineCountsTheRulings) {
 
 TEST(Verdict, WhatEnteredIsOneTable) {
   Verdict first = decide({"a, b", 2}, "q", between(0, 1), 6, "");
-  first.entered = {{"group", "value"}, {{"x", 1.5}, {"y", TableValue()}}};
+  first.entered = {.columns = {"group", "value"}, .rows = {{"x", 1.5}, {"y", TableValue()}}};
   Verdict second = decide({"c", 2}, "q", between(0, 1), 6, "");
-  second.entered = {{"group", "size", "grew"}, {{"z", std::int64_t{3}, std::int64_t{4}}}};
+  second.entered = {.columns = {"group", "size", "grew"},
+                    .rows = {{"z", std::int64_t{3}, std::int64_t{4}}}};
   EXPECT_EQ(to_csv(entered_table(std::vector{first, second})),
             "claim,group,value,size,grew\n\"a, b\",x,1.5,,\n\"a, b\",y,,,\nc,z,,3,4\n");
 }

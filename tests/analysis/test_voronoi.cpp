@@ -46,7 +46,7 @@ double worst_reciprocity(const VoronoiDiagram& d) {
 
 void expect_agrees_with_voro(const Packing& p) {
   const VoronoiDiagram d = voronoi(p.cell, p.pose, p.grains);
-  const std::vector<double> q6 = bond_order_q6(d);
+  const std::vector<double> q6 = q6_of(d);
   const std::vector<VoroCell> cells = voro_cells(p);
   const auto grains = static_cast<int>(p.grains.cols());
   for (std::size_t i = 0; i < cells.size(); ++i) {

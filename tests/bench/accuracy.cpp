@@ -13,6 +13,7 @@
 #include "analysis/plot.hpp"
 #include "analysis/statistics.hpp"
 #include "experiments/manifest/conversion.hpp"
+#include "provenance/io/file.hpp"
 #include "tests/bench/closed_forms.hpp"
 #include "tests/support/run_lammps.hpp"
 
@@ -120,7 +121,7 @@ FigureTable error_table(double ours, double lammps) {
     row[6] = std::get<double>(row[6]) * ours / lammps;
     table.rows.push_back(row);
   }
-  table.chart = {.x = {.name = "time step", .unit = Text("2/ω") + subscript("max"), .log = true},
+  table.chart = {.x = {.name = "time step", .unit = formula("2/ω$_{max}$"), .log = true},
                  .y = {.name = "relative error", .log = true}};
   for (const Style& style : kStyles) {
     for (const auto& [motion, title, hollow, join] :
@@ -237,7 +238,7 @@ void measure(const std::filesystem::path& folder) {
   const FigureTable errors = error_table(ours, lammps);
   for (const FigureTable& table :
        {errors, cost_table(errors), energy_table(), divergence_table()}) {
-    write_csv(table, folder);
+    write_output(folder / (table.name + ".csv"), to_csv(table));
     if (!table.chart.series.empty()) draw_svg(table, folder);
   }
 }

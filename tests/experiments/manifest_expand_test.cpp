@@ -367,9 +367,11 @@ TEST(Expand, AnAliasIsACopyOfItsAnchor) {
                    of_second + "}\n",
                "test.yaml")
         .plots[1]
-        .series;
+        .series.at(0);
   };
-  EXPECT_EQ(series("*s"), series("{\"fluid=still\": {label: a}}"));
+  const SeriesSpec of_alias = series("*s"), stated = series("{\"fluid=still\": {label: a}}");
+  EXPECT_EQ(of_alias.where, stated.where);
+  EXPECT_EQ(of_alias.label, stated.label);
 }
 
 TEST(Expand, WarnsOfFiguresThatWouldAverageOverTheSweep) {

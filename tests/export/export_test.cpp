@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/common_neighbours.hpp"
 #include "analysis/near_grains.hpp"
 #include "experiments/bench/packing.hpp"
 #include "experiments/export/formats.hpp"
@@ -122,7 +121,7 @@ nlohmann::json truth(const Checkpoint& c) {
   }
   std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
                       overlap = measured.grains.largest_overlap,
-                      pressure = measured.grains.pressure;
+                      pressure = measured.mechanics->grain_pressure;
   std::vector<int> structure, crystallite, id;
   for (std::size_t i = 0; i < phi_local.size(); ++i) {
     structure.push_back(static_cast<int>(measured.grains.structure[i]));
@@ -160,17 +159,15 @@ nlohmann::json truth(const Checkpoint& c) {
                   const auto bin = static_cast<std::size_t>(r.norm() / 0.02);
                   for (std::size_t b = bin; b < inner_pairs.size(); ++b) ++inner_pairs[b];
                 });
-  std::vector<int> lattice, inner_contacts;
-  for (const Lattice found : common_neighbour_analysis(c.cell, pose, c.state.position)) {
-    lattice.push_back(static_cast<int>(found));
-  }
+  std::vector<int> lattice = provider("grain_lattices").compute({nullptr, &c}).at("lattice");
+  std::vector<int> inner_contacts;
   lattice.resize(type.size(), -1);
   std::vector<int> contacts(measured.grains.contacts.begin(), measured.grains.contacts.end());
   for (const int id_of : inner_id) {
     inner_contacts.push_back(contacts[static_cast<std::size_t>(id_of) - 1]);
   }
   contacts.resize(type.size(), 0);
-  const Mechanics m = mechanics(c, measured.grains.cell_volume, inner).packing;
+  const Mechanics m = mechanics(c, measured.grains.cell_volume, inner);
   const double k_per_d = 654.0 / 3e-3;
   nlohmann::json facts = about().stage.resolved.at("parameters");
   facts.update({{"run", std::string(64, 'a')},

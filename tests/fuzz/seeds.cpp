@@ -201,9 +201,9 @@ std::vector<std::string> packing_seeds() {
 }
 
 std::vector<std::string> measure_seeds() {
-  const CrystalliteMap map{{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
   Analysis analysis;
-  return {as_string(encode_result(to_json(map))),
+  analysis.crystallites = {{3, 5}, {0, 0}, {2}, {Eigen::Vector3d(1, 2, 3)}, 12, 0, 20};
+  return {as_string(encode_result(provider("crystallites").compute({&analysis}))),
           as_string(encode_result(provider("scalars").compute({&analysis})))};
 }
 

@@ -10,8 +10,6 @@
 #include "analysis/growth.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/nucleation.hpp"
-#include "analysis/pair_structure.hpp"
-#include "analysis/profiles.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/lines.hpp"
@@ -135,10 +133,9 @@ void take_checkpoint(Input input) {
     require_plausible(checkpoint);
     attempt<AnalysisError>([&] {
       const Analysis found = analyse(checkpoint);
-      profiles(checkpoint, found.grains);
-      phi_by_wall_distance(checkpoint, found.grains);
-      structure_factor(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position,
-                       found.grains.interior);
+      for (const char* name : {"profiles", "wall_distance", "structure_factor"}) {
+        provider(name).compute({&found, &checkpoint});
+      }
     });
   });
 }
@@ -176,7 +173,7 @@ void take_measures(Input input) {
     attempt<AnalysisError>([&] {
       FigureRun run;
       CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
-      checkpoint.measures.crystallite_map = read_crystallite_map(result);
+      provider("crystallites").read(result, checkpoint.measures);
       GrowthBySize counts;
       follow(*checkpoint.measures.crystallite_map, *checkpoint.measures.crystallite_map, counts);
       GrowthCurve({&counts, 1}).delta_rho(10);
