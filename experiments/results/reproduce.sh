@@ -30,11 +30,15 @@ trap 'rm -rf "$new"' EXIT
 # Of `cost`, whose runs are partly LAMMPS's, no rows are published.
 for folder in ${1:-$(sed -n '/^#/d; /^cost/d; s/ |.*//p' "$here/published.txt")}; do
   line=$(grep "^$folder |" "$here/published.txt") || { echo "published.txt has no folder $folder" >&2; exit 2; }
-  name=$(sed -n 's/^experiment: //p' "experiments/$(column 2)")
+  # A figure of all experiments has the manifest `*.yaml`; its folder is named by the scale alone.
+  case $(column 2) in
+    \*.yaml) name="" ;;
+    *) name=$(sed -n 's/^experiment: //p' "experiments/$(column 2)") ;;
+  esac
   # shellcheck disable=SC2046  # one word an option
   [ "$mode" = --rows ] || "$SHEARCELL" run experiments/$(column 2) $(column 3) $(column 4)
   # shellcheck disable=SC2046
-  "$SHEARCELL" figures $(column 5) --experiment "$name" $(column 3) --out "$new/figures"
+  "$SHEARCELL" figures $(column 5) ${name:+--experiment "$name"} $(column 3) --out "$new/figures"
   made=$(echo "$new/figures/$name"/*)  # of one scale
   if [ "$mode" = --write ]; then
     rm -f "$made"/*.pdf
@@ -42,7 +46,7 @@ for folder in ${1:-$(sed -n '/^#/d; /^cost/d; s/ |.*//p' "$here/published.txt")}
     find "$here/$folder" -maxdepth 1 -type f -delete  # also what a figure has no more
     cp "$made"/* "$here/$folder"
     # shellcheck disable=SC2046
-    "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
+    [ -z "$name" ] || "$SHEARCELL" table --per run --experiment "$name" $(column 3) --out "$here/$folder/runs.csv"
     continue
   fi
   for file in "$here/$folder"/*.csv; do
