@@ -314,12 +314,16 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
-      const std::string path = crate_path_of_checkpoint(c.record.sha256);
-      if (!c.kept()) {  // an earlier export wrote it before it was pruned or rejected
-        fs::remove(folder / path);
-        continue;
-      }
-      const std::vector<std::byte> bytes = objects.get(c.record.sha256, c.record.size);
+      // An earlier export wrote what was pruned or rejected since.
+      if (!c.kept()) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
+    }
+  }
+  std::set<std::string> done;  // a forged store may list a file in two stages
+  for (const RunLineage& stage : facts.stages) {
+    for (const CheckpointHistory& c : stage.checkpoints) {
+      if (!c.kept() || !done.insert(c.sha256()).second) continue;
+      const std::string path = crate_path_of_checkpoint(c.sha256());
+      const std::vector<std::byte> bytes = objects.get(c.sha256(), c.record.size);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
     }
