@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <tuple>
+#include <vector>
 
 #include "analysis/measures.hpp"
 #include "analysis/near_grains.hpp"
@@ -56,23 +58,40 @@ MeasuredCurve empty_bins(double width, std::size_t count) {
   return function;
 }
 
-// exp(2 pi i n s) for n = 0 ... of each fractional coordinate.
-class Waves {
- public:
-  Waves(const Eigen::VectorXd& fraction, int most) {
-    const Eigen::ArrayXcd unit =
-        (std::complex<double>(0, 2 * kPi) * fraction.array().cast<std::complex<double>>()).exp();
-    powers_.push_back(Eigen::ArrayXcd::Ones(unit.size()));
-    for (int n = 1; n <= most; ++n) powers_.push_back(powers_.back() * unit);
-  }
-  Eigen::ArrayXcd of(int n) const {
-    const Eigen::ArrayXcd& power = powers_[static_cast<std::size_t>(std::abs(n))];
-    return n < 0 ? Eigen::ArrayXcd(power.conjugate()) : power;
-  }
-
- private:
-  std::vector<Eigen::ArrayXcd> powers_;
+// A wave at two sites.
+struct TwoSites {
+  Eigen::Array2d re = {0, 0}, im = {0, 0};
 };
+
+inline TwoSites operator*(const TwoSites& a, const TwoSites& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+// A wave at a block of sites, so few that all waves of the block are in the cache.
+using Wave = std::array<TwoSites, 16>;
+constexpr auto kBlock = static_cast<Eigen::Index>(2 * std::tuple_size_v<Wave>);
+
+// exp(2 pi i n s) for n = -most ... most of the fractional coordinates s of at most kBlock sites.
+// The waves are 0 at missing sites.
+std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
+  std::vector<Wave> found(2 * static_cast<std::size_t>(most) + 1);
+  const auto middle = found.begin() + most;
+  Wave unit;
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    const auto pair = static_cast<std::size_t>(i / 2);
+    const std::complex<double> value = std::exp(std::complex<double>(0, 2 * kPi * s[i]));
+    unit[pair].re[i % 2] = value.real();
+    unit[pair].im[i % 2] = value.imag();
+    (*middle)[pair].re[i % 2] = 1;
+  }
+  for (int n = 1; n <= most; ++n) {
+    for (std::size_t pair = 0; pair < unit.size(); ++pair) {
+      const TwoSites& power = middle[n][pair] = middle[n - 1][pair] * unit[pair];
+      middle[-n][pair] = {power.re, -power.im};
+    }
+  }
+  return found;
+}
 
 using WaveVector = std::array<int, 3>;  // in the reciprocal lattice
 
@@ -147,23 +166,50 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;
   const Eigen::ArrayXd x = sites.row(0).transpose().array() - region.left - region.tan_theta * y;
-  const Waves along_x(x / region.width, most[0]);
-  const Waves along_y(y / region.height, most[1]);
-  const Waves along_z(sites.row(2).transpose() / region.depth, most[2]);
+  const Eigen::ArrayXd z = sites.row(2).transpose().array();
   constexpr std::size_t most_of_bin = 48;
   std::vector<std::size_t> vectors(kWaveBins), seen(kWaveBins), taken(kWaveBins);
-  std::vector<double> sum(kWaveBins);
   for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector&) { ++vectors[bin]; });
+  struct Sum {
+    std::size_t bin;
+    WaveVector n;
+    TwoSites at;  // sums over the sites at even and at odd places
+  };
+  std::vector<Sum> sums;
   for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector& n) {
     const std::size_t stride = (vectors[bin] + most_of_bin - 1) / most_of_bin;
     if (seen[bin]++ % stride != 0) return;
     ++taken[bin];
-    sum[bin] += std::norm((along_x.of(n[0]) * along_y.of(n[1]) * along_z.of(n[2])).sum());
+    sums.push_back({bin, n, {}});
   });
+  // An odd number of sites ends with a block of one, which is added to the sum of both.
+  for (Eigen::Index from = 0, size = 0; from < sites.cols(); from += size) {
+    size = std::min(kBlock, sites.cols() - from);
+    if (size > 1) size -= size % 2;
+    const std::array along = {waves(x.segment(from, size) / region.width, most[0]),
+                              waves(y.segment(from, size) / region.height, most[1]),
+                              waves(z.segment(from, size) / region.depth, most[2])};
+    for (Sum& sum : sums) {
+      if (size == 1) sum.at = {{sum.at.re.sum(), 0}, {sum.at.im.sum(), 0}};
+      const auto wave = [&](std::size_t axis) -> const Wave& {
+        return along[axis][static_cast<std::size_t>(sum.n[axis] + most[axis])];
+      };
+      const Wave &of_x = wave(0), &of_y = wave(1), &of_z = wave(2);
+      for (std::size_t pair = 0; pair < of_x.size(); ++pair) {
+        const TwoSites product = of_x[pair] * of_y[pair] * of_z[pair];
+        sum.at.re += product.re;
+        sum.at.im += product.im;
+      }
+    }
+  }
+  std::vector<double> squares(kWaveBins);
+  for (const Sum& sum : sums) {
+    squares[sum.bin] += std::norm(std::complex<double>(sum.at.re.sum(), sum.at.im.sum()));
+  }
   MeasuredCurve s = empty_bins(wave_bin_per_d, kWaveBins);
   for (std::size_t b = 0; b < kWaveBins; ++b) {
     const double count = static_cast<double>(taken[b]) * static_cast<double>(sites.cols());
-    if (count > 0) s.y[b] = sum[b] / count;
+    if (count > 0) s.y[b] = squares[b] / count;
   }
   return s;
 }
