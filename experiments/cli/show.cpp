@@ -370,15 +370,16 @@ void show_figure(const Store& store, const FigureRecord& record, bool list, Cont
 
 Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
                const std::vector<Finding>& faults, std::size_t inputs) {
-  const auto changed = static_cast<std::size_t>(
-      std::ranges::count(faults, Finding::Severity::error, &Finding::severity));
-  const std::size_t pruned = faults.size() - changed;
+  std::size_t changed = 0, pruned = 0;  // checkpoints
+  for (const Finding& fault : faults) {
+    if (!fault.subject.empty()) ++(fault.severity == Finding::Severity::error ? changed : pruned);
+  }
   nlohmann::json list = nlohmann::json::array();
   std::string text =
       faults.empty()
           ? fmt::format("{}, all present and right", counted(inputs, "checkpoint"))
           : fmt::format("{}: {} present and right{}{}", counted(inputs, "checkpoint"),
-                        inputs - faults.size(),
+                        inputs - changed - pruned,
                         pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
                         changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
   for (const auto& [severity, checkpoint, run, what] : faults) {

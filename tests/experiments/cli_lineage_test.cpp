@@ -66,6 +66,26 @@ TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
   EXPECT_FALSE(has(shown.out, "\u202e"));
 }
 
+// A record from elsewhere may name states that the log does not have; its checkpoints are intact.
+TEST_F(CommandLineLineage, CountsCheckpointsApartFromRuns) {
+  for (const auto& [file, cycles, counts] :
+       {std::tuple("four.csv", "[[0,1,1]]", "4 checkpoints: 4 present and right"),
+        {"none.csv", "[[77,77,1]]", "0 checkpoints: 0 present and right"}}) {
+    std::filesystem::copy(path("out/tiny/base/S2a.csv"), path(file));
+    {
+      Store store(path("shearcell-store"), Access::write);
+      nlohmann::json facts = store.figures().back().provenance;
+      facts["outputs"] = {{file, facts.at("outputs").at("S2a.csv")}};
+      for (nlohmann::json& input : facts.at("inputs")) {
+        input["cycles"] = nlohmann::json::parse(cycles);
+        input["states_sha256"] = std::string(64, '0');
+      }
+      store.record("figure/other", {"FigureGenerated", facts});
+    }
+    expect(4, {"show", file}, {counts, "the log has other states"});
+  }
+}
+
 TEST_F(CommandLineLineage, ChecksAPublishedFile) {
   expect(0, {"show", "out/tiny/base/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
   const nlohmann::json all = json({"show", "out/tiny/base/S2a.csv", "--json"});
