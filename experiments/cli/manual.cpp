@@ -93,7 +93,7 @@ stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are
 std::string figure_reference() {
   std::string text =
       "\n## Figures\n\n"
-      "[Panels](../analysis/README.md#figures).\n\n"
+      "[How they are made](../analysis/README.md#figures).\n\n"
       "| figure | shows | keys that its experiment varies |\n|---|---|---|\n";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("| `{}` | {} | {} |\n", figure.name, cell(figure.title),

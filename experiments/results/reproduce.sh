@@ -7,7 +7,11 @@
 #   sh experiments/results/reproduce.sh --rows [FOLDER]
 # draws the folder, or all, from the published rows (rows.sh) instead: seconds, and the same comparison.
 #   sh experiments/results/reproduce.sh --write FOLDER
-# writes figures and the table of runs into FOLDER, from the store of $SHEARCELL_STORE, which keeps the runs.
+# writes figures and the table of runs into FOLDER, from the store of $SHEARCELL_STORE, which keeps the runs. A part of
+# the campaign is published, once published.txt has its line, by
+#   shearcell run experiments/drag.yaml --scale paper --keep-every 20    # with all manifests that share its runs
+#   sh experiments/results/rows.sh pack drag
+#   sh experiments/results/reproduce.sh --write S2
 set -eu
 mode=""
 case "${1:-}" in --*) mode=$1 && shift ;; esac
