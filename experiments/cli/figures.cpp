@@ -13,6 +13,7 @@
 #include "experiments/figures/draw.hpp"
 #include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/shipped.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/words.hpp"
@@ -110,6 +111,20 @@ Store open_store(const std::string& folder, FigureOptions& how) {
   return Store(folder, Access::read);
 }
 
+/// Leaves out experiments of which the options select no run, unless these are all.
+void leave_out_unselected(const Store& store, const RunSelection& runs,
+                          std::vector<WantedFigure>& figures) {
+  std::set<std::string> selected, others;
+  for (const Run& run : select_runs(store, runs)) selected.insert(run.experiment);
+  for (const WantedFigure& figure : figures) {
+    const std::string& name = figure.experiment;
+    if (!name.empty() && !selected.contains(name)) others.insert(name);
+  }
+  if (selected.empty() || others.empty()) return;
+  std::erase_if(figures, [&](const auto& figure) { return others.contains(figure.experiment); });
+  print_stderr("left out: experiments without a selected run: {}\n", some_of(others));
+}
+
 void figures(FigureArguments& options, Context& context) {
   Store store = open_store(context.store, options.how);
   if (options.all) options.names.clear();
@@ -123,6 +138,7 @@ void figures(FigureArguments& options, Context& context) {
                                              ? "No manifest of this store"
                                              : "None of these experiments");
   }
+  if (options.names.empty()) leave_out_unselected(store, options.how.runs, wanted.figures);
   std::set<std::string> told;  // each message once, not for each figure
   const auto complain_of = [&](const std::string& problem) {
     if (told.insert(problem).second) print_stderr("shearcell: {}\n", problem);

@@ -65,6 +65,16 @@ TEST_F(Scales, WithoutScalesTheFolderIsBase) {
   expect(0, {"status", "--scale", "base"});
 }
 
+TEST_F(Scales, FiguresLeaveOutExperimentsWithoutTheScale) {
+  std::string other = tiny_manifest("", kBothFluids);
+  other.replace(other.find("tiny"), 4, "other");
+  expect(0, {"run", write("m.yaml", tiny_manifest("", scales_)), "--scale", "small", "-q"});
+  expect(0, {"run", write("other.yaml", other), "--cycles", "1", "-q"});
+  expect(0, {"figures", "--scale", "small", "--out", "out"},
+         {"out/tiny/small/S2a.csv", "left out: experiments without a selected run: other"});
+  expect(2, {"figures", "--experiment", "other", "--scale", "small"}, {"other/S2"});
+}
+
 // An older version recorded "tiny/S2" for every scale.
 TEST_F(Scales, ShowFindsRecordsOfAnOlderVersion) {
   campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
