@@ -56,6 +56,7 @@ MeasureColumn column_for(const std::string& text, const std::string& name = {}) 
 
 MeasureColumn y_column(const PlotSpec& plot) {
   MeasureColumn column = column_for(plot.y);
+  if (!plot.minus.empty()) column.name += "_difference";
   column.rms = plot.show == Show::rms;
   return column;
 }
@@ -248,7 +249,8 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
   const bool x = plot.x != "cycle";
   FigureTable table{.name = plot.name, .columns = {"variant", "seed"}};
   if (x) table.columns.emplace_back("cycle");
-  table.columns.insert(table.columns.end(), {plot.x, plot.y});
+  table.columns.insert(table.columns.end(),
+                       {plot.x, plot.y + (plot.minus.empty() ? "" : "_difference")});
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const Curve& curve = curves[k];
     Text title = curve.style.title;  // once in the key
@@ -376,7 +378,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
 
 /// Means of both measures at each cycle, over the runs that have both.
 FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves) {
-  std::array<MeasureColumn, 2> both = {column_for(plot.y), column_for(plot.x)};
+  std::array<MeasureColumn, 2> both = {y_column(plot), column_for(plot.x)};
   both[0].known = plot.x, both[1].known = plot.y;
   FigureTable table = against_cycle(plot.name, curves, both, {});
   table.chart.series = series_of(curves, columns_against(column_name(both[1], "mean"), both[0]));

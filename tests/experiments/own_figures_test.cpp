@@ -142,7 +142,8 @@ TEST_F(OwnFigures, OfErrorAgainstCoreTime) {
   }
   draw("own", "cost");
   const std::string csv = contents("own").at("cost.csv");
-  EXPECT_TRUE(csv.starts_with("variant,core_time_s,phi_rms,phi_standard_error,runs,cycle\n"))
+  EXPECT_TRUE(csv.starts_with(
+      "variant,core_time_s,phi_difference_rms,phi_difference_standard_error,runs,cycle\n"))
       << csv;
   EXPECT_EQ(std::ranges::count(csv, '\n'), 2) << "one variant";
   EXPECT_TRUE(has(csv, fmt::format("all,{:.9g},", mean))) << csv << mean;
