@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How grains moved between two checkpoints of one run.
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "analysis/error.hpp"
 #include "analysis/measures.hpp"
@@ -28,6 +31,10 @@ struct Motion {
   /// earlier time [d^2]: what is left of their relative motion after the best affine deformation.
   /// Not a number for a grain with fewer than four neighbours, or all in one plane.
   std::vector<double> nonaffine;
+
+  double square(std::size_t grain) const {  ///< of the displacement [d^2]
+    return displacement.col(static_cast<Eigen::Index>(grain)).squaredNorm();
+  }
 };
 
 Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
@@ -101,41 +108,51 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
   return boundary;
 }
 
-nlohmann::json motion_of(const MeasureInput& input) {
+/// The motion over some cycles, whose names end in `lag`; nothing if there is no such checkpoint.
+std::optional<Motion> motion_over(std::uint64_t cycles, const std::string& lag,
+                                  const MeasureInput& input, nlohmann::json& values) {
+  values = nlohmann::json::object();
+  const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
+  if (earlier == nullptr) return std::nullopt;
+  Motion moved = motion(*earlier, *input.checkpoint);
   const GrainMeasures& grains = input.analysis->grains;
-  nlohmann::json values = nlohmann::json::object();
-  for (const auto& [cycles, lag] : {std::pair{std::uint64_t{1}, "1_cycle_d2"},
-                                    {std::uint64_t{10}, "10_cycles_d2"},
-                                    {std::uint64_t{100}, "100_cycles_d2"}}) {
-    const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
-    if (earlier == nullptr) continue;
-    const Motion moved = motion(*earlier, *input.checkpoint);
-    const auto square = [&](std::size_t i) {
-      return moved.displacement.col(static_cast<Eigen::Index>(i)).squaredNorm();
-    };
-    const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
-    values[std::string("msd_") + lag] = interior_mean(grains, square);
-    values[std::string("d2min_") + lag] = interior_mean(grains, nonaffine);
-    if (cycles != 1) continue;
-    // Motion over one cycle by the structure of the grains.
-    std::vector<std::uint8_t> crystalline;
-    for (const Structure structure : grains.structure) {
-      crystalline.push_back(structure == Structure::disordered ? 0 : 1);
-    }
-    const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
-    const auto returned = [&](std::size_t i) { return square(i) <= reversible_d * reversible_d; };
-    const auto square_of = [&](bool is_crystalline, bool at_boundary) {
-      return interior_mean(grains, [&](std::size_t i) {
-        const bool counts =
-            (crystalline[i] != 0) == is_crystalline && (boundary[i] != 0) == at_boundary;
-        return counts ? square(i) : std::nan("");
-      });
-    };
-    values["reversible_percent"] = percent_of_interior(grains, returned);
-    values["msd_inside_crystal_d2"] = square_of(true, false);
-    values["msd_crystal_boundary_d2"] = square_of(true, true);
-    values["msd_disordered_d2"] = square_of(false, false);
+  values["msd_" + lag] = interior_mean(grains, [&](std::size_t i) { return moved.square(i); });
+  values["d2min_" + lag] = interior_mean(grains, [&](std::size_t i) { return moved.nonaffine[i]; });
+  return moved;
+}
+
+template <std::uint64_t cycles>
+nlohmann::json motion_over_cycles(const MeasureInput& input) {
+  nlohmann::json values;
+  motion_over(cycles, fmt::format("{}_cycles_d2", cycles), input, values);
+  return values;
+}
+
+/// Over one cycle, also by the structure of the grains.
+nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
+  nlohmann::json values;
+  const std::optional<Motion> moved = motion_over(1, "1_cycle_d2", input, values);
+  if (!moved) return values;
+  const GrainMeasures& grains = input.analysis->grains;
+  std::vector<std::uint8_t> crystalline;
+  for (const Structure structure : grains.structure) {
+    crystalline.push_back(structure == Structure::disordered ? 0 : 1);
   }
+  const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
+  const auto returned = [&](std::size_t i) {
+    return moved->square(i) <= reversible_d * reversible_d;
+  };
+  const auto square_of = [&](bool is_crystalline, bool at_boundary) {
+    return interior_mean(grains, [&](std::size_t i) {
+      const bool counts =
+          (crystalline[i] != 0) == is_crystalline && (boundary[i] != 0) == at_boundary;
+      return counts ? moved->square(i) : std::nan("");
+    });
+  };
+  values["reversible_percent"] = percent_of_interior(grains, returned);
+  values["msd_inside_crystal_d2"] = square_of(true, false);
+  values["msd_crystal_boundary_d2"] = square_of(true, true);
+  values["msd_disordered_d2"] = square_of(false, false);
   return values;
 }
 
@@ -151,6 +168,8 @@ std::vector<Provider> motion_providers() {
     return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
             {"d2min_d2", moved.nonaffine}};
   };
+  // One provider for each lag: where the file of one earlier checkpoint is pruned, the others
+  // count.
   return {
       {.name = "motion",
        .parameters = with(crystal_criteria(),
@@ -159,13 +178,9 @@ std::vector<Provider> motion_providers() {
            {{"msd_1_cycle_d2", "d^2",
              "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
              number, 1},
-            {"msd_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
-            {"msd_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
             {"d2min_1_cycle_d2", "d^2",
              "mean non-affine squared displacement D^2_min of interior grains over 1 cycle", number,
              1},
-            {"d2min_10_cycles_d2", "d^2", "the same over 10 cycles", number, 10},
-            {"d2min_100_cycles_d2", "d^2", "the same over 100 cycles", number, 100},
             {"reversible_percent", "%",
              "interior grains at most 0.01 d from where they were a cycle before", number, 1},
             {"msd_inside_crystal_d2", "d^2",
@@ -174,8 +189,24 @@ std::vector<Provider> motion_providers() {
             {"msd_crystal_boundary_d2", "d^2",
              "the same of crystalline grains with other neighbours", number, 1},
             {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline", number, 1}},
-       .compute = motion_of,
-       .earlier = {1, 10, 100}},
+       .compute = motion_over_one_cycle,
+       .earlier = {1}},
+      {.name = "motion_10",
+       .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
+       .measures = {{"msd_10_cycles_d2", "d^2",
+                     "mean squared displacement of interior grains over 10 cycles", number, 10},
+                    {"d2min_10_cycles_d2", "d^2", "mean D^2_min of interior grains over 10 cycles",
+                     number, 10}},
+       .compute = motion_over_cycles<10>,
+       .earlier = {10}},
+      {.name = "motion_100",
+       .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
+       .measures = {{"msd_100_cycles_d2", "d^2",
+                     "mean squared displacement of interior grains over 100 cycles", number, 100},
+                    {"d2min_100_cycles_d2", "d^2",
+                     "mean D^2_min of interior grains over 100 cycles", number, 100}},
+       .compute = motion_over_cycles<100>,
+       .earlier = {100}},
       {.name = "grain_motion",
        .parameters = {{"neighbour_d", motion_neighbour_d}},
        .measures = {{.name = "displacement_d",

@@ -426,7 +426,10 @@ void add_published(const PlotSpec& plot, Chart& chart) {
       if (p.size() > 2) series.points.back().y_error = p[2];
     }
     chart.series.push_back(std::move(series));
-    sources.push_back(fmt::format("{}: {}", plain_text(formula(one.label)), one.source));
+    const std::string value = !one.value       ? ""
+                              : one.error == 0 ? fmt::format(" {}", *one.value)
+                                               : fmt::format(" {} ± {}", *one.value, one.error);
+    sources.push_back(fmt::format("{}{}: {}", plain_text(formula(one.label)), value, one.source));
   }
   if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }

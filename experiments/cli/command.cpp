@@ -247,7 +247,7 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
        fmt::format(
            "{}: the store's newest manifest of experiment {} is another text, with {} that this "
            "plan does not have. Once this manifest is run, figures show its version alone; to show "
-           "all, run one manifest that states the runs of both: it computes nothing new.",
+           "all, run one manifest that states the runs of both: it computes only what neither has.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 

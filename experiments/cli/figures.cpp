@@ -207,7 +207,7 @@ void add_figures(CLI::App& app, Context& context) {
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
       ->description("Only of this experiment, even if its manifest does not list the figure");
-  command->get_option("--scale")->description(
+  command->get_option("--scale")->expected(1)->description(
       "Scale of the runs (default: for each experiment, that of its run added last)");
   command
       ->add_option_function<std::string>(

@@ -70,8 +70,9 @@ void add_merge(CLI::App& app, Context& context) {
 stores that record different states of one run at one step. The sources stay unchanged, and
 merging twice changes nothing. If the stores have different versions of a manifest, figures show
 the one registered last; the command then names the runs that they leave out. To show all, run one
-manifest that states the runs of both: it computes nothing new. Cached measures are copied if three
-recomputed ones are right.
+manifest that states the runs of both: it computes only what neither has. Cached measures are copied
+if three recomputed ones are right. Files that this store has lost or pruned are not brought back:
+copy them into its objects/, or see `regenerate`.
 Examples:
   shearcell merge task-1 task-2 --store all)");
 }

@@ -116,6 +116,16 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
+// Whether an `until` may end what is left before the largest number of cycles without one.
+bool may_end_early(const Line& line) {
+  std::uint64_t fixed = 0, most = 0;
+  for (const Ask& ask : line.asks) {
+    std::uint64_t& cycles = has_until(ask) ? most : fixed;
+    cycles = std::max(cycles, ask.target_cycles);
+  }
+  return !line.look.done && most > fixed;
+}
+
 // Particle-steps that are left if runs end where others with the same `until` ended; null without
 // `until`, or where no such run has ended.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
@@ -133,7 +143,7 @@ nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stag
       const auto cycles = static_cast<std::uint64_t>(std::llround(*end->second));
       ask.target_cycles = std::min(ask.target_cycles, cycles);
     }
-    asked = asked || std::ranges::any_of(line.asks, has_until);
+    asked = asked || may_end_early(line);
     sum += outlook(line.stage, asks, line.checkpoints).particle_steps;
   }
   return asked ? nlohmann::json(sum) : nlohmann::json();
@@ -143,7 +153,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   std::set<std::string> ends;
   for (const Line& line : lines) {
     for (const Ask& ask : line.asks) {
-      if (has_until(ask)) ends.insert(describe(until_from_json(ask.until)));
+      if (has_until(ask) && may_end_early(line)) ends.insert(describe(until_from_json(ask.until)));
     }
   }
   if (ends.empty()) return;
@@ -218,7 +228,10 @@ void plan(const PlanOptions& options, Context& context) {
   for (const Line& line : lines) {
     runs_planned += line.stage.kind == name_of(StageKind::prepare) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
-    longer += cycles_of(line) > static_cast<double>(line.run->target_cycles) ? 1 : 0;
+    const auto asks_more = [&](const Ask& ask) {  // in the store
+      return ask.target_cycles > line.run->target_cycles;
+    };
+    longer += std::ranges::any_of(line.stage.asks, asks_more) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.seconds(cores);

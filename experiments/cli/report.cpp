@@ -81,6 +81,8 @@ void add_report(CLI::App& app, Context& context) {
       ->check(unfit_output)
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
+  sub->get_option("--scale")->expected(1)->description(
+      "Only runs of this scale (default: all; figures of that of the run added last)");
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -76,13 +77,18 @@ std::size_t workers(const RunOptions& options) {
 CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const RunOptions& options,
                        Context& context) {
   if (!options.task) catch_stop_signals();
+  std::atomic<std::size_t> deleted = 0;
   const auto prune = [&](const std::string& stage) {  // as soon as the stage is done
     std::vector<CheckpointRecord> records = store.prunable({{stage}, options.keep_every});
     if (records.empty() || why_not_again(store.stage(stage))) return;
     free_files(store, records, {}, false, context);
+    deleted += records.size();
   };
-  return run_campaign(store, jobs, workers(options), options.parallel, options.quiet,
-                      options.keep_every > 0 ? prune : std::function<void(const std::string&)>());
+  CampaignResult result =
+      run_campaign(store, jobs, workers(options), options.parallel, options.quiet,
+                   options.keep_every > 0 ? prune : std::function<void(const std::string&)>());
+  result.files_deleted = deleted;
+  return result;
 }
 
 // Prints the result and sets the exit code. `failed_before`: whether failed runs were left out.
@@ -102,6 +108,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
                 {"interrupted", result.interrupted},
                 {"not_begun", result.blocked},
                 {"damaged", result.damaged},
+                {"files_deleted", result.files_deleted},
                 {"messages", result.messages},
                 {"warnings", context.warnings}});
   } else if (result.completed + result.already + result.elsewhere + result.failed +
@@ -114,6 +121,9 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
                result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
       fmt::print("{} computed by other programs meanwhile\n", counted(result.elsewhere, "stage"));
+    }
+    if (result.files_deleted > 0) {
+      fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
     }
     if (result.damaged > 0) {
       fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
@@ -244,8 +254,8 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
              65536);
   add_number(
       command, "--keep-every", options.keep_every,
-      "When a run is done, measure its checkpoints and delete files, as `prune` does, except "
-      "those of every K-th cycle",
+      "When this command has completed a run, measure its checkpoints and delete files, as `prune` "
+      "does, except those of every K-th cycle",
       "K", 1, 1'000'000'000);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }

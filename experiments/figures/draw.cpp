@@ -151,7 +151,8 @@ std::string caption(const ComputedFigure& figure, const RunSelection& selected) 
   for (const auto& [lines, what] :
        {std::pair(&figure.damage, "damaged"), {&figure.pruned, "pruned"}}) {
     if (lines->empty()) continue;
-    text += fmt::format(" Left out: {}, {}.", counted(lines->size(), "checkpoint"), what);
+    text += fmt::format(" Left out: what needs {}.",
+                        counted(lines->size(), fmt::format("{} checkpoint", what)));
   }
   if (!figure.notes.empty()) text += fmt::format(" Notes: {}.", fmt::join(figure.notes, "; "));
   return text;

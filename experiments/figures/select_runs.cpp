@@ -158,7 +158,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     chosen.notes.push_back(fmt::format(
         "experiment {} at scale {}: left out: {} of another version of its manifest, {:.8}: {}; "
         "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
-        "that states the runs of both: it computes nothing new",
+        "that states the runs of both: it computes only what neither has",
         where.first, scale_name(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),

@@ -134,8 +134,8 @@ void fields(Scale& scale, const auto& visit) {
          .wanted = "a map of settings"});
   visit(scale.until,
         {.name = "until",
-         .doc = "ends a run `extra_cycles` after the measure reaches the value; default: at "
-                "`cycles`",
+         .doc = "ends a run `extra_cycles` after the measure reaches the value at the end of a "
+                "cycle; default: at `cycles`",
          .besides = ", or `none`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}",
          .wanted = "a measure with its value"});
@@ -282,7 +282,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "is a factor of 2"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
-                       .doc = "instead of `margin`: of the relative difference; 0.03 is 3 %"});
+                       .doc = "instead of `margin`: of the relative difference, 0.03 for 3 %, from "
+                              "the means of logarithms"});
   visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
   visit(claim.cycles, {.name = "cycles",
                        .range = kCycles,

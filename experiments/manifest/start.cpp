@@ -130,12 +130,14 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                                         : stage.id.starts_with(start.run);
     if (fits) found.push_back(&stage);
   }
-  if (found.size() > 1 && start.run.empty() && start.variant.empty()) {
-    std::erase_if(found, [&](const Stage* stage) {
+  if (found.size() > 1 && start.run.empty()) {
+    std::vector<const Stage*> agreeing = found;
+    std::erase_if(agreeing, [&](const Stage* stage) {
       return std::ranges::none_of(stage->asks, [&](const Ask& ask) {
         return is_it(ask) && agree(variant.swept, ask.swept);
       });
     });
+    if (!agreeing.empty() || start.variant.empty()) found = std::move(agreeing);
   }
   const std::string what =
       start.run.empty()
@@ -150,7 +152,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   if (found.size() > 1) {
     refuse(manifest.file, start.at, "start", fmt::format("the store has more than one {}", what),
            "",
-           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`."
+           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`, several joined by commas."
                              : "State more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);

@@ -23,6 +23,7 @@
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -246,8 +247,10 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
   }
   return {{"id", prefix + wanted.figure.name},
           {"name", figure.name},
-          {"heading", fmt::format("{} {}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,
-                                  figure.title.empty() ? "" : ". ", figure.title)},
+          {"heading",
+           fmt::format("{} {}{}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,
+                       figure.title.empty() ? "" : ". ", figure.title,
+                       figure.scale.empty() ? "" : fmt::format(" ({} scale)", figure.scale))},
           {"panels", panels},
           {"claims", claims},
           {"warnings", warnings},
@@ -496,12 +499,15 @@ json script_data(const Content& content) {
           {"experiments", std::move(experiments)}};
 }
 
-/// The experiments named, or all, in the order in which they were first registered, each with its
+/// The experiments chosen, or all, in the order in which they were first registered, each with its
 /// newest manifest.
-std::vector<Experiment> experiments_of(const Store& store, const std::vector<std::string>& names) {
+std::vector<Experiment> experiments_of(const Store& store, const RunSelection& chosen) {
+  const auto fits = [](const std::vector<std::string>& names, std::string_view name) {
+    return names.empty() || std::ranges::count(names, name) > 0;
+  };
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
-    if (!names.empty() && std::ranges::count(names, manifest.experiment) == 0) continue;
+    if (!fits(chosen.experiments, manifest.experiment)) continue;
     const std::optional<Manifest> known = recorded_manifest(manifest.text);
     Experiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
@@ -510,13 +516,33 @@ std::vector<Experiment> experiments_of(const Store& store, const std::vector<std
   const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {
     const auto is_member = [&](const Ask& m) {
-      return m.experiment == experiment.manifest.experiment;
+      return m.experiment == experiment.manifest.experiment &&
+             fits(chosen.scales, scale_name(m.scale));
     };
     for (const Stage& run : runs) {
       if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
     }
   }
+  std::erase_if(found, [&](const Experiment& experiment) {
+    return !chosen.scales.empty() && experiment.runs.empty();
+  });
   return found;
+}
+
+/// Notes the scales of the experiment that its figures do not show.
+void note_other_scales(const Experiment& experiment, const std::string& shown,
+                       std::set<std::string>& notes) {
+  const std::string& name = experiment.manifest.experiment;
+  std::set<std::string> others;
+  for (const Stage& run : experiment.runs) {
+    for (const Ask& ask : run.asks) {
+      if (ask.experiment == name && ask.scale != shown) others.insert(scale_name(ask.scale));
+    }
+  }
+  if (others.empty()) return;
+  notes.insert(
+      fmt::format("experiment {}: the figures are of scale {}; --scale chooses another: {}", name,
+                  scale_name(shown), some_of(others)));
 }
 
 void add_figures(Content& content) {
@@ -539,6 +565,7 @@ void add_figures(Content& content) {
       const ComputedFigure made = compute_figure(content.store, figure, how);
       (at_home ? home->figures : content.across).push_back(figure_json(figure, made, content));
       if (at_home) std::ranges::copy(made.verdicts, std::back_inserter(home->verdicts));
+      if (at_home && how.runs.scales.empty()) note_other_scales(*home, made.scale, notes);
       ++content.report.figures;
     } catch (const StoreDamaged& damage) {
       content.report.damage.insert(damage.what());
@@ -672,7 +699,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
   const Head head = store.head();
   report.interactive = options.interactive && has_front_end();
   select_runs(store, options.runs);  // refuses a name that the store does not have
-  content.experiments = experiments_of(store, options.runs.experiments);
+  content.experiments = experiments_of(store, options.runs);
   if (content.experiments.empty()) {
     throw NotFound(store.folder().string() +
                    ": the store holds no experiment; `shearcell run` one first");

@@ -25,8 +25,8 @@ case "${1:-} ${2:-}" in
 import sqlite3
 import sys
 kept = sqlite3.connect(sys.argv[1], isolation_level=None)
-for name in ("lattices", "mechanics", "motion", "pair_correlation", "profiles", "sensitivity", "structure_factor",
-             "wall_distance", *sys.argv[2:]):
+for name in ("lattices", "mechanics", "motion", "motion_10", "motion_100", "pair_correlation", "profiles", "sensitivity",
+             "structure_factor", "wall_distance", *sys.argv[2:]):
     kept.execute("DELETE FROM derived WHERE measure LIKE ? || ' %'", (name,))
 kept.execute("VACUUM")
 END

@@ -285,7 +285,6 @@ class Campaign {
     if (is_done(store_, run)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
              was_held ? "done by another program" : "", true);
-      if (when_done_) when_done_(job.id);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(j);
@@ -308,7 +307,7 @@ class Campaign {
       case StageOutcome::already: {
         const bool now = outcome == StageOutcome::completed;
         const std::string why = describe_end(end_of(store_.stage(job.id)));
-        if (when_done_) when_done_(job.id);
+        if (now && when_done_) when_done_(job.id);
         finish(job, now ? &CampaignResult::completed : &CampaignResult::already,
                why.empty() ? "done" : "done, " + why, true);
         return JobState::done;

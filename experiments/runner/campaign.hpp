@@ -30,6 +30,7 @@ struct CampaignResult {
   /// read, or a pruned checkpoint decides where the stage ends.
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< met a damaged file of the store
+  std::size_t files_deleted = 0;      ///< of checkpoints, by --keep-every
   std::vector<std::string> messages;  ///< one for each failure or damage
 };
 
@@ -45,8 +46,8 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed
 /// stage. A stage that another program computes is left to that program, and continued here if the
 /// program ends or its lease expires before the stage is done. Shows progress on standard error
-/// unless `quiet`. `when_done` is called with the id of each stage that is done, by several threads
-/// at once; what it throws ends the campaign.
+/// unless `quiet`. `when_done` is called with the id of each stage that this call completed, by
+/// several threads at once; what it throws ends the campaign.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
                             const Parallel& parallel = {}, bool quiet = false,
                             std::function<void(const std::string& stage)> when_done = {});

@@ -215,7 +215,8 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
     EXPECT_TRUE(has(script, entry)) << script;
   }
   const std::vector<FigureTable> tables = {table};
-  EXPECT_TRUE(has(caption_of("A title", tables), " Published: Jin: S C; Smith: a book."));
+  EXPECT_TRUE(
+      has(caption_of("A title", tables), " Published: Jin 0.05 ± 0.01: S C; Smith: a book."));
   const std::vector<FigureTable> twice = {table, table};
   const std::string caption = caption_of("A title", twice);
   EXPECT_EQ(caption.find("Published"), caption.rfind("Published")) << caption;

@@ -321,7 +321,8 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
 TEST_F(Prune, RunKeepsEveryKthFile) {
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
-  expect(0, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "--store", "thin"});
+  expect(0, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "--store", "thin"},
+         {"8 files deleted by --keep-every"});
   EXPECT_EQ(drawn("thin"), drawn("whole"));
   const Store store(path("thin"), Access::read);
   for (const Stage& stage : store.stages()) {
@@ -330,6 +331,36 @@ TEST_F(Prune, RunKeepsEveryKthFile) {
     for (const CheckpointRecord& one : store.checkpoints(stage.id)) kept.push_back(one.cycle);
     EXPECT_EQ(kept, (std::vector<double>{0, 2, 4, 5})) << "the last one too";
   }
+}
+
+// Another command made them, perhaps for another experiment.
+TEST_F(Prune, RunKeepsTheFilesOfRunsThatWereDone) {
+  const std::size_t files = objects();
+  write("m.yaml", tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_));
+  const nlohmann::json done =
+      json({"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "--json"});
+  EXPECT_EQ(done.at("completed"), 0);
+  EXPECT_EQ(done.at("files_deleted"), 0);
+  EXPECT_EQ(objects(), files);
+}
+
+TEST_F(Prune, ExtendedRunsHaveTheMotionOverTheirNewCycles) {
+  write("m.yaml", tiny_manifest(short_));
+  for (const char* cycles : {"5", "12"}) {
+    expect(0, {"run", "m.yaml", "--cycles", cycles, "--keep-every", "5", "-q", "--store", "thin"});
+  }
+  expect(0, {"run", "m.yaml", "--cycles", "12", "-q", "--store", "all"});
+  const nlohmann::json thin = json({"table", "--store", "thin", "--json"}).at("rows"),
+                       all = json({"table", "--store", "all", "--json"}).at("rows");
+  ASSERT_EQ(thin.size(), 13U);
+  for (std::size_t cycle = 1; cycle < thin.size(); ++cycle) {
+    for (const char* name : {"msd_1_cycle_d2", "d2min_1_cycle_d2", "reversible_percent"}) {
+      EXPECT_TRUE(thin[cycle].at(name).is_number()) << cycle;
+      EXPECT_EQ(thin[cycle].at(name), all[cycle].at(name)) << cycle;
+    }
+  }
+  EXPECT_EQ(thin[10].at("msd_10_cycles_d2"), all[10].at("msd_10_cycles_d2"));
+  EXPECT_TRUE(thin[11].at("msd_10_cycles_d2").is_null()) << "the file of cycle 1 was pruned";
 }
 
 TEST_F(Prune, RunDeletesNothingIfMeasuresCannotBeKept) {

@@ -55,6 +55,19 @@ TEST_F(Scales, NeverOverwriteEachOther) {
   EXPECT_EQ(json({"table", "--json"}).at("rows").at(0).at("scale"), "2nd_-Large");
 }
 
+TEST_F(Scales, AReportNamesTheScalesThatItsFiguresDoNotShow) {
+  const std::string manifest = write("m.yaml", tiny_manifest("", scales_));
+  for (const char* scale : {"small", "large"}) {
+    expect(0, {"run", manifest, "--scale", scale, "-q"});
+  }
+  expect(0, {"report", "--drawings", "--out", "all.html"},
+         {"the figures are of scale large; --scale chooses another: small"});
+  const Outcome of_one =
+      expect(0, {"report", "--drawings", "--scale", "large", "--out", "one.html"});
+  EXPECT_FALSE(has(of_one.out + of_one.err, "chooses another"));
+  EXPECT_TRUE(has(read_bytes(path("one.html")), "(large scale)"));
+}
+
 TEST_F(Scales, WithoutScalesTheFolderIsBase) {
   campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
   expect(0, {"figures", "--out", "out"}, {"out/tiny/base/S2a.csv", "base scale"});
@@ -72,6 +85,7 @@ TEST_F(Scales, FiguresLeaveOutExperimentsWithoutTheScale) {
   expect(0, {"run", write("other.yaml", other), "--cycles", "1", "-q"});
   expect(0, {"figures", "--scale", "small", "--out", "out"},
          {"out/tiny/small/S2a.csv", "left out: experiments without a selected run: other"});
+  expect(2, {"figures", "--scale", "small", "--scale", "large"}, {"--scale"});
   expect(2, {"figures", "--experiment", "other", "--scale", "small"}, {"other/S2"});
 }
 

@@ -263,10 +263,10 @@ claims:
     EXPECT_TRUE(has(script, part)) << script;
   }
   const std::string& caption = files.at("drive.caption.txt");
-  for (const char* part :
-       {"(a) volume fraction ϕ against driving frequency f [Hz].",
-        "(b) contact_pressure_Pa/pressure_Pa against 1/period_s.", "At cycle 1",
-        "Published: random close packing: a journal.", "Runs: 3 each of 9 variants."}) {
+  for (const char* part : {"(a) volume fraction ϕ against driving frequency f [Hz].",
+                           "(b) contact_pressure_Pa/pressure_Pa against 1/period_s.", "At cycle 1",
+                           "Published: random close packing 0.637 ± 0.001: a journal.",
+                           "Runs: 3 each of 9 variants."}) {
     EXPECT_TRUE(has(caption, part)) << caption;
   }
   EXPECT_TRUE(has(files.at("pressure.csv"), "(contact_pressure_Pa/pressure_Pa)_mean"));

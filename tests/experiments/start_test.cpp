@@ -328,7 +328,7 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   compute_here(tiny_manifest("", kBothFluids));
   EXPECT_NE(refusal(clones(""))
                 .find("more than one run of tiny at scale base with seed 1. Single "
-                      "one out: `variant: \"KEY=VALUE\"`."),
+                      "one out: `variant: \"KEY=VALUE\"`, several joined by commas."),
             std::string::npos);
   EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");
   EXPECT_NE(refusal(clones(", variant: \"fluid=none\"")).find("has no run of tiny"),
