@@ -8,8 +8,8 @@ set mxtics 2
 set mytics 2
 set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
-set bars 0.5
 set output 'accuracy-order.svg'
+set key maxcols 1 width -5
 set xlabel 'time step  [2/ω_{max}]'
 set ylabel 'relative error'
 set logscale x
