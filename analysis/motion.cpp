@@ -108,31 +108,32 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
   return boundary;
 }
 
-/// The motion over some cycles, whose names end in `lag`; nothing if there is no such checkpoint.
-std::optional<Motion> motion_over(std::uint64_t cycles, const std::string& lag,
-                                  const MeasureInput& input, nlohmann::json& values) {
-  values = nlohmann::json::object();
+/// The motion over some cycles; nothing if there is no such checkpoint.
+std::optional<Motion> motion_over(std::uint64_t cycles, const MeasureInput& input) {
   const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
   if (earlier == nullptr) return std::nullopt;
-  Motion moved = motion(*earlier, *input.checkpoint);
-  const GrainMeasures& grains = input.analysis->grains;
-  values["msd_" + lag] = interior_mean(grains, [&](std::size_t i) { return moved.square(i); });
-  values["d2min_" + lag] = interior_mean(grains, [&](std::size_t i) { return moved.nonaffine[i]; });
-  return moved;
+  return motion(*earlier, *input.checkpoint);
+}
+
+/// Means over the interior grains, with names that end in `lag`.
+nlohmann::json means_of(const Motion& moved, const GrainMeasures& grains, const std::string& lag) {
+  const auto square = [&](std::size_t i) { return moved.square(i); };
+  const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
+  return {{"msd_" + lag, interior_mean(grains, square)},
+          {"d2min_" + lag, interior_mean(grains, nonaffine)}};
 }
 
 template <std::uint64_t cycles>
 nlohmann::json motion_over_cycles(const MeasureInput& input) {
-  nlohmann::json values;
-  motion_over(cycles, fmt::format("{}_cycles_d2", cycles), input, values);
-  return values;
+  const std::optional<Motion> moved = motion_over(cycles, input);
+  if (!moved) return nlohmann::json::object();
+  return means_of(*moved, input.analysis->grains, fmt::format("{}_cycles_d2", cycles));
 }
 
 /// Over one cycle, also by the structure of the grains.
 nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
-  nlohmann::json values;
-  const std::optional<Motion> moved = motion_over(1, "1_cycle_d2", input, values);
-  if (!moved) return values;
+  const std::optional<Motion> moved = motion_over(1, input);
+  if (!moved) return nlohmann::json::object();
   const GrainMeasures& grains = input.analysis->grains;
   std::vector<std::uint8_t> crystalline;
   for (const Structure structure : grains.structure) {
@@ -149,6 +150,7 @@ nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
       return counts ? moved->square(i) : std::nan("");
     });
   };
+  nlohmann::json values = means_of(*moved, grains, "1_cycle_d2");
   values["reversible_percent"] = percent_of_interior(grains, returned);
   values["msd_inside_crystal_d2"] = square_of(true, false);
   values["msd_crystal_boundary_d2"] = square_of(true, true);
@@ -161,12 +163,11 @@ nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
 std::vector<Provider> motion_providers() {
   using enum MeasureKind;
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    const Checkpoint* earlier = input.earlier ? input.earlier(1) : nullptr;
-    if (earlier == nullptr) return nlohmann::json::object();
-    const Motion moved = motion(*earlier, *input.checkpoint);
-    const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
+    const std::optional<Motion> moved = motion_over(1, input);
+    if (!moved) return nlohmann::json::object();
+    const Eigen::VectorXd displacement = moved->displacement.colwise().norm();
     return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
-            {"d2min_d2", moved.nonaffine}};
+            {"d2min_d2", moved->nonaffine}};
   };
   // One provider for each lag: where the file of one earlier checkpoint is pruned, the others
   // count.

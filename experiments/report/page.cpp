@@ -24,6 +24,7 @@
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -502,12 +503,10 @@ json script_data(const Content& content) {
 /// The experiments chosen, or all, in the order in which they were first registered, each with its
 /// newest manifest.
 std::vector<Experiment> experiments_of(const Store& store, const RunSelection& chosen) {
-  const auto fits = [](const std::vector<std::string>& names, std::string_view name) {
-    return names.empty() || std::ranges::count(names, name) > 0;
-  };
+  Filter names(chosen.experiments), scales(chosen.scales);
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
-    if (!fits(chosen.experiments, manifest.experiment)) continue;
+    if (!names.passes(manifest.experiment)) continue;
     const std::optional<Manifest> known = recorded_manifest(manifest.text);
     Experiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
@@ -516,8 +515,7 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {
     const auto is_member = [&](const Ask& m) {
-      return m.experiment == experiment.manifest.experiment &&
-             fits(chosen.scales, scale_name(m.scale));
+      return m.experiment == experiment.manifest.experiment && scales.passes(scale_name(m.scale));
     };
     for (const Stage& run : runs) {
       if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
@@ -565,7 +563,8 @@ void add_figures(Content& content) {
       const ComputedFigure made = compute_figure(content.store, figure, how);
       (at_home ? home->figures : content.across).push_back(figure_json(figure, made, content));
       if (at_home) std::ranges::copy(made.verdicts, std::back_inserter(home->verdicts));
-      if (at_home && how.runs.scales.empty()) note_other_scales(*home, made.scale, notes);
+      const bool is_first = at_home && home->figures.size() == 1;
+      if (is_first && how.runs.scales.empty()) note_other_scales(*home, made.scale, notes);
       ++content.report.figures;
     } catch (const StoreDamaged& damage) {
       content.report.damage.insert(damage.what());
