@@ -83,6 +83,7 @@ json to_json(const FigureTable& table, const Series& series) {
                 {"shift", series.shift},
                 {"points", std::move(points)}};
   if (series.thin) facts["thin"] = true;
+  if (series.large) facts["large"] = true;
   return facts;
 }
 

@@ -90,6 +90,7 @@ struct Series {
   Join join = Join::none;  ///< points are joined in their order
   bool band = false;       ///< errors of y are drawn as a band, not as bars; those of x are not
   bool thin = false;       ///< one of many traces
+  bool large = false;      ///< larger points, seen around those of another series
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x

@@ -297,7 +297,9 @@ class Script {
   static std::string line_style(const Series& series) {
     return fmt::format("lc rgb '{}' lw {}{}{}", series.colour, series.thin ? 0.6 : 1.2,
                        series.join == Join::dashes ? " dt 2" : "",
-                       series.point == 0 ? "" : fmt::format(" pt {} ps 0.4", series.point));
+                       series.point == 0
+                           ? ""
+                           : fmt::format(" pt {} ps {}", series.point, series.large ? 1.1 : 0.4));
   }
 
   static const char* kind_of(const Series& series) {

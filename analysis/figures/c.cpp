@@ -228,6 +228,7 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
                                   .filter = rows});
     table.chart.series.push_back({.colour = one.style.colour,
                                   .point = one.style.point - 1,
+                                  .large = true,
                                   .columns = {.x = "cycles_followed", .y = "supplement_grains"},
                                   .filter = rows});
   }

@@ -58,7 +58,7 @@ function tracesOf(chart, width, dark) {
       showlegend: one.title.length > 0, cliponaxis: one.line,
       line: {color, width: one.thin ? 0.7 : 1.4, dash: one.dashed ? "5px,4px" : "solid"},
       marker: {
-        color, size: 7, line: {color, width: 1.2}, maxdisplayed: one.line ? 60 : 0,
+        color, size: one.large ? 13 : 7, line: {color, width: 1.2}, maxdisplayed: one.line ? 60 : 0,
         symbol: (symbols[Math.floor(one.point / 2) - 2] ?? "circle") + (one.point % 2 ? "" : "-open")
       },
       error_x: bars(xError, one.band), error_y: bars(yError, one.band),
