@@ -18,6 +18,8 @@
 #include "experiments/runner/host.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/json_text.hpp"
+#include "provenance/lineage.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -40,16 +42,10 @@ lost); 2 usage or manifest error; 3 a run failed numerically or does not fit int
 
 std::string version_text() {
   const nlohmann::json facts = host_facts();
-  const nlohmann::json& build = facts["build"];
-  const auto word = [&](const char* key) { return build[key].get<std::string>(); };
-  std::string libraries;
-  for (const auto& [name, version] : facts["libraries"].items()) {
-    libraries +=
-        fmt::format("{}{} {}", libraries.empty() ? "" : ", ", name, version.get<std::string>());
-  }
-  return fmt::format("shearcell {} ({})\n{}, {} build, {}\nflags: {}\nlibraries: {}",
-                     word("version"), word("commit"), word("compiler"), word("type"),
-                     facts["simd"].get<std::string>(), word("flags"), libraries);
+  const Maker maker = maker_of(facts);
+  return fmt::format("shearcell {}\n{}, {} build, {}\nflags: {}\nlibraries: {}", maker.version,
+                     text_at(facts["build"], "compiler"), text_at(facts["build"], "type"),
+                     text_at(facts, "simd"), maker.flags, fmt::join(maker.libraries, ", "));
 }
 
 template <class... Errors>

@@ -643,7 +643,6 @@ void add_run_tables(Content& content) {
 
 /// The values of the template.
 json page_of(const Content& content, const Head& head) {
-  const json program = host_facts().at("build");
   const std::size_t packed = content.packings.runs.size();
   json packings = false;
   if (packed > 0) {
@@ -667,8 +666,7 @@ json page_of(const Content& content, const Head& head) {
       {"event", head.seq},
       {"log_head", head.hash},
       {"log_brief", brief(head.hash)},
-      {"version", program.value("version", "")},
-      {"commit", program.value("commit", "")},
+      {"version", maker_of(host_facts()).version},
       {"interactive", content.report.interactive},
       {"drawings_asked", !content.report.interactive && has_front_end()},
       {"no_front_end", !has_front_end()},
