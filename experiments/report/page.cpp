@@ -61,12 +61,7 @@ struct Experiment {
   std::vector<Verdict> verdicts = {};    ///< of the figures
   std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
   std::vector<Stage> runs = {};
-  std::size_t checkpoints_left = 0;  ///< checkpoints of unfinished runs if nothing ends them early
-  RunTable table = {};               ///< a row for each run, without those that settle packings
-  /// For the front end, in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi,
-  /// ...}]. The cycle and each scalar measure are arrays over the checkpoints, null where a value
-  /// is unknown.
-  json traces = json::array();
+  RunTable table = {};  ///< a row for each run, without those that settle packings
 };
 
 /// What the store holds.
@@ -316,8 +311,7 @@ json step(const char* title, std::initializer_list<Count> counts) {
     list.push_back(
         {{"state", one.state}, {"mark", one.mark}, {"name", one.name}, {"number", one.number}});
   }
-  return {{"title", title},    {"some", !list.empty()}, {"none", list.empty()},
-          {"manifest", false}, {"figures_step", false}, {"counts", std::move(list)}};
+  return {{"title", title}, {"some", !list.empty()}, {"counts", std::move(list)}};
 }
 
 json stages_step(const char* title, const Experiment& experiment, bool prepare) {
@@ -332,25 +326,28 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
                       {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
-/// The way from the manifest to the figures, with the states of each step.
+/// The way from the packings to the figures, with the states of each step.
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
+  std::size_t left = 0;  // checkpoints of unfinished runs if nothing ends them early
   for (const Stage& run : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(run.id).checkpoints) ++in[c.record.state];
+    // How long a packing takes to settle is not known.
+    if (run.kind == name_of(StageKind::prepare)) continue;
+    std::vector<Ask> asks = run.asks;
+    std::erase_if(asks,
+                  [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
+    const Outlook look = outlook(run, asks, content.store.checkpoints(run.id, Listed::and_pruned));
+    if (!look.done) left += static_cast<std::size_t>(look.checkpoints);
   }
-  json manifest = step("Manifest", {});
-  manifest["none"] = false;
-  manifest["manifest"] = {{"brief", brief(experiment.manifest.sha256)},
-                          {"path", experiment.manifest_path}};
   json figures = step("Figures", {{"done", "✓", "made", experiment.figures.size()},
                                   {"failed", "✗", "cannot be made", experiment.unmade.size()}});
   figures["figures_step"] = true;
-  return {manifest, stages_step("Packings", experiment, true),
-          stages_step("Runs", experiment, false),
+  return {stages_step("Packings", experiment, true), stages_step("Runs", experiment, false),
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
-                               {"waiting", "·", "to come, at most", experiment.checkpoints_left}}),
+                               {"waiting", "·", "to come, at most", left}}),
           figures};
 }
 
@@ -458,6 +455,7 @@ json experiment_json(const Content& content, const Experiment& experiment) {
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
           {"stage_count", experiment.runs.size()},
+          {"manifest", {{"brief", brief(manifest.sha256)}, {"path", experiment.manifest_path}}},
           {"steps", workflow(content, experiment)},
           {"figures", experiment.figures},
           {"unmade", experiment.unmade},
@@ -479,6 +477,28 @@ json parts_of(const Content& content) {
   return parts;
 }
 
+/// The runs in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi, ...}]. The
+/// cycle and each scalar measure are arrays over the checkpoints, null where a value is unknown.
+json traces_of(const RunTable& runs, const RunLineages& lineages) {
+  constexpr int significant = 6;
+  json all = json::array();
+  for (std::size_t k = 0; k < runs.rows.size(); ++k) {
+    json& run = all.emplace_back(json::object());
+    for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
+      run["cycle"].push_back(checkpoint.cycle);
+      for (const Measure& measure : provider(table_providers().front()).measures) {
+        run[std::string(measure.name)].push_back(
+            rounded(checkpoint.measures.number(measure.name), significant));
+      }
+    }
+    const std::vector<json>& row = runs.rows[k];
+    for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
+    run["id"] = row[runs.place("run")];
+    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
+  }
+  return all;
+}
+
 /// What the front end reads.
 json script_data(const Content& content) {
   json experiments = json::array();
@@ -493,7 +513,7 @@ json script_data(const Content& content) {
     experiments.push_back({{"experiment", experiment.manifest.experiment},
                            {"columns", std::move(columns)},
                            {"rows", experiment.table.rows},
-                           {"runs", experiment.traces}});
+                           {"runs", traces_of(experiment.table, content.runs)}});
   }
   return {{"charts", content.charts},
           {"packings", content.packings.runs},
@@ -586,39 +606,11 @@ void add_runs(Content& content) {
     }
     for (const Stage& run : experiment.runs) {
       add_run_lineage(store, run.id, content.runs);
-      // How long a packing takes to settle is not known.
-      if (run.kind == name_of(StageKind::prepare)) continue;
-      std::vector<Ask> asks = run.asks;
-      std::erase_if(
-          asks, [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
-      const Outlook look = outlook(run, asks, store.checkpoints(run.id, Listed::and_pruned));
-      if (!look.done) experiment.checkpoints_left += static_cast<std::size_t>(look.checkpoints);
     }
   }
 }
 
-/// Experiment::traces.
-json traces_of(const RunTable& runs, const RunLineages& lineages) {
-  constexpr int significant = 6;
-  json all = json::array();
-  for (std::size_t k = 0; k < runs.rows.size(); ++k) {
-    json& run = all.emplace_back(json::object());
-    for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
-      run["cycle"].push_back(checkpoint.cycle);
-      for (const Measure& measure : provider(table_providers().front()).measures) {
-        run[std::string(measure.name)].push_back(
-            rounded(checkpoint.measures.number(measure.name), significant));
-      }
-    }
-    const std::vector<json>& row = runs.rows[k];
-    for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
-    run["id"] = row[runs.place("run")];
-    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
-  }
-  return all;
-}
-
-/// Adds the results and traces of each experiment's runs. An experiment without them is named in
+/// Adds the results of each experiment's runs. An experiment without them is named in
 /// Report::notes.
 void add_run_tables(Content& content) {
   const ReportOptions& options = content.options;
@@ -631,7 +623,6 @@ void add_run_tables(Content& content) {
       // Another program may have declared runs since they were listed.
       for (const FigureRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
-      experiment.traces = traces_of(experiment.table, content.runs);
       content.report.damage.insert(experiment.table.damage.begin(), experiment.table.damage.end());
     } catch (const std::runtime_error& problem) {
       // No run at this scale, or a record that this version of the program cannot read.
