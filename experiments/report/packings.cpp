@@ -17,6 +17,7 @@
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -187,34 +188,26 @@ std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains
   return fields;
 }
 
-json four_decimals(const std::vector<double>& values, double unit = 1) {
+json profile_json(const std::vector<double>& values, double unit = 1) {
   json list = json::array();
-  for (const double value : values) {
-    const double scaled = std::round(value * unit * 1e4) / 1e4;
-    list.push_back(std::isfinite(scaled) ? json(scaled) : json());
-  }
+  for (const double value : values) list.push_back(rounded(value * unit, 6));
   return list;
 }
 
 json profiles_json(const Measures& measures) {
   const MeasuredCurve& phi = measures.curves.at("phi_profile");
-  return {{"height", four_decimals(phi.x)},
-          {"phi", four_decimals(phi.y)},
-          {"pressure", four_decimals(measures.curves.at("pressure_profile_Pa").y, 1e-3)},
-          {"coordination", four_decimals(measures.curves.at("coordination_profile").y)},
-          {"crystalline", four_decimals(measures.curves.at("crystalline_profile_percent").y)}};
+  return {{"height", profile_json(phi.x)},
+          {"phi", profile_json(phi.y)},
+          {"pressure", profile_json(measures.curves.at("pressure_profile_Pa").y, 1e-3)},
+          {"coordination", profile_json(measures.curves.at("coordination_profile").y)},
+          {"crystalline", profile_json(measures.curves.at("crystalline_profile_percent").y)}};
 }
 
 bool enters_page(const Provider& one) {
   return one.has(MeasureKind::grains) || one.name == "profiles";
 }
 
-struct PageFrame {
-  json value;
-  double step = 0;
-};
-
-PageFrame make_frame(const CheckpointRecord& record, const MeasureSources& sources) {
+json make_frame(const CheckpointRecord& record, const MeasureSources& sources) {
   const Checkpoint checkpoint = sources.load(record);
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
@@ -224,22 +217,21 @@ PageFrame make_frame(const CheckpointRecord& record, const MeasureSources& sourc
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
   for (const GrainField& field : fields) described.push_back(to_json(field));
-  return {{{"name", frame_name(record)},
-           {"cycle", record.cycle},
-           {"sha256", record.sha256},
-           {"facts", facts_of(analysis.measures, checkpoint.theta)},
-           {"cell",
-            {{"width", checkpoint.cell.width},
-             {"depth", checkpoint.cell.depth},
-             {"bottom", pose.bottom},
-             {"top", pose.top},
-             {"tan_theta", pose.tan_theta}}},
-           {"fields", std::move(described)},
-           {"profiles", profiles_json(measures)},
-           {"origin", std::vector(encoded.origin.begin(), encoded.origin.end())},
-           {"step", std::vector(encoded.step.begin(), encoded.step.end())},
-           {"data", base64(encoded.bytes)}},
-          encoded.step.maxCoeff()};
+  return {{"name", frame_name(record)},
+          {"cycle", record.cycle},
+          {"sha256", record.sha256},
+          {"facts", facts_of(analysis.measures, checkpoint.theta)},
+          {"cell",
+           {{"width", checkpoint.cell.width},
+            {"depth", checkpoint.cell.depth},
+            {"bottom", pose.bottom},
+            {"top", pose.top},
+            {"tan_theta", pose.tan_theta}}},
+          {"fields", std::move(described)},
+          {"profiles", profiles_json(measures)},
+          {"origin", std::vector(encoded.origin.begin(), encoded.origin.end())},
+          {"step", std::vector(encoded.step.begin(), encoded.step.end())},
+          {"data", base64(encoded.bytes)}};
 }
 
 }  // namespace
@@ -316,7 +308,7 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
       records.push_back(record);
     }
   }
-  std::vector<PageFrame> frames(records.size());  // null if a checkpoint cannot be read
+  std::vector<json> frames(records.size());  // null if a checkpoint cannot be read
   const UnreadCheckpoints unread = read_in_parallel(
       records.size(), workers, [&](std::size_t k) { frames[k] = make_frame(records[k], sources); },
       report);
@@ -328,9 +320,11 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
   for (const ChosenRun& run : runs) {
     json list = json::array();
     for (std::size_t k = 0; k < run.checkpoints.size(); ++k, ++next) {
-      if (next->value.is_null()) continue;
-      packings.largest_step = std::max(packings.largest_step, next->step);
-      list.push_back(std::move(next->value));
+      if (next->is_null()) continue;
+      for (const double step : next->at("step")) {
+        packings.largest_step = std::max(packings.largest_step, step);
+      }
+      list.push_back(std::move(*next));
     }
     packings.frames += list.size();
     if (list.empty()) continue;
