@@ -32,13 +32,12 @@ namespace {
 /// measured changes included; by step.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FigureRun& run) {
-  std::set<std::string> used;
-  for (const CheckpointMeasures& c : run.checkpoints) used.insert(c.sha256);
-  if (const auto found = figure.earlier.find(run.stage.id); found != figure.earlier.end()) {
-    for (const auto& [step, sha256] : found->second) used.insert(sha256);
-  }
+  std::set<std::string> own;
+  for (const CheckpointMeasures& c : run.checkpoints) own.insert(c.sha256);
   std::vector<CheckpointRecord> records = store.checkpoints(run.stage.id, Listed::and_pruned);
-  std::erase_if(records, [&](const CheckpointRecord& c) { return !used.contains(c.sha256); });
+  std::erase_if(records, [&](const CheckpointRecord& c) {
+    return !own.contains(c.sha256) && !figure.earlier.contains(c.sha256);
+  });
   return records;
 }
 

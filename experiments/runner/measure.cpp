@@ -60,7 +60,7 @@ class Measuring {
         }
         for (const std::uint64_t cycles : providers_[p]->earlier) {
           const CheckpointRecord* other = sources_.find(*record, cycles, every);
-          if (other != nullptr) outcome_.earlier[other->run].emplace(other->step, other->sha256);
+          if (other != nullptr) outcome_.earlier.insert(other->sha256);
         }
       }
     }
@@ -184,7 +184,7 @@ MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
   measured.insert(more.measured.begin(), more.measured.end());
   cached += more.cached;
   add_lines(more, *this);
-  for (const auto& [run, steps] : more.earlier) earlier[run].insert(steps.begin(), steps.end());
+  earlier.insert(more.earlier.begin(), more.earlier.end());
   if (!more.cache_trouble.empty()) cache_trouble = more.cache_trouble;
   return *this;
 }

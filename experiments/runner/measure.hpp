@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -43,9 +42,8 @@ struct UnreadCheckpoints {
 struct MeasureOutcome : UnreadCheckpoints {
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints that were analysed now
   std::size_t cached = 0;          ///< checkpoints whose results were in the cache
-  /// SHA-256 of the earlier checkpoints that entered measures, by run and step.
-  std::map<std::string, std::map<std::uint64_t, std::string>> earlier;
-  std::string cache_trouble;  ///< why results cannot be cached; "" if they can
+  std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that entered measures
+  std::string cache_trouble;       ///< why results cannot be cached; "" if they can
 
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
