@@ -51,18 +51,13 @@ export function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-const themed = [];
-
-export function onThemeChange(action) {
-  themed.push(action);
-}
-
-// The choice is kept if the browser allows it for files; else it lasts until the page is closed.
+// The choice is kept if the browser allows it for files; else it lasts until the page is closed. What has
+// colours of its own listens to "themechange" of the window.
 export function addThemeSwitch(select) {
   const key = "shearcell-theme";
   const apply = () => {
     document.documentElement.style.colorScheme = select.value;
-    themed.forEach((action) => action());
+    window.dispatchEvent(new Event("themechange"));
   };
   const stored = (action) => {
     try {

@@ -23,20 +23,13 @@ export function decodeFrame(frame, grains, wallGrains) {
   if (bytes.length !== 6 * all + (7 + frame.fields.length) * grains) {
     throw new Error(`a packing of ${bytes.length} bytes is not one of ${all} spheres`);
   }
-  const view = new DataView(bytes.buffer);
-  let at = 0;
-  const words = (count, convert) => Float32Array.from({length: count}, () => {
-    at += 2;
-    return convert(view.getUint16(at - 2, true));
-  });
-  const position = new Float32Array(3 * all);
-  for (let axis = 0; axis < 3; ++axis) {
-    words(all, (word) => frame.origin[axis] + frame.step[axis] * word)
-      .forEach((value, i) => (position[3 * i + axis] = value));
-  }
-  const [phi, q6] = [words(grains, (word) => word / 65535), words(grains, (word) => word / 65535)];
-  const crystallite = words(grains, (word) => word);  // 0 for none
-  const part = (k) => bytes.subarray(at + k * grains, at + (k + 1) * grains);
+  const words = new Uint16Array(bytes.buffer, 0, 3 * all + 3 * grains);  // all browsers are little-endian
+  const position = Float32Array.from({length: 3 * all}, (_, n) =>
+    frame.origin[n % 3] + frame.step[n % 3] * words[(n % 3) * all + Math.floor(n / 3)]);
+  const measure = (k) => words.subarray(3 * all + k * grains, 3 * all + (k + 1) * grains);
+  const [phi, q6] = [0, 1].map((k) => Float32Array.from(measure(k), (word) => word / 65535));
+  const crystallite = measure(2);  // 0 for none
+  const part = (k) => bytes.subarray(6 * all + (6 + k) * grains, 6 * all + (7 + k) * grains);
   // A byte a grain: a class, or 254 times its share of the range; 255 for unknown.
   const fields = Object.fromEntries(frame.fields.map((field, k) => [field.key, {...field, bytes: part(k + 1)}]));
   const flags = part(0);

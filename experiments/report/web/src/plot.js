@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the chart descriptions of analysis/chart.hpp with Plotly.
 import Plotly from "plotly.js-basic-dist-min";
-import {coloursOf, element, extentOf, onThemeChange} from "./dom.js";
+import {coloursOf, element, extentOf} from "./dom.js";
 
 const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's 4 to 13
 const font = {family: '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif', size: 13};
@@ -127,7 +127,7 @@ export class Plot {
     this.status = element("div", {className: "visually-hidden", role: "status"});
     host.replaceChildren(this.canvas, this.status);
     this.canvas.addEventListener("keydown", (event) => this.key(event));
-    onThemeChange(() => this.draw());
+    window.addEventListener("themechange", () => this.draw());
     this.fits = () => Math.floor(host.getBoundingClientRect().width);
     new ResizeObserver(() => this.width === this.fits() || this.draw()).observe(host);
     this.show(chart);

@@ -138,13 +138,10 @@ export class PackingScene {
   turn(horizontal, vertical) {
     this.controls.rotateLeft(horizontal);
     this.controls.rotateUp(vertical);
-    this.controls.update();
   }
 
   nearer(factor) {
-    this.camera.zoom = Math.min(this.controls.maxZoom, Math.max(this.controls.minZoom, this.camera.zoom * factor));
-    this.camera.updateProjectionMatrix();
-    this.controls.dispatchEvent({type: "change"});
+    this.controls.dollyIn(1 / factor);
   }
 
   // Takes the direction, the zoom and the shift of another view.

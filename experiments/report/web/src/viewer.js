@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The packing viewer: one packing or two side by side, with one set of controls for both. The template
 // elements viewer-parts and pane-parts (page.html) have its parts, found by `data-part`.
-import {addOptions, coloursOf, element, extentOf, onThemeChange, plain, save, written} from "./dom.js";
+import {addOptions, coloursOf, element, extentOf, plain, save, written} from "./dom.js";
 import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
 import {Plot} from "./plot.js";
 import {PackingScene} from "./scene.js";
@@ -81,11 +81,7 @@ class Pane {
 
   showKey({entries, bar}) {
     const css = (colour) => `rgb(${colour.join()})`;
-    const coloured = (className, background) => {
-      const mark = element("i", {className});
-      mark.style.background = background;
-      return mark;
-    };
+    const coloured = (className, background) => element("i", {className, style: `background: ${background}`});
     if (bar) {
       const stops = [0, 0.25, 0.5, 0.75, 1].map((t) => css(viridis(t)));
       this.part("key").replaceChildren(element("span", {}, ...written(bar.label)),
@@ -181,7 +177,7 @@ export class Viewer {
       pane.canvas.toBlob((blob) => save(`${pane.packing.id.slice(0, 8)}.png`, blob));
     }));
     const recolour = () => this.panes.forEach((pane) => pane.scene.setColours(coloursOf(pane.part("stage"))));
-    onThemeChange(recolour);
+    window.addEventListener("themechange", recolour);
     recolour();
     if (count === 1) this.showRuns([packings[0]]);
   }
