@@ -72,7 +72,6 @@ class Measuring {
       const auto wanted = std::span(results_[i]).first(wanted_);
       if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
     }
-    outcome_.cached = distinct_.size() - todo_.size();
     UnreadCheckpoints& unread = outcome_;
     try {
       unread = read_in_parallel(
@@ -182,7 +181,6 @@ class Measuring {
 
 MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
   measured.insert(more.measured.begin(), more.measured.end());
-  cached += more.cached;
   add_lines(more, *this);
   earlier.insert(more.earlier.begin(), more.earlier.end());
   if (!more.cache_trouble.empty()) cache_trouble = more.cache_trouble;

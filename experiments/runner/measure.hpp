@@ -41,7 +41,6 @@ struct UnreadCheckpoints {
 
 struct MeasureOutcome : UnreadCheckpoints {
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints that were analysed now
-  std::size_t cached = 0;          ///< checkpoints whose results were in the cache
   std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that entered measures
   std::string cache_trouble;       ///< why results cannot be cached; "" if they can
 
