@@ -180,8 +180,7 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRu
       if (run.experiment == manifest.experiment) variants.push_back(run.swept);
     }
     if (variants.empty()) continue;
-    const auto known = recorded_manifest(manifest.text);
-    const auto labels = known ? known->labels : std::vector<VariantLabel>();
+    const std::vector<VariantLabel> labels = recorded_manifest(manifest.text).labels;
     const auto names = variant_names(variants, labels);
     for (FigureRun& run : collected.runs) {
       if (run.experiment != manifest.experiment) continue;
@@ -289,8 +288,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const RegisteredManifest& manifest : manifests) {
-    const std::optional<Manifest> read_one = recorded_manifest(manifest.text);
-    std::vector<Figure> stated = read_one ? stated_figures(*read_one) : std::vector<Figure>();
+    std::vector<Figure> stated = stated_figures(recorded_manifest(manifest.text));
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;

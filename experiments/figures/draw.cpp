@@ -180,9 +180,7 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
 void mark_primary(const Store& store, ComputedFigure& figure) {
   for (const RegisteredManifest& registered : newest_manifests(store)) {
     if (!figure.experiment.empty() && registered.experiment != figure.experiment) continue;
-    const std::optional<Manifest> manifest = recorded_manifest(registered.text);
-    if (!manifest) continue;
-    for (const Scale& scale : scales_of(*manifest)) {
+    for (const Scale& scale : scales_of(recorded_manifest(registered.text))) {
       if (scale.name != figure.scale) continue;
       std::ranges::copy(scale.primary, std::back_inserter(figure.primary));
     }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "experiments/manifest/conversion.hpp"
@@ -32,17 +31,17 @@ const Scale& scale_of(const Manifest& manifest, std::string_view name) {
 
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure) {
-  const std::optional<Manifest> manifest = recorded_manifest(text);
-  if (!manifest) return {};
+  const Manifest manifest = recorded_manifest(text);
+  if (manifest.experiment.empty()) return {};
   std::vector<ManifestLine> found;
   const auto add = [&](std::string key, const Position& at) {
     found.push_back({std::move(key), at.line, text_of_line(text, at.line)});
   };
-  const Scale& stated = scale_of(*manifest, scale);
+  const Scale& stated = scale_of(manifest, scale);
   const auto path_of = [&](const std::string& key) {
     return stated.own.contains(key) ? fmt::format("scales.{}.{}", stated.name, key) : key;
   };
-  add("experiment", manifest->experiment_at);
+  add("experiment", manifest.experiment_at);
   if (!stated.name.empty()) add("scales." + stated.name, stated.at);
   for (const auto& [kind, axes] :
        {std::pair(".grid.", &stated.sweep.grid), {".zip.", &stated.sweep.zip}}) {
@@ -62,7 +61,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
                                 {"until", stated.until.at}}) {
     if (at.line > 0) add(path_of(key), at);
   }
-  for (const VariantLabel& label : manifest->labels) {
+  for (const VariantLabel& label : manifest.labels) {
     if (selects(label, swept)) add("labels", label.at);
   }
   const auto add_figure = [&](const char* key, const auto& own_figures) {
@@ -70,8 +69,8 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
       if (one.name == figure || (!figure.empty() && one.figure == figure)) add(key, one.at);
     }
   };
-  add_figure("plots", manifest->plots);
-  add_figure("claims", manifest->claims);
+  add_figure("plots", manifest.plots);
+  add_figure("claims", manifest.claims);
   return found;
 }
 

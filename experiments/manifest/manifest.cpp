@@ -100,12 +100,10 @@ Manifest parse_manifest(std::string_view text, std::string_view file) {
   return manifest;
 }
 
-std::optional<Manifest> recorded_manifest(std::string_view text) {
-  try {
-    return read_manifest(text, "manifest");
-  } catch (const ManifestError&) {
-    return std::nullopt;  // of another version of the schema
-  }
+Manifest recorded_manifest(std::string_view text) try {
+  return read_manifest(text, "manifest");
+} catch (const ManifestError&) {
+  return {};  // of another version of the schema
 }
 
 nlohmann::json to_json(const Until& until) {

@@ -237,7 +237,8 @@ std::string manifest_markdown();
 /// problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
-/// read_manifest() of a text in a store; nothing if this version of the program cannot read it.
-std::optional<Manifest> recorded_manifest(std::string_view text);
+/// read_manifest() of a text in a store. If this version of the program cannot read it: a manifest
+/// that states nothing, not even its experiment.
+Manifest recorded_manifest(std::string_view text);
 
 }  // namespace shearcell

@@ -527,10 +527,9 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     if (!names.passes(manifest.experiment)) continue;
-    const std::optional<Manifest> known = recorded_manifest(manifest.text);
     Experiment& experiment = found.emplace_back();
     experiment.manifest = std::move(manifest);
-    experiment.labelled = known && !known->labels.empty();
+    experiment.labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
   }
   const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {

@@ -47,8 +47,7 @@ std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage&
 VariantNames::VariantNames(const Store& store) {
   std::map<std::string, std::vector<VariantLabel>> labels;
   for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    auto known = recorded_manifest(manifest.text);
-    if (known) labels[manifest.sha256] = std::move(known->labels);
+    labels[manifest.sha256] = recorded_manifest(manifest.text).labels;
   }
   std::map<Group, std::vector<nlohmann::json>> values;
   for (const Stage& run : store.stages()) {
