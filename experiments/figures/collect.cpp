@@ -61,7 +61,6 @@ void add_checkpoints(const Store& store, const Figure& figure, FigureRun& run) {
 /// The number of checkpoints that the figure asks for, before the run's last one, and that are
 /// missing.
 std::size_t missing_for(const Figure& figure, const FigureRun& run) {
-  if (figure.form == FigureForm::table) return 0;
   std::size_t missing = 0;
   for (const std::uint64_t step :
        asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last_cycle(figure, run))) {
@@ -172,22 +171,19 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
       fmt::format("core times are of different processors: {}", some_of(processors)));
 }
 
-/// Sets Run::name and Run::named.
-void name_variants(const std::vector<RegisteredManifest>& manifests, CollectedRuns& collected) {
-  for (const RegisteredManifest& manifest : manifests) {
-    std::vector<nlohmann::json> variants;
-    for (const FigureRun& run : collected.runs) {
-      if (run.experiment == manifest.experiment) variants.push_back(run.swept);
-    }
-    if (variants.empty()) continue;
-    const std::vector<VariantLabel> labels = recorded_manifest(manifest.text).labels;
-    const auto names = variant_names(variants, labels);
-    for (FigureRun& run : collected.runs) {
-      if (run.experiment != manifest.experiment) continue;
-      run.name = names.at(run.swept);
-      run.named = std::ranges::any_of(
-          labels, [&](const VariantLabel& label) { return selects(label, run.swept); });
-    }
+/// Sets Run::name and Run::named of the runs, which are all of this experiment.
+void name_variants(const std::vector<RegisteredManifest>& manifests, const std::string& experiment,
+                   CollectedRuns& collected) {
+  const auto manifest = std::ranges::find(manifests, experiment, &RegisteredManifest::experiment);
+  if (manifest == manifests.end()) return;
+  const std::vector<VariantLabel> labels = recorded_manifest(manifest->text).labels;
+  std::vector<nlohmann::json> variants;
+  for (const FigureRun& run : collected.runs) variants.push_back(run.swept);
+  const auto names = variant_names(variants, labels);
+  for (FigureRun& run : collected.runs) {
+    run.name = names.at(run.swept);
+    run.named = std::ranges::any_of(
+        labels, [&](const VariantLabel& label) { return selects(label, run.swept); });
   }
 }
 
@@ -361,7 +357,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
-    name_variants(manifests, collected);
+    name_variants(manifests, wanted.experiment, collected);
     std::erase_if(collected.runs, [&](const FigureRun& run) {
       return wanted.figure.uses && !wanted.figure.uses(run);
     });
