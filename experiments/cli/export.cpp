@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -98,14 +98,12 @@ CycleRange parse_cycles(const std::string& text) {
 std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
   const Stage& run = wanted.stage;
   if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
-  std::map<std::uint64_t, CheckpointRecord> all;  // by step
+  std::set<std::uint64_t> steps;
   for (const Ask& place : wanted.places) {
-    for (CheckpointRecord& record : checkpoints_for(store, run, place, {})) {
-      all.try_emplace(record.step, std::move(record));
-    }
+    for (const CheckpointRecord& c : checkpoints_for(store, run, place, {})) steps.insert(c.step);
   }
-  std::vector<CheckpointRecord> records;
-  for (auto& [step, record] : all) records.push_back(std::move(record));
+  std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
+  std::erase_if(records, [&](const CheckpointRecord& c) { return !steps.contains(c.step); });
   return records;
 }
 
