@@ -54,9 +54,7 @@ std::string_view front_end_script() {
 
 /// An experiment of the store.
 struct Experiment {
-  RegisteredManifest manifest;  ///< its newest version
-  std::string manifest_path = {};
-  bool labelled = false;                 ///< the manifest names variants
+  RegisteredManifest manifest;           ///< its newest version
   json figures = json::array();          ///< as figure_json() gives them
   std::vector<Verdict> verdicts = {};    ///< of the figures
   std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
@@ -369,7 +367,8 @@ std::vector<RunColumn> columns_of(const Experiment& experiment) {
   };
   if (differs(table.place("scale"))) shown.push_back({table.place("scale"), "scale", false});
   // Swept parameters stand between the seed and the cycle; the grains are among them.
-  if (experiment.labelled || cycle - seed == 2) {
+  const bool labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
+  if (labelled || cycle - seed == 2) {
     shown.push_back({table.place("variant"), "variant", false});
   }
   for (std::size_t at = seed + 1; at < cycle; ++at) {
@@ -445,6 +444,7 @@ json run_rows(const Packings& packings, const Experiment& experiment) {
 
 json experiment_json(const Content& content, const Experiment& experiment) {
   const RegisteredManifest& manifest = experiment.manifest;
+  const auto known = content.manifests.find(manifest.sha256);
   json verdict = json::array();
   for (const auto& [ruling, number] : rulings_of(experiment.verdicts)) {
     verdict.push_back(ruling_json(ruling));
@@ -455,7 +455,9 @@ json experiment_json(const Content& content, const Experiment& experiment) {
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
           {"stage_count", experiment.runs.size()},
-          {"manifest", {{"brief", brief(manifest.sha256)}, {"path", experiment.manifest_path}}},
+          {"manifest",
+           {{"brief", brief(manifest.sha256)},
+            {"path", known == content.manifests.end() ? "" : known->second.path}}},
           {"steps", workflow(content, experiment)},
           {"figures", experiment.figures},
           {"unmade", experiment.unmade},
@@ -526,10 +528,7 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   Filter names(chosen.experiments), scales(chosen.scales);
   std::vector<Experiment> found;
   for (RegisteredManifest& manifest : newest_manifests(store)) {
-    if (!names.passes(manifest.experiment)) continue;
-    Experiment& experiment = found.emplace_back();
-    experiment.manifest = std::move(manifest);
-    experiment.labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
+    if (names.passes(manifest.experiment)) found.push_back({std::move(manifest)});
   }
   const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {
@@ -598,14 +597,11 @@ void add_figures(Content& content) {
 
 void add_runs(Content& content) {
   const Store& store = content.store;
-  for (Experiment& experiment : content.experiments) {
+  for (const Experiment& experiment : content.experiments) {
     if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
-      experiment.manifest_path = manifest->path;
       content.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
-    for (const Stage& run : experiment.runs) {
-      add_run_lineage(store, run.id, content.runs);
-    }
+    for (const Stage& run : experiment.runs) add_run_lineage(store, run.id, content.runs);
   }
 }
 
