@@ -57,9 +57,9 @@ export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(
 // of the runs. `rows`: {run, value(key)}. A colour for each variant, another marker from the ninth on.
 export function chartOfMeasures(rows, x, y) {
   const line = rows.every(({run}) => !run.cycle || (run[x] && run[y]));
-  const variants = [...new Set(rows.map(({run}) => run.variant))];
-  return chartOf(x, y, variants.flatMap((variant, v) =>
-    rows.filter(({run}) => run.variant === variant).map(({run, value}, k) => ({
+  const variants = [...Map.groupBy(rows, ({run}) => run.variant)];
+  return chartOf(x, y, variants.flatMap(([variant, own], v) =>
+    own.map(({run, value}, k) => ({
       run, line, title: k === 0 ? variant : "", style: styleOf(v, Math.floor(v / colours.length)),
       points: line ? overCheckpoints(run, x, y) : [[value(x), value(y)]]
     }))));

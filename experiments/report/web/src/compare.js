@@ -7,17 +7,12 @@ import {Viewer} from "./viewer.js";
 
 // Runs that differ in their seed alone.
 function variantsOf(experiments) {
-  const variants = new Map();
-  for (const {experiment, runs} of experiments) {
-    const scales = new Set(runs.map((run) => run.scale));
-    for (const run of runs.filter(({cycle}) => cycle)) {
-      const name = scales.size > 1 ? `${run.variant} (${run.scale || "base"})` : run.variant;
-      const key = JSON.stringify([experiment, run.scale, run.variant]);
-      if (!variants.has(key)) variants.set(key, {experiment, name, runs: []});
-      variants.get(key).runs.push(run);
-    }
-  }
-  return [...variants.values()];
+  return experiments.flatMap(({experiment, runs: all}) => {
+    const scales = new Set(all.map((run) => run.scale));
+    const nameOf = ({variant, scale}) => scales.size > 1 ? `${variant} (${scale})` : variant;
+    const variants = Map.groupBy(all.filter(({cycle}) => cycle), nameOf);
+    return [...variants].map(([name, runs]) => ({experiment, name, runs}));
+  });
 }
 
 function factsOf({experiment, name, runs}) {

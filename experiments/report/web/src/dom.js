@@ -26,13 +26,10 @@ export const extentOf = (values) =>
 
 // Fills a <select>: an option for each item, valued by its place, in groups.
 export function addOptions(select, items, groupOf, textOf) {
-  const groups = new Map();
-  items.forEach((item, index) => {
-    const name = groupOf(item);
-    if (!groups.has(name)) groups.set(name, element("optgroup", {label: name}));
-    groups.get(name).append(element("option", {value: String(index)}, textOf(item)));
-  });
-  select.append(...groups.values());
+  for (const [label, members] of Map.groupBy(items, groupOf)) {
+    const options = members.map((item) => element("option", {value: String(items.indexOf(item))}, textOf(item)));
+    select.append(element("optgroup", {label}, ...options));
+  }
 }
 
 // Calls `action` once, when the element is scrolled near the window.

@@ -142,10 +142,7 @@ export class RunTable {
     const words = this.input.value.trim().split(/\s+/).filter(Boolean);
     this.shown = this.sorted(this.rows.filter((row) => words.every((word) => this.fits(row, word))));
     this.count.textContent = `${this.shown.length} of ${this.rows.length} runs`;
-    const variants = new Map();
-    for (const row of this.shown) {
-      variants.set(row.run.variant, [...(variants.get(row.run.variant) ?? []), row]);
-    }
+    const variants = Map.groupBy(this.shown, ({run}) => run.variant);
     const bodies = this.fold.checked
       ? [...variants].flatMap(([name, rows]) =>
         [this.variantLine(name, rows), ...(this.open.has(name) ? rows.map(({body}) => body) : [])])
