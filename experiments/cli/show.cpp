@@ -323,11 +323,12 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
 // `list`: every checkpoint.
 void print(const FigureLineage& lineage, bool list) {
   Makers makers;
-  const nlohmann::json& version = lineage.analysis_version;
+  const nlohmann::json& recorded = lineage.record.provenance;
+  const nlohmann::json made = member_of(recorded, "made");
   say("figure", "{}, {} scale, analysis version {}", lineage.record.name, scale_name(lineage.scale),
-      version.is_null() ? "unknown" : short_text(version));
+      text_at(recorded, "analysis_version"));
   say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
-      lineage.made.is_object() ? ", " + makers.number(lineage.made) : "");
+      made.is_object() ? ", " + makers.number(made) : "");
   for (const auto& [name, sha256] : lineage.outputs) say("  file", "{}  {}", sha256, name);
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {

@@ -225,8 +225,6 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
   FigureLineage lineage;
   lineage.record = record;
   lineage.outputs = outputs_of(record.provenance);
-  lineage.analysis_version = member_of(record.provenance, "analysis_version");
-  lineage.made = member_of(record.provenance, "made");
   try {
     lineage.experiment = record.provenance.value("experiment", "");
     lineage.scale = record.provenance.value("scale", "");
@@ -287,8 +285,8 @@ json to_json(const FigureLineage& lineage) {
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
           {"scale", scale_name(lineage.scale)},
-          {"analysis_version", lineage.analysis_version},
-          {"made", lineage.made},
+          {"analysis_version", member_of(lineage.record.provenance, "analysis_version")},
+          {"made", member_of(lineage.record.provenance, "made")},
           {"outputs", lineage.outputs},
           {"manifests", manifests},
           {"inputs", inputs},

@@ -54,8 +54,6 @@ struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  nlohmann::json analysis_version;  ///< null where it was not recorded
-  nlohmann::json made;              ///< host and build, the same
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< each once

@@ -199,7 +199,7 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
   const std::string command = "shearcell figures " + figure.name;
   return {{"scale", scale_name(lineage.scale)},
           {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", figure.runs,
-                                 figure.checkpoints, short_text(lineage.analysis_version))},
+                                 figure.checkpoints, text_at(figure.lineage, "analysis_version"))},
           {"makers", makers},
           {"manifests", manifests},
           {"outputs", outputs},
