@@ -388,7 +388,6 @@ FigureTable against_measure(const PlotSpec& plot, std::span<const Curve> curves)
 
 /// How the plot's curves are drawn, as far as it states it.
 std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
-  constexpr std::array<int, 11> points = {0, 5, 7, 9, 11, 13, 4, 6, 8, 10, 12};  // of a Marker
   std::vector<CurveStyle> styles;
   for (const SeriesSpec& one : plot.series) {
     CurveStyle& stated =
@@ -398,7 +397,9 @@ std::vector<CurveStyle> styles_of(const PlotSpec& plot) {
     stated.colour = name == colour_names.end()
                         ? one.colour
                         : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
-    if (one.marker) stated.point = points.at(static_cast<std::size_t>(*one.marker));
+    const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, one.marker) -
+                                                 marker_names.begin());
+    if (symbol < marker_names.size()) stated.point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
   }
   return styles;
 }

@@ -29,34 +29,13 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// The symbol at the points of a curve.
-enum class Marker : std::uint8_t {
-  none,
-  square,
-  circle,
-  triangle,
-  triangle_down,
-  diamond,
-  open_square,
-  open_circle,
-  open_triangle,
-  open_triangle_down,
-  open_diamond
-};
-template <>
-inline constexpr auto kNames<Marker> = names_in_order<Marker>("none", "square", "circle",
-                                                              "triangle", "triangle_down",
-                                                              "diamond", "open_square",
-                                                              "open_circle", "open_triangle",
-                                                              "open_triangle_down", "open_diamond");
-
 /// How the curve of the variants with these parameters is drawn. What is not stated follows from
 /// what varies (analysis/figures/curves.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
   std::string label = {};   ///< with formulas (formula)
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
-  std::optional<Marker> marker = {};
+  std::string marker = {};  ///< one of marker_names
 };
 
 /// A further column of a plot's CSV.

@@ -75,6 +75,11 @@ inline constexpr std::array<const char*, 7> safe_colours = {
 inline constexpr std::array<std::string_view, 7> colour_names = {
     "blue", "vermilion", "green", "purple", "orange", "sky", "black"};
 
+/// No symbol, then those of curve_symbol(), as manifests name them.
+inline constexpr std::array<std::string_view, 11> marker_names = {
+    "none",        "square",      "circle",        "triangle",           "triangle_down", "diamond",
+    "open_square", "open_circle", "open_triangle", "open_triangle_down", "open_diamond"};
+
 /// The five filled symbols, then the open ones.
 inline int curve_symbol(std::size_t k) {
   return (k / 5 % 2 == 0 ? 5 : 4) + 2 * static_cast<int>(k % 5);

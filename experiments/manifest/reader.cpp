@@ -150,7 +150,7 @@ void fields(SeriesSpec& series, const auto& visit) {
   visit(series.label, {.name = "label", .longest = kLongestLabel});
   visit(series.colour,
         {.name = "colour", .names = colour_names, .besides = ", or \"#rrggbb\" in quotes"});
-  visit(series.marker, {.name = "marker"});
+  visit(series.marker, {.name = "marker", .names = marker_names});
 }
 
 void fields(PublishedSpec& published, const auto& visit) {

@@ -174,10 +174,9 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
       .y = "phi",
       .x = "period_s",
       .by = "amplitude_rad",
-      .series = {{.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "vermilion"},
-                 {.where = {{"amplitude_rad", 0.02}},
-                  .colour = "#123456",
-                  .marker = Marker::open_diamond}}};
+      .series = {
+          {.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "vermilion"},
+          {.where = {{"amplitude_rad", 0.02}}, .colour = "#123456", .marker = "open_diamond"}}};
   const FigureTable table = drawing_of(plot);
   EXPECT_EQ(titles_of(table),
             (std::vector<std::string>{"large A", "amplitude_rad=0.02", "amplitude_rad=0.04"}))
