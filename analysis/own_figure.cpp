@@ -332,7 +332,7 @@ FigureTable against_x(const PlotSpec& plot, std::span<const FigureRun> runs,
                       std::span<const Curve> curves) {
   const Measure* of_curve = find_curve(plot.y);
   const std::string x(of_curve != nullptr ? of_curve->x : plot.x);
-  const bool of_whole_run = of_curve == nullptr && is_parameter(plot.y);
+  const bool of_whole_run = is_parameter(plot.y);
   const MeasureColumn y = y_column(plot);
   const double cycle = cycle_of(plot, runs);
   FigureTable table{.name = plot.name, .columns = {"variant", x}};
@@ -611,9 +611,9 @@ std::string repeated_column(const PlotSpec& plot) {
   return "";
 }
 
-bool is_parameter(std::string_view x) {
-  return std::ranges::none_of(names_in(x), [](const std::string& name) {
-    return name == "cycle" || find_measure(name) != nullptr;
+bool is_parameter(std::string_view axis) {
+  return std::ranges::none_of(names_in(axis), [](const std::string& name) {
+    return name == "cycle" || find_measure(name) != nullptr || find_curve(name) != nullptr;
   });
 }
 
@@ -704,7 +704,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
   texts.insert(texts.end(), {plot.x, plot.y});
   figure.needs = needs_of(texts);
   figure.within = plot.cycles;
-  if (plot.cycle && !draws_every_cycle(plot) && !(measured == nullptr && is_parameter(plot.y))) {
+  if (plot.cycle && !draws_every_cycle(plot) && !is_parameter(plot.y)) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
   return figure;

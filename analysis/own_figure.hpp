@@ -83,9 +83,9 @@ std::string words_of(const nlohmann::json& values);
 /// none.
 std::string repeated_column(const PlotSpec& plot);
 
-/// Whether the x of a plot is one number of a run: it names neither the cycle nor a measure of
+/// Whether an axis of a plot is one number of a run: it names neither the cycle nor a measure of
 /// checkpoints.
-bool is_parameter(std::string_view x);
+bool is_parameter(std::string_view axis);
 /// Whether `x` names a measure of the whole run, which differs between runs of one variant.
 bool is_measured_of_run(std::string_view x);
 

@@ -451,11 +451,6 @@ std::uint64_t cycles_back(string_view text) {
   return most;
 }
 
-/// Whether the y of the plot is one number of a run.
-bool is_of_run(const PlotSpec& plot) {
-  return is_parameter(plot.y) && find_measure(plot.y, MeasureKind::curve) == nullptr;
-}
-
 /// "a checkpoint at cycle 3 with another one 1 cycle before it".
 string words_of_checkpoint(const string& where, std::uint64_t back) {
   return format("a checkpoint{}{}", where,
@@ -490,7 +485,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureR
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && !is_of_run(plot)) {
+  } else if (!draws_every_cycle(plot) && !is_parameter(plot.y)) {
     if (!plot.cycle && scale.until.until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(shortest));
     where = format(" at cycle {}", cycles[0]);
@@ -596,7 +591,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                              words_of(one.where)));
     }
   }
-  if (plot.cycle && is_of_run(plot)) {
+  if (plot.cycle && is_parameter(plot.y)) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {

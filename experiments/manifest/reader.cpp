@@ -1023,7 +1023,7 @@ struct Reader {
     if (x != nullptr && plot.y == plot.x) {
       reject_value(*x, "is also the y of this plot", "Name another one.");
     }
-    if (!plot.y.empty() && is_parameter(plot.y) && curve == nullptr && !is_parameter(plot.x)) {
+    if (!plot.y.empty() && is_parameter(plot.y) && !is_parameter(plot.x)) {
       reject(in, fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
