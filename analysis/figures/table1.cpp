@@ -9,7 +9,9 @@
 #include <numbers>
 #include <string_view>
 
+#include "analysis/expression.hpp"
 #include "analysis/figures/figures.hpp"
+#include "analysis/own_figure.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
@@ -21,24 +23,15 @@ struct Parameter {
   Text symbol;
   const char* unit;
   double published;
-  std::vector<std::string> keys;                 ///< of a manifest; sweeping one of them varies it
-  double (*of)(const FigureRun& run) = nullptr;  ///< null: the value of the first key
+  std::string value;  ///< an expression of keys of a manifest; sweeping one of them varies it
 };
 
 constexpr double pi = std::numbers::pi;
 
-double omega(const FigureRun& run) {
-  return 2 * pi / number_of(run, "period_s");
-}
-
-double time_step(const FigureRun& run) {
-  return number_of(run, "period_s") / number_of(run, "steps_per_cycle");
-}
-
 const std::vector<Parameter>& parameters() {
   constexpr double published_time_step = published_period_s / published_steps_per_cycle;
   const auto plain = [](const char* name, const char* symbol, const char* unit, double published) {
-    return Parameter{name, formula(fmt::format("${}$", symbol)), unit, published, {name}};
+    return Parameter{name, formula(fmt::format("${}$", symbol)), unit, published, name};
   };
   static const std::vector<Parameter> all = {
       plain("mass_kg", "m", "kg", published_mass_kg),
@@ -46,19 +39,9 @@ const std::vector<Parameter>& parameters() {
       plain("stiffness_N_per_m", "k", "N/m", published_stiffness_N_per_m),
       plain("drag_kg_per_s", "b", "kg/s", published_drag_kg_per_s),
       plain("pressure_Pa", "P", "Pa", published_pressure_Pa),
-      {"omega_rad_per_s",
-       formula("$ω$"),
-       "rad/s",
-       2 * pi / published_period_s,
-       {"period_s"},
-       omega},
-      {"steps_per_cycle", "steps/cycle", "", published_steps_per_cycle, {"steps_per_cycle"}},
-      {"time_step_s",
-       formula("$Δt$"),
-       "s",
-       published_time_step,
-       {"period_s", "steps_per_cycle"},
-       time_step},
+      {"omega_rad_per_s", formula("$ω$"), "rad/s", 2 * pi / published_period_s, "2*pi/period_s"},
+      {"steps_per_cycle", "steps/cycle", "", published_steps_per_cycle, "steps_per_cycle"},
+      {"time_step_s", formula("$Δt$"), "s", published_time_step, "period_s/steps_per_cycle"},
       plain("gravity_m_per_s2", "g", "m/s²", published_gravity_m_per_s2)};
   return all;
 }
@@ -91,17 +74,16 @@ using RunList = std::vector<const FigureRun*>;
 Found found_in(const RunList& runs, const Parameter& parameter) {
   Found found;
   for (const FigureRun* run : runs) {
-    const double value =
-        parameter.of == nullptr ? number_of(*run, parameter.keys.front()) : parameter.of(*run);
+    const double value = number_of(*run, parameter.value);
     if (!std::isfinite(value)) continue;
     ++found.runs;
     found.take(value);
-    for (const std::string& key : parameter.keys) {
+    for (const std::string& key : names_in(parameter.value)) {
       found.varied = found.varied || run->swept.contains(key);
     }
     // A stiffening records the stiffness at each checkpoint.
     const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");
-    if (parameter.keys.front() == "stiffness_N_per_m" && std::isfinite(stiffness)) {
+    if (parameter.value == "stiffness_N_per_m" && std::isfinite(stiffness)) {
       found.take(stiffness);
       found.varied = true;
     }
@@ -146,7 +128,10 @@ const char* colour_of(std::string_view comparison) {
 
 }  // namespace
 
-FigureResult figure_table1(std::span<const FigureRun> runs) {
+FigureResult figure_table1(std::span<const FigureRun> given) {
+  std::vector<std::string> values;
+  for (const Parameter& parameter : parameters()) values.push_back(parameter.value);
+  const std::vector<FigureRun> runs = with_values(given, values);
   std::map<std::string, RunList> experiments;
   for (const FigureRun& run : runs) {
     if (!run.checkpoints.empty()) experiments[run.experiment].push_back(&run);
