@@ -67,32 +67,27 @@ Series onset_points(Text title, const char* colour, int point, const char* x,
           .filter = std::move(filter)};
 }
 
-struct AmplitudeOnset {
-  double amplitude;
-  Onset by_size;
-  Onset by_slope;
-};
+using Amplitudes = std::map<double, std::vector<const FigureRun*>>;
 
 /// The supplement takes the standard deviation of its simulations at A = 0.05 rad as the error of
 /// the one experiment. This is that of our runs, by method 1.
-std::optional<double> experiment_error(std::span<const AmplitudeOnset> onsets) {
-  for (const AmplitudeOnset& o : onsets) {
-    const RunStatistics& phi = o.by_size.phi;
-    if (std::abs(o.amplitude - 0.05) < 1e-6 && phi.standard_error) {
-      return *phi.standard_error * std::sqrt(static_cast<double>(phi.runs));
-    }
+std::optional<double> experiment_error(const Amplitudes& amplitudes) {
+  for (const auto& [amplitude, members] : amplitudes) {
+    if (std::abs(amplitude - 0.05) >= 1e-6) continue;
+    const RunStatistics phi = onset(members, onset_by_size).phi;
+    if (phi.standard_error) return *phi.standard_error * std::sqrt(static_cast<double>(phi.runs));
   }
   return std::nullopt;
 }
 
-FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
+FigureTable amplitude_table(const Amplitudes& amplitudes) {
   FigureTable table{.name = "S5a",
                     .columns = onset_columns({"method", "amplitude_rad", "critical_size_grains"})};
   for (const int method : {1, 2}) {
-    for (const AmplitudeOnset& o : onsets) {
+    for (const auto& [amplitude, members] : amplitudes) {
       table.rows.push_back(
-          onset_row({method, o.amplitude, published_nearest(o.amplitude).critical_size},
-                    method == 1 ? o.by_size : o.by_slope));
+          onset_row({method, amplitude, published_nearest(amplitude).critical_size},
+                    onset(members, method == 1 ? onset_by_size : onset_by_slope)));
     }
   }
   Series by_size =
@@ -106,7 +101,7 @@ FigureTable amplitude_table(std::span<const AmplitudeOnset> onsets) {
                              .points = {{experiment_amplitude_rad,
                                          experiment_onset_phi,
                                          {},
-                                         experiment_error(onsets)}}},
+                                         experiment_error(amplitudes)}}},
                             std::move(by_size),
                             std::move(by_slope)},
                  .lines = onset_lines(),
@@ -248,13 +243,9 @@ Verdict onset_is_of_any_size(std::span<const FigureRun> runs) {
 }  // namespace
 
 FigureResult figure_s5a(std::span<const FigureRun> runs) {
-  std::vector<AmplitudeOnset> onsets;
-  const auto groups = runs_by(runs, "amplitude_rad");
-  for (const auto& [amplitude, members] : groups) {
-    onsets.push_back({amplitude, onset(members, onset_by_size), onset(members, onset_by_slope)});
-  }
-  FigureResult result{{amplitude_table(onsets)}, {}};
-  for (const auto& [amplitude, members] : groups) {
+  const Amplitudes amplitudes = runs_by(runs, "amplitude_rad");
+  FigureResult result{{amplitude_table(amplitudes)}, {}};
+  for (const auto& [amplitude, members] : amplitudes) {
     if (amplitude <= small_amplitude_rad) {
       result.verdicts.push_back(onset_is_published(
           members, fmt::format("C: the onset at A = {} rad is phi = 0.646", amplitude)));
