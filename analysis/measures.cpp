@@ -100,7 +100,7 @@ bool Provider::is_kept() const {
 }
 
 void Provider::read(const json& result, Measures& into) const try {
-  const bool may_lack = from != ComputedFrom::checkpoint || !earlier.empty();
+  const bool may_lack = from != ComputedFrom::checkpoint || cycles_back > 0;
   for (const Measure& measure : measures) {
     const std::string named(measure.name);
     if (may_lack && !result.contains(named)) continue;

@@ -67,7 +67,6 @@ struct Measure {
   std::string_view unit;  ///< "1" for none
   std::string_view meaning;
   MeasureKind kind = MeasureKind::number;
-  std::uint64_t cycles_back = 0;         ///< to the earlier checkpoint that it needs; 0 for none
   std::string_view x = {}, x_unit = {};  ///< of a curve
   GrainScale scale = {};                 ///< of a measure of each grain
   RunValue (*of_run)(const FigureRun& run) = nullptr;
@@ -103,9 +102,8 @@ struct MeasureInput {
   /// Of the checkpoint; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
   const Checkpoint* checkpoint = nullptr;
-  /// The checkpoint of the same run `cycles` earlier, valid until the next call; null if the run
-  /// has no such checkpoint.
-  std::function<const Checkpoint*(std::uint64_t cycles)> earlier = {};
+  /// The checkpoint of the same run Provider::cycles_back earlier; null if the run has none.
+  std::function<const Checkpoint*()> earlier = {};
   const CheckpointRecord* record = nullptr;
   const RunFacts* run = nullptr;
 };
@@ -128,7 +126,7 @@ struct Provider {
   /// each grain is an array. A measure is left out if the run lacks the checkpoint or the shear
   /// that it needs.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
-  std::vector<std::uint64_t> earlier = {};  ///< cycles back to the other checkpoints it needs
+  std::uint64_t cycles_back = 0;  ///< to the earlier checkpoint that it needs; 0 for none
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< of a simulation, in words
   /// Reads what a result has besides its measures, and checks it.

@@ -108,9 +108,9 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
   return boundary;
 }
 
-/// The motion over some cycles; nothing if there is no such checkpoint.
-std::optional<Motion> motion_over(std::uint64_t cycles, const MeasureInput& input) {
-  const Checkpoint* earlier = input.earlier ? input.earlier(cycles) : nullptr;
+/// Since the earlier checkpoint; nothing if there is none.
+std::optional<Motion> motion_of(const MeasureInput& input) {
+  const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
   if (earlier == nullptr) return std::nullopt;
   return motion(*earlier, *input.checkpoint);
 }
@@ -125,14 +125,14 @@ nlohmann::json means_of(const Motion& moved, const GrainMeasures& grains, const 
 
 template <std::uint64_t cycles>
 nlohmann::json motion_over_cycles(const MeasureInput& input) {
-  const std::optional<Motion> moved = motion_over(cycles, input);
+  const std::optional<Motion> moved = motion_of(input);
   if (!moved) return nlohmann::json::object();
   return means_of(*moved, input.analysis->grains, fmt::format("{}_cycles_d2", cycles));
 }
 
 /// Over one cycle, also by the structure of the grains.
 nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
-  const std::optional<Motion> moved = motion_over(1, input);
+  const std::optional<Motion> moved = motion_of(input);
   if (!moved) return nlohmann::json::object();
   const GrainMeasures& grains = input.analysis->grains;
   std::vector<std::uint8_t> crystalline;
@@ -161,9 +161,8 @@ nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
 }  // namespace
 
 std::vector<Provider> motion_providers() {
-  using enum MeasureKind;
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    const std::optional<Motion> moved = motion_over(1, input);
+    const std::optional<Motion> moved = motion_of(input);
     if (!moved) return nlohmann::json::object();
     const Eigen::VectorXd displacement = moved->displacement.colwise().norm();
     return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
@@ -177,55 +176,51 @@ std::vector<Provider> motion_providers() {
                           {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
        .measures =
            {{"msd_1_cycle_d2", "d^2",
-             "mean squared displacement of interior grains over 1 cycle, in the frame of the walls",
-             number, 1},
+             "mean squared displacement of interior grains over 1 cycle, in the frame of the "
+             "walls"},
             {"d2min_1_cycle_d2", "d^2",
-             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle", number,
-             1},
+             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
             {"reversible_percent", "%",
-             "interior grains at most 0.01 d from where they were a cycle before", number, 1},
+             "interior grains at most 0.01 d from where they were a cycle before"},
             {"msd_inside_crystal_d2", "d^2",
-             "mean squared displacement over 1 cycle of crystalline grains among crystalline ones",
-             number, 1},
+             "mean squared displacement over 1 cycle of crystalline grains among crystalline ones"},
             {"msd_crystal_boundary_d2", "d^2",
-             "the same of crystalline grains with other neighbours", number, 1},
-            {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline", number, 1}},
+             "the same of crystalline grains with other neighbours"},
+            {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline"}},
        .compute = motion_over_one_cycle,
-       .earlier = {1}},
+       .cycles_back = 1},
       {.name = "motion_10",
        .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
        .measures = {{"msd_10_cycles_d2", "d^2",
-                     "mean squared displacement of interior grains over 10 cycles", number, 10},
-                    {"d2min_10_cycles_d2", "d^2", "mean D^2_min of interior grains over 10 cycles",
-                     number, 10}},
+                     "mean squared displacement of interior grains over 10 cycles"},
+                    {"d2min_10_cycles_d2", "d^2",
+                     "mean D^2_min of interior grains over 10 cycles"}},
        .compute = motion_over_cycles<10>,
-       .earlier = {10}},
+       .cycles_back = 10},
       {.name = "motion_100",
        .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
        .measures = {{"msd_100_cycles_d2", "d^2",
-                     "mean squared displacement of interior grains over 100 cycles", number, 100},
+                     "mean squared displacement of interior grains over 100 cycles"},
                     {"d2min_100_cycles_d2", "d^2",
-                     "mean D^2_min of interior grains over 100 cycles", number, 100}},
+                     "mean D^2_min of interior grains over 100 cycles"}},
        .compute = motion_over_cycles<100>,
-       .earlier = {100}},
+       .cycles_back = 100},
       {.name = "grain_motion",
        .parameters = {{"neighbour_d", motion_neighbour_d}},
        .measures = {{.name = "displacement_d",
                      .unit = "d",
                      .meaning = "displacement over the cycle before",
                      .kind = MeasureKind::grains,
-                     .cycles_back = 1,
                      .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
                      .words = "displacement in a cycle"},
                     {.name = "d2min_d2",
                      .unit = "d^2",
                      .meaning = "D^2_min over the cycle before",
                      .kind = MeasureKind::grains,
-                     .cycles_back = 1,
                      .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
                      .words = "non-affine motion in a cycle"}},
        .compute = compute,
-       .earlier = {1}}};
+       .cycles_back = 1}};
 }
 
 }  // namespace shearcell

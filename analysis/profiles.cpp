@@ -158,14 +158,14 @@ std::vector<Provider> profile_providers() {
        .compute = core_of},
       {.name = "profiles",
        .parameters = with(crystal_criteria(), {{"units", "SI"}}),
-       .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, 0,
-                     "height_d", "d"},
+       .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, "height_d",
+                     "d"},
                     {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
-                     curve, 0, "height_d", "d"},
+                     curve, "height_d", "d"},
                     {"coordination_profile", "1",
-                     "contacts per grain of a layer, with grains and wall grains", curve, 0,
+                     "contacts per grain of a layer, with grains and wall grains", curve,
                      "height_d", "d"},
-                    {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve, 0,
+                    {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
                      "height_d", "d"}},
        .compute = profiles_of},
       {.name = "wall_distance",
@@ -173,7 +173,7 @@ std::vector<Provider> profile_providers() {
        .measures =
            {{"phi_by_wall_distance", "1",
              "volume fraction of a layer by its distance from the nearest wall surface (Eq. S4)",
-             curve, 0, "wall_distance_d", "d"}},
+             curve, "wall_distance_d", "d"}},
        .compute =
            [](const MeasureInput& input) {
              return json{{"phi_by_wall_distance", to_json(phi_by_wall_distance(
@@ -182,15 +182,15 @@ std::vector<Provider> profile_providers() {
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains, if |q6 - q6 of a lattice| is below this", curve, 0,
+                     "crystalline grains, if |q6 - q6 of a lattice| is below this", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains, if phi_local is above this", curve, 0,
-                     "phi_local_threshold", "1"},
+                     "crystalline grains, if phi_local is above this", curve, "phi_local_threshold",
+                     "1"},
                     {"largest_by_face", "1",
                      "grains in the largest crystallite, if grains are connected by faces of at "
                      "least this share of the mean cell surface",
-                     curve, 0, "connecting_face", "1"}},
+                     curve, "connecting_face", "1"}},
        .compute = sensitivity}};
 }
 

@@ -35,7 +35,7 @@ json ledger_of(const MeasureInput& input) try {
   if (!input.run->drive || input.record->step % cycle_steps(*input.run->drive) != 0) {
     return json::object();
   }
-  const Checkpoint* begin = input.earlier(1);
+  const Checkpoint* begin = input.earlier();
   if (begin == nullptr) return json::object();
   const CycleEnergies sum = input.run->next_cycle(*begin, ledger_stride);
   const double unit_J = mechanical_units(input).kinetic_J;
@@ -68,7 +68,6 @@ json record_of(const MeasureInput& input) {
 }  // namespace
 
 std::vector<Provider> run_providers() {
-  using enum MeasureKind;
   return {
       {.name = "drive",
        .measures = {{"shear_strain", "1", "tan(theta), theta the tilt of the side walls"},
@@ -82,15 +81,14 @@ std::vector<Provider> run_providers() {
        .parameters = {{"stride", ledger_stride}},
        .measures =
            {{"work_of_walls_per_cycle_J", "J",
-             "work of the tilting walls on all grains in the cycle that ends here", number, 1},
+             "work of the tilting walls on all grains in the cycle that ends here"},
             {"dissipation_per_cycle_J", "J",
-             "energy that all grains and the moving wall lost by drag in that cycle", number, 1},
+             "energy that all grains and the moving wall lost by drag in that cycle"},
             {"energy_stored_per_cycle_J", "J",
              "change of all elastic, kinetic and gravitational energy and of the load's in that "
-             "cycle",
-             number, 1}},
+             "cycle"}},
        .compute = ledger_of,
-       .earlier = {1},
+       .cycles_back = 1,
        .from = ComputedFrom::simulation,
        .cost = "3 to 4 times as long as the cycle"},
       // Compares protocols whose checkpoints are recorded at different rates of shear

@@ -220,7 +220,7 @@ void share_needs(std::vector<WantedFigure>& figures) {
   for (const WantedFigure& wanted : figures) {
     for (const std::string& name : wanted.figure.needs) {
       const Provider& one = provider(name);
-      const bool analyses = one.from == ComputedFrom::checkpoint && one.earlier.empty();
+      const bool analyses = one.from == ComputedFrom::checkpoint && one.cycles_back == 0;
       if (analyses) needs[wanted.experiment].insert(name);
     }
   }

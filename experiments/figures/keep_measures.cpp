@@ -27,10 +27,8 @@ bool is_simulated(const std::string& name) {
 /// a pruned run was continued.
 bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
                          std::uint64_t every, const Provider& provider) {
-  return std::ranges::any_of(provider.earlier, [&](std::uint64_t cycles) {
-    const CheckpointRecord* earlier = sources.find(record, cycles, every);
-    return earlier != nullptr && earlier->state == CheckpointState::pruned;
-  });
+  const CheckpointRecord* earlier = sources.earlier(record, provider, every);
+  return earlier != nullptr && earlier->state == CheckpointState::pruned;
 }
 
 /// The figures that the store's manifests list and that need simulations, by experiment.

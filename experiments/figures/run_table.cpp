@@ -187,7 +187,7 @@ void note_lacking(const std::vector<FigureRun>& runs, RunTable& table) {
     }
   }
   for (const auto& [name, count] : lacking) {
-    if (provider(name).earlier.empty()) continue;
+    if (provider(name).cycles_back == 0) continue;
     table.notes.push_back(
         fmt::format("{} with a file: no {}, since a checkpoint before {} is pruned or damaged; "
                     "`shearcell regenerate` restores it",

@@ -446,7 +446,9 @@ ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const 
 std::uint64_t cycles_back(string_view text) {
   std::uint64_t most = 0;
   for (const string& name : names_in(text)) {
-    if (const Measure* found = find_measure(name)) most = std::max(most, found->cycles_back);
+    if (const Measure* found = find_measure(name)) {
+      most = std::max(most, provider_of(*found).cycles_back);
+    }
   }
   return most;
 }

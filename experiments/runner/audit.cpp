@@ -135,7 +135,7 @@ std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, Deriv
   std::vector<DerivedKey> keys;
   for (const Provider& one : all_providers()) {
     for (const std::uint64_t every : sources.cadences(record.run)) {
-      if (!one.is_kept() || (every != 1 && one.earlier.empty())) continue;
+      if (!one.is_kept() || (every != 1 && one.cycles_back == 0)) continue;
       keys.push_back(sources.key(record, one, every));
       found.push_back({&one, every, {keys.back(), {}}});
     }

@@ -58,10 +58,8 @@ class Measuring {
           results_[i][p] = json::object();  // without measures
           continue;
         }
-        for (const std::uint64_t cycles : providers_[p]->earlier) {
-          const CheckpointRecord* other = sources_.find(*record, cycles, every);
-          if (other != nullptr) outcome_.earlier.insert(other->sha256);
-        }
+        const CheckpointRecord* other = sources_.earlier(*record, *providers_[p], every);
+        if (other != nullptr) outcome_.earlier.insert(other->sha256);
       }
     }
   }

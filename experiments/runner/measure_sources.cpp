@@ -52,19 +52,21 @@ void MeasureSources::read_run(const std::string& run) {
 DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider,
                                std::uint64_t every) const {
   std::string text = provider.key();
-  for (const std::uint64_t cycles : provider.earlier) {
-    const CheckpointRecord* other = find(record, cycles, every);
+  if (provider.cycles_back > 0) {
+    const CheckpointRecord* other = earlier(record, provider, every);
     text += " " + (other == nullptr ? "none" : other->sha256);
   }
   return {record.sha256, std::move(text), analysis_version};
 }
 
-const CheckpointRecord* MeasureSources::find(const CheckpointRecord& record, std::uint64_t cycles,
-                                             std::uint64_t every) const {
+const CheckpointRecord* MeasureSources::earlier(const CheckpointRecord& record,
+                                                const Provider& provider,
+                                                std::uint64_t every) const {
   const auto run = runs_.find(record.run);
   if (run == runs_.end() || !run->second.facts.drive) return nullptr;
-  const std::uint64_t steps = cycle_steps(*run->second.facts.drive), back = cycles * steps;
-  if (record.step < back) return nullptr;
+  const std::uint64_t steps = cycle_steps(*run->second.facts.drive);
+  const std::uint64_t back = provider.cycles_back * steps;
+  if (back == 0 || record.step < back) return nullptr;
   const std::uint64_t step = record.step - back;
   if (step % steps == 0 && step / steps % every != 0) return nullptr;
   const auto found = run->second.checkpoints.find(step);
@@ -75,8 +77,8 @@ std::optional<nlohmann::json> MeasureSources::compute(
     const Provider& provider, const CheckpointRecord& record, std::uint64_t every,
     const Checkpoint* checkpoint, const Analysis* analysis, UnreadCheckpoints& unread) const {
   Checkpoint other;
-  const auto load_earlier = [&](std::uint64_t cycles) -> const Checkpoint* {
-    const CheckpointRecord* found = find(record, cycles, every);
+  const auto load_earlier = [&]() -> const Checkpoint* {
+    const CheckpointRecord* found = earlier(record, provider, every);
     if (found == nullptr) return nullptr;
     other = load(*found);
     return &other;

@@ -27,13 +27,13 @@ class MeasureSources {
   /// run; any number of threads may then call them.
   void read_run(const std::string& run);
 
-  /// The checkpoint of the same run `cycles` earlier, if an experiment that asks for a checkpoint
-  /// `every` so many cycles has one there; else null. Valid as long as this object.
-  const CheckpointRecord* find(const CheckpointRecord& record, std::uint64_t cycles,
-                               std::uint64_t every) const;
+  /// The earlier checkpoint of the same run that the provider needs, if an experiment that asks for
+  /// a checkpoint `every` so many cycles has one there; else null. Valid as long as this object.
+  const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
+                                  std::uint64_t every) const;
 
-  /// The key under which a result is cached; it also names the earlier checkpoints that the
-  /// provider needs.
+  /// The key under which a result is cached; it also names the earlier checkpoint that the provider
+  /// needs.
   DerivedKey key(const CheckpointRecord& record, const Provider& provider,
                  std::uint64_t every) const;
 

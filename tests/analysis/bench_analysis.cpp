@@ -55,7 +55,7 @@ void time_measures(const shearcell::test::Packing& packing) {
   const Checkpoint earlier = shearcell::test::checkpoint_of(before);
   const Checkpoint checkpoint = shearcell::test::checkpoint_of(packing);
   const Analysis analysis = analyse(checkpoint);
-  const MeasureInput input{&analysis, &checkpoint, [&](std::uint64_t) { return &earlier; }};
+  const MeasureInput input{&analysis, &checkpoint, [&] { return &earlier; }};
   std::printf("%-18s %s\n", "measure", "beyond the analysis [s]");
   for (const Provider& one : all_providers()) {
     if (one.from != ComputedFrom::checkpoint) continue;
