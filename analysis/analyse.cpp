@@ -32,7 +32,10 @@ void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
 
 }  // namespace
 
-Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions) {
+Analysis analyse(const Checkpoint& checkpoint) {
+  const Cell& cell = checkpoint.cell;
+  const WallPose pose = pose_of(checkpoint);
+  const Eigen::Matrix3Xd& positions = checkpoint.state.position;
   // In a shallower cell a grain would overlap its own image.
   if (!(cell.depth >= 1)) {
     throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 1 d is the least");
@@ -69,12 +72,7 @@ Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd&
   }
   find_crystallites(diagram, analysis);
   analysis.crystallites = crystallite_map(grains.crystallites, cell, pose, positions);
-  return analysis;
-}
-
-Analysis analyse(const Checkpoint& checkpoint) {
-  Analysis analysis = analyse(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  analysis.mechanics = mechanics(checkpoint, analysis.grains.cell_volume, analysis.grains.interior);
+  analysis.mechanics = mechanics(checkpoint, grains.cell_volume, grains.interior);
   return analysis;
 }
 
@@ -108,7 +106,7 @@ std::vector<Provider> packing_providers() {
   };
   const auto grains_of = [](const MeasureInput& input) -> nlohmann::json {
     const GrainMeasures& grains = input.analysis->grains;
-    std::vector<double> pressure = input.analysis->mechanics->grain_pressure;
+    std::vector<double> pressure = input.analysis->mechanics.grain_pressure;
     const double unit_Pa = mechanical_units(input).stress_Pa;
     for (double& one : pressure) one *= unit_Pa;
     std::vector<std::int32_t> crystallite = grains.crystallites.label;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "analysis/crystal.hpp"
@@ -45,14 +44,13 @@ struct GrainMeasures {
 
 struct Analysis {
   PackingMeasures measures;
-  std::optional<Mechanics> mechanics;  ///< of a checkpoint
+  Mechanics mechanics;
   GrainMeasures grains;
   CrystalliteMap crystallites;  ///< where they are
 };
 
-/// Measures of a packing and of each of its grains; mechanics of a checkpoint only. Throws
-/// AnalysisError as voronoi() does, and for a cell less than 1 d deep, which no engine takes.
-Analysis analyse(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& positions);
+/// Measures of a packing and of each of its grains. Throws AnalysisError as voronoi() does, and for
+/// a cell less than 1 d deep, which no engine takes.
 Analysis analyse(const Checkpoint& checkpoint);
 
 /// Mean of the finite values of interior grains; not a number without any.

@@ -177,7 +177,7 @@ MechanicalUnits mechanical_units(const MeasureInput& input) {
 
 std::vector<Provider> mechanics_providers() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    const Mechanics& m = *input.analysis->mechanics;
+    const Mechanics& m = input.analysis->mechanics;
     const MechanicalUnits units = mechanical_units(input);
     const auto stress = [&](int a, int b) { return m.stress(a, b) * units.stress_Pa; };
     const auto force = [&](WallSide side, int axis) {

@@ -65,7 +65,7 @@ json profiles_of(const MeasureInput& input) {
       inside[i] = 1;
       ++count;
       volume += grains.cell_volume[i];
-      trace += input.analysis->mechanics->grain_pressure[i] * grains.cell_volume[i];
+      trace += input.analysis->mechanics.grain_pressure[i] * grains.cell_volume[i];
       contacts += grains.contacts[i];
       ordered += grains.structure[i] == Structure::disordered ? 0 : 1;
     }

@@ -36,13 +36,13 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void analyse_at_once(const shearcell::test::Packing& p, int count) {
+void analyse_at_once(const shearcell::Checkpoint& p, int count) {
   std::latch start(count);
   std::vector<std::jthread> threads;
   for (int k = 0; k < count; ++k) {
     threads.emplace_back([&] {
       start.arrive_and_wait();
-      shearcell::analyse(p.cell, p.pose, p.grains);
+      shearcell::analyse(p);
     });
   }
 }
@@ -76,13 +76,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   const test::Packing p = test::jammed(grains, true, 0, 1);
+  const Checkpoint checkpoint = test::checkpoint_of(p);
   double own = 1e9;
   double whole = 1e9;
   double peer = 1e9;
   const double before = peak_memory_mb();
-  whole = seconds([&] { analyse(p.cell, p.pose, p.grains); });
+  whole = seconds([&] { analyse(checkpoint); });
   const double memory = peak_memory_mb();
-  analyse_at_once(p, at_once);
+  analyse_at_once(checkpoint, at_once);
   const double memory_at_once = peak_memory_mb();
 
   double worst = 0;
@@ -97,7 +98,7 @@ int main(int argc, char** argv) {
   }
   for (int k = 0; k < 11; ++k) {
     own = std::min(own, seconds([&] { voronoi(p.cell, p.pose, p.grains); }));
-    whole = std::min(whole, seconds([&] { analyse(p.cell, p.pose, p.grains); }));
+    whole = std::min(whole, seconds([&] { analyse(checkpoint); }));
     for (const double block : {4.0, 6.0, 8.0}) {
       peer = std::min(peer, test::time_voro(p, block));
     }

@@ -24,7 +24,7 @@ Analysis pinned_analysis() {
     state = state * 6364136223846793005U + 1442695040888963407U;
     x += (static_cast<double>(state >> 40) * 0x1p-24 - 0.5) * 0.0125;
   }
-  return analyse(p.cell, p.pose, p.grains);
+  return analyse(checkpoint_of(p));
 }
 
 nlohmann::json scalars_of(const Analysis& analysis) {

@@ -16,7 +16,7 @@ namespace {
 
 TEST(Measures, PerfectCrystal) {
   const Packing p = lattice(Lattice::fcc, 6);
-  const Analysis a = analyse(p.cell, p.pose, p.grains);
+  const Analysis a = analyse(checkpoint_of(p));
   EXPECT_EQ(a.measures.grains, static_cast<std::size_t>(p.grains.cols()));
   EXPECT_GT(a.measures.interior_grains, 100U);
   EXPECT_NEAR(a.measures.phi_uncorrected, 0.74048, 5e-6);
@@ -31,7 +31,7 @@ TEST(Measures, RejectACellInWhichAGrainTouchesItsImage) {
   Packing p = lattice(Lattice::fcc, 3);
   for (const double depth : {1e-6, 0.9, std::nan("")}) {
     p.cell.depth = depth;
-    EXPECT_THROW(analyse(p.cell, p.pose, p.grains), AnalysisError) << depth;
+    EXPECT_THROW(analyse(checkpoint_of(p)), AnalysisError) << depth;
   }
 }
 
@@ -55,12 +55,12 @@ void move_along_z(Packing& p) {
 
 PROPERTY(Measures, DoNotDependOnThePeriodicSeam, 250) {
   Packing p = any_points();
-  const Analysis a = analyse(p.cell, p.pose, p.grains);
+  const Analysis a = analyse(checkpoint_of(p));
   for (std::size_t i = 0; i < a.grains.interior.size(); ++i) {
     RC_ASSERT(a.grains.crystallites.label[i] < 0 || a.grains.interior[i] == 1);
   }
   move_along_z(p);
-  const Analysis b = analyse(p.cell, p.pose, p.grains);
+  const Analysis b = analyse(checkpoint_of(p));
   RC_ASSERT(near(a.grains.cell_volume, b.grains.cell_volume, 1e-10));
   RC_ASSERT(near(a.grains.cell_surface, b.grains.cell_surface, 1e-9));
   RC_ASSERT(near(a.grains.largest_overlap, b.grains.largest_overlap, 1e-12));

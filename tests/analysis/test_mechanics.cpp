@@ -48,7 +48,7 @@ TEST(Mechanics, OfASqueezedLatticeIsKnown) {
   // A linear flow has no temperature.
   checkpoint.state.velocity.row(0) = (3 * checkpoint.state.position.row(1).array() - 7).matrix();
   const Analysis found = analyse(checkpoint);
-  const Mechanics& m = *found.mechanics;
+  const Mechanics& m = found.mechanics;
   ASSERT_EQ(found.measures.interior_grains, static_cast<std::size_t>(2 * 2 * n));
   const double stress = overlap / (spacing * spacing);
   EXPECT_LT(largest(m.stress - stress * Eigen::Matrix3d::Identity()), 1e-12);
@@ -74,13 +74,13 @@ TEST(Mechanics, OfASqueezedLatticeIsKnown) {
 
 TEST(Mechanics, TheTemperatureIsThatOfTheFluctuations) {
   Checkpoint checkpoint = squeezed_lattice(6, 0.01);
-  const double without = analyse(checkpoint).mechanics->kinetic_pressure;
+  const double without = analyse(checkpoint).mechanics.kinetic_pressure;
   EXPECT_EQ(without, 0);
   for (Eigen::Index i = 0; i < checkpoint.state.position.cols(); ++i) {
     checkpoint.state.velocity(2, i) = i % 2 == 0 ? 0.5 : -0.5;  // z alternates
   }
   // One grain a cell: a density of 1 / spacing^3.
-  EXPECT_NEAR(analyse(checkpoint).mechanics->kinetic_pressure, 0.25 / 3 / std::pow(0.99, 3), 1e-12);
+  EXPECT_NEAR(analyse(checkpoint).mechanics.kinetic_pressure, 0.25 / 3 / std::pow(0.99, 3), 1e-12);
 }
 
 TEST(Mechanics, AGrainWithoutSupportIsARattler) {
@@ -96,8 +96,8 @@ TEST(Mechanics, AGrainWithoutSupportIsARattler) {
   checkpoint.state.position = all(Eigen::all, kept);
   checkpoint.state.velocity = Eigen::Matrix3Xd::Zero(3, checkpoint.state.position.cols());
   const Analysis found = analyse(checkpoint);
-  EXPECT_NEAR(found.mechanics->rattlers,
-              100.0 / static_cast<double>(found.measures.interior_grains), 1e-12);
+  EXPECT_NEAR(found.mechanics.rattlers, 100.0 / static_cast<double>(found.measures.interior_grains),
+              1e-12);
 }
 
 // Every pair, every wall grain and every plane, without a grid, term by term.
@@ -184,7 +184,7 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
     SCOPED_TRACE(theta);
     const Checkpoint checkpoint = checkpoint_of(jammed(700, true, theta, 3));
     const Analysis found = analyse(checkpoint);
-    const Mechanics& m = *found.mechanics;
+    const Mechanics& m = found.mechanics;
     const BruteForce all = brute_force(checkpoint, found.grains);
     const double scale = all.stress.norm();
     ASSERT_GT(scale, 0);
@@ -228,7 +228,7 @@ TEST(Mechanics, IsKeptBitByBitAndInSIUnits) {
   Measures none;
   EXPECT_THROW(mechanics.read(nlohmann::json::object(), none), AnalysisError);
 
-  const Mechanics& m = *found.mechanics;
+  const Mechanics& m = found.mechanics;
   EXPECT_TRUE(std::isnan(measures_of({}).number("contact_pressure_Pa"))) << "k and d are unknown";
   EXPECT_EQ(measures_of({}).number("coordination"), m.coordination);
   const Measures back = measures_of({.parameters = {{"stiffness_N_per_m", 654},

@@ -34,7 +34,7 @@ TEST(Profiles, LayersAddUpToTheWhole) {
     const auto k = static_cast<std::size_t>(i);
     ++count;
     volume += grains.cell_volume[k];
-    trace += analysis.mechanics->grain_pressure[k] * grains.cell_volume[k];
+    trace += analysis.mechanics.grain_pressure[k] * grains.cell_volume[k];
     contacts += grains.contacts[k];
     hard += std::numbers::pi / 6 * std::pow(1 - grains.largest_overlap[k], 3);
   }

@@ -96,7 +96,7 @@ TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
             2U);
   const Stage packing = runs_of_kind(store_, "prepare").at(0);
   const Analysis found = analyse(store_.load_checkpoint(store_.checkpoints(packing.id).back()));
-  const Mechanics& m = *found.mechanics;
+  const Mechanics& m = found.mechanics;
   const Parameters table_1;
   const double unit = table_1.stiffness_N_per_m / table_1.diameter_m;  // k/d [Pa]
   double volume = 0;

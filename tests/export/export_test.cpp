@@ -121,7 +121,7 @@ nlohmann::json truth(const Checkpoint& c) {
   }
   std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
                       overlap = measured.grains.largest_overlap,
-                      pressure = measured.mechanics->grain_pressure;
+                      pressure = measured.mechanics.grain_pressure;
   std::vector<int> structure, crystallite, id;
   for (std::size_t i = 0; i < phi_local.size(); ++i) {
     structure.push_back(static_cast<int>(measured.grains.structure[i]));

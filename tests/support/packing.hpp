@@ -57,8 +57,11 @@ struct PackingNumbers : PackingMeasures {
 
 /// The numbers of a state between upright walls. Throws AnalysisError as analyse() does.
 inline PackingNumbers numbers_of(const Cell& cell, const Scene& scene, const State& state) {
-  const WallPose pose = wall_pose(cell, 0, state.wall_height);
-  return {analyse(cell, pose, state.position).measures,
+  Checkpoint checkpoint;
+  checkpoint.cell = cell;
+  checkpoint.state = state;
+  const WallPose pose = pose_of(checkpoint);
+  return {analyse(checkpoint).measures,
           std::fabs(diagnose(cell, scene, state, pose).wall_imbalance), pose.top - pose.bottom};
 }
 
