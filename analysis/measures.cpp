@@ -8,6 +8,7 @@
 
 #include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
+#include "core/named.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -33,9 +34,8 @@ std::span<const Provider> all_providers() {
 }
 
 const Provider& provider(std::string_view name) {
-  const auto all = all_providers();
-  const auto found = std::ranges::find(all, name, &Provider::name);
-  if (found == all.end()) throw std::logic_error("no such provider: " + std::string(name));
+  const Provider* found = find_named(all_providers(), name);
+  if (found == nullptr) throw std::logic_error("no such provider: " + std::string(name));
   return *found;
 }
 
@@ -58,25 +58,17 @@ std::vector<const Measure*> all_measures(MeasureKind kind) {
   return found;
 }
 
-std::vector<std::string_view> measure_names(std::initializer_list<MeasureKind> kinds) {
-  std::vector<std::string_view> names;
-  for (const MeasureKind kind : kinds) {
-    for (const Measure* one : all_measures(kind)) names.push_back(one->name);
-  }
-  return names;
-}
-
 const Measure* find_measure(std::string_view name, MeasureKind kind) {
   for (const Provider& one : all_providers()) {
-    const auto found = std::ranges::find(one.measures, name, &Measure::name);
-    if (found != one.measures.end()) return is_of(kind, *found) ? &*found : nullptr;
+    const Measure* found = find_named(one.measures, name);
+    if (found != nullptr) return is_of(kind, *found) ? found : nullptr;
   }
   return nullptr;
 }
 
 const Provider& provider_of(const Measure& measure) {
   return *std::ranges::find_if(all_providers(), [&](const Provider& one) {
-    return std::ranges::find(one.measures, measure.name, &Measure::name) != one.measures.end();
+    return find_named(one.measures, measure.name) != nullptr;
   });
 }
 

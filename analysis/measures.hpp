@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -149,8 +148,6 @@ const Provider& provider(std::string_view name);
 
 /// The measures of one kind, of all providers. Numbers include counts.
 std::vector<const Measure*> all_measures(MeasureKind kind);
-/// The names of all measures of these kinds.
-std::vector<std::string_view> measure_names(std::initializer_list<MeasureKind> kinds);
 /// The measure of that name and kind, or null. Numbers include counts.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
 /// The provider of a measure that exists.

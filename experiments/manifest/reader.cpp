@@ -55,6 +55,12 @@ Names parameters() {
   return names;
 }
 
+Names measures(MeasureKind kind) {
+  Names names;
+  for (const Measure* one : all_measures(kind)) names.push_back(one->name);
+  return names;
+}
+
 // The parameters that are numbers.
 Names numbers() {
   Names names;
@@ -163,12 +169,11 @@ void fields(PublishedSpec& published, const auto& visit) {
 }
 
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
-  static const Names scalars = measure_names({MeasureKind::number});
-  static const Names runs = measure_names({MeasureKind::run});
+  static const Names scalars = measures(MeasureKind::number);
+  static const Names runs = measures(MeasureKind::run);
   static const Names can_be_by = parameters(),
                      can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
-  static const Names can_be_y =
-      measure_names({MeasureKind::number, MeasureKind::curve, MeasureKind::run});
+  static const Names can_be_y = joined(scalars, measures(MeasureKind::curve), runs);
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
   visit(plot.y,
@@ -249,8 +254,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
-  static const Names scalars = measure_names({MeasureKind::number});
-  static const Names runs = measure_names({MeasureKind::run});
+  static const Names scalars = measures(MeasureKind::number);
+  static const Names runs = measures(MeasureKind::run);
   static const Names can_be_compared = joined({}, scalars, runs);
   static const Names terms = joined({"cycle"}, scalars, runs, numbers());
   visit(claim.name, {.name = "name", .doc = "required", .required = true});
