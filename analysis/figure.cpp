@@ -26,15 +26,12 @@ nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
   return member_of(run.swept.contains(key) ? run.swept : run.parameters, key.c_str());
 }
 
-bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated) {
-  if (!value.is_number() || !stated.is_number()) return value == stated;
-  const auto number = stated.get<double>();
-  return std::abs(value.get<double>() - number) <= 1e-6 * std::abs(number);
-}
-
 bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
   return std::ranges::all_of(where.items(), [&](const auto& stated) {
-    return is_as_stated(parameter_of(run, stated.key()), stated.value());
+    const nlohmann::json value = parameter_of(run, stated.key()), &wanted = stated.value();
+    if (!value.is_number() || !wanted.is_number()) return value == wanted;
+    const auto number = wanted.get<double>();
+    return std::abs(value.get<double>() - number) <= 1e-6 * std::abs(number);
   });
 }
 

@@ -110,10 +110,8 @@ std::map<double, std::vector<const FigureRun*>> runs_by(std::span<const FigureRu
 /// Mean over runs of the measure at their first checkpoint; not a number if there is none.
 double at_start(RunGroup runs, const std::string& measure);
 
-/// Whether a value is as stated. Numbers may differ by a millionth, since a manifest may round
-/// them.
-bool is_as_stated(const nlohmann::json& value, const nlohmann::json& stated);
-/// Whether the run has these parameters.
+/// Whether the run has these parameters. Numbers may differ by a millionth, since a manifest may
+/// round them.
 bool has_parameters(const FigureRun& run, const nlohmann::json& where);
 
 /// Returns those of `keys` that distinguish the variants: each of them varies, and without it two
