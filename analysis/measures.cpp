@@ -99,8 +99,7 @@ void Provider::read(const json& result, Measures& into) const try {
     const json& value = result.at(named);
     if (measure.kind == MeasureKind::curve) {
       MeasuredCurve& curve = into.curves[named];
-      value.at("x").get_to(curve.x);
-      value.at("y").get_to(curve.y);
+      value.get_to(curve);
       if (curve.x.size() != curve.y.size()) throw AnalysisError("a cached curve lacks values");
     } else if (measure.kind == MeasureKind::grains) {
       value.get_to(into.of_grains[named]);
@@ -144,10 +143,6 @@ json crystal_criteria() {
                                     {"q6_fcc", q6_fcc},
                                     {"q6_hcp", q6_hcp},
                                     {"q6_tolerance", q6_tolerance}});
-}
-
-json to_json(const MeasuredCurve& curve) {
-  return {{"x", curve.x}, {"y", curve.y}};
 }
 
 }  // namespace shearcell

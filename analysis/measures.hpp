@@ -34,6 +34,7 @@ inline constexpr std::uint64_t analysis_version = 2;
 /// A function measured on one packing, as g(r): values at ascending x.
 struct MeasuredCurve {
   std::vector<double> x, y;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(MeasuredCurve, x, y)
 };
 
 /// What was measured on one checkpoint, by the names of the measures.
@@ -163,6 +164,5 @@ nlohmann::json with(nlohmann::json parameters, const nlohmann::json& more);
 nlohmann::json surface_criteria();
 nlohmann::json interior_criteria();
 nlohmann::json crystal_criteria();
-nlohmann::json to_json(const MeasuredCurve& curve);
 
 }  // namespace shearcell

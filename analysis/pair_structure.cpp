@@ -236,7 +236,7 @@ std::vector<Provider> pair_structure_providers() {
                      "distance_d", "d"}},
        .compute =
            [](const MeasureInput& input) {
-             return nlohmann::json{{"pair_correlation", to_json(pair_correlation(input))}};
+             return nlohmann::json{{"pair_correlation", pair_correlation(input)}};
            }},
       {.name = "structure_factor",
        .parameters = with(interior_criteria(),
@@ -244,7 +244,7 @@ std::vector<Provider> pair_structure_providers() {
        .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve,
                      "wave_number_per_d", "1/d"}},
        .compute = [](const MeasureInput& input) {
-         return nlohmann::json{{"structure_factor", to_json(structure_factor(input))}};
+         return nlohmann::json{{"structure_factor", structure_factor(input)}};
        }}};
 }
 

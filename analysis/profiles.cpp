@@ -77,10 +77,10 @@ json profiles_of(const MeasureInput& input) {
     coordination.y.push_back(contacts / count);
     crystalline.y.push_back(100 * ordered / count);
   }
-  return {{"phi_profile", to_json(phi)},
-          {"pressure_profile_Pa", to_json(pressure)},
-          {"coordination_profile", to_json(coordination)},
-          {"crystalline_profile_percent", to_json(crystalline)}};
+  return {{"phi_profile", phi},
+          {"pressure_profile_Pa", pressure},
+          {"coordination_profile", coordination},
+          {"crystalline_profile_percent", crystalline}};
 }
 
 /// Layers of half a diameter. Not a number for a layer without grains.
@@ -146,9 +146,9 @@ std::vector<Provider> profile_providers() {
   using enum MeasureKind;
   const auto sensitivity = [](const MeasureInput& input) -> json {
     const GrainMeasures& grains = input.analysis->grains;
-    return {{"crystalline_by_q6_window_percent", to_json(crystalline_by_window(grains))},
-            {"crystalline_by_phi_local_percent", to_json(crystalline_by_phi_local(grains))},
-            {"largest_by_face", to_json(largest_by_face(*input.checkpoint, grains))}};
+    return {{"crystalline_by_q6_window_percent", crystalline_by_window(grains)},
+            {"crystalline_by_phi_local_percent", crystalline_by_phi_local(grains)},
+            {"largest_by_face", largest_by_face(*input.checkpoint, grains)}};
   };
   return {
       {.name = "core",
@@ -176,8 +176,8 @@ std::vector<Provider> profile_providers() {
              curve, "wall_distance_d", "d"}},
        .compute =
            [](const MeasureInput& input) {
-             return json{{"phi_by_wall_distance", to_json(phi_by_wall_distance(
-                                                      *input.checkpoint, input.analysis->grains))}};
+             return json{{"phi_by_wall_distance",
+                          phi_by_wall_distance(*input.checkpoint, input.analysis->grains)}};
            }},
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
