@@ -16,8 +16,7 @@ namespace {
 
 void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
   GrainMeasures& grains = analysis.grains;
-  grains.crystallites =
-      crystallites(diagram, crystalline_interior(grains), connecting_face * mean_surface(grains));
+  grains.crystallites = crystallites_of(grains, diagram, connecting_face);
   const auto percent = [&](auto... wanted) {
     return percent_of_interior(
         grains, [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
@@ -76,16 +75,14 @@ Analysis analyse(const Checkpoint& checkpoint) {
   return analysis;
 }
 
-std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains) {
+Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
+                             double least_share) {
   std::vector<std::uint8_t> crystalline(grains.interior);
   for (std::size_t i = 0; i < crystalline.size(); ++i) {
     if (grains.structure[i] == Structure::disordered) crystalline[i] = 0;
   }
-  return crystalline;
-}
-
-double mean_surface(const GrainMeasures& grains) {
-  return interior_mean(grains, [&](std::size_t i) { return grains.cell_surface[i]; });
+  const auto surface = [&](std::size_t i) { return grains.cell_surface[i]; };
+  return crystallites(diagram, crystalline, least_share * interior_mean(grains, surface));
 }
 
 std::vector<Provider> packing_providers() {

@@ -72,10 +72,9 @@ double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) 
   return interior_mean(grains, [&](std::size_t i) { return holds(i) ? 100 : 0; });
 }
 
-/// One entry per grain: 1 for crystalline interior grains, else 0.
-std::vector<std::uint8_t> crystalline_interior(const GrainMeasures& grains);
-
-/// Mean surface of the cells of interior grains [d^2]; not a number without any.
-double mean_surface(const GrainMeasures& grains);
+/// Those of crystalline interior grains, connected by faces of at least this share of the mean
+/// surface of the interior grains' cells.
+Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
+                             double least_share);
 
 }  // namespace shearcell

@@ -134,8 +134,7 @@ MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures&
   MeasuredCurve found;
   for (const double share : {0.0, 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06}) {
     found.x.push_back(share);
-    found.y.push_back(
-        crystallites(diagram, crystalline_interior(grains), share * mean_surface(grains)).largest);
+    found.y.push_back(crystallites_of(grains, diagram, share).largest);
   }
   return found;
 }
