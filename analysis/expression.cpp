@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <regex>
 
 namespace shearcell {
 namespace {
@@ -28,29 +29,15 @@ bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-bool continues_name(char c) {
-  return begins_name(c) || is_digit(c);
+/// Numbers, names and other single characters, without spaces.
+std::vector<std::string> tokens_of(std::string_view text) {
+  static const std::regex token("[0-9.][0-9.]*(?:[eE][-+]?[0-9]*)?|[A-Za-z_][A-Za-z_0-9]*|[^ ]");
+  return {std::cregex_token_iterator(text.data(), text.data() + text.size(), token), {}};
 }
 
-/// Removes a number, name or single character from the beginning of the text.
-std::string_view take_token(std::string_view& text) {
-  std::size_t end = 1;
-  const auto skip = [&](auto passes) {
-    while (end < text.size() && passes(text[end])) ++end;
-  };
-  if (begins_name(text[0])) {
-    skip(continues_name);
-  } else if (is_digit(text[0]) || text[0] == '.') {
-    skip([](char c) { return is_digit(c) || c == '.'; });
-    if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
-      const bool sign = end + 1 < text.size() && (text[end + 1] == '-' || text[end + 1] == '+');
-      end += sign ? 2 : 1;
-      skip(is_digit);
-    }
-  }
-  const std::string_view token = text.substr(0, end);
-  text.remove_prefix(end);
-  return token;
+/// Whether a token is the name of a function: a bracket follows.
+bool is_called(const std::vector<std::string>& tokens, std::size_t k) {
+  return k + 1 < tokens.size() && tokens[k + 1] == "(";
 }
 
 /// A parser that knows the names, and pi.
@@ -74,11 +61,10 @@ bool is_expression(std::string_view text) {
 
 std::vector<std::string> names_in(std::string_view text) {
   std::vector<std::string> names;
-  while (!text.empty()) {
-    const std::string name(take_token(text));
-    if (!begins_name(name[0]) || name == "pi" || std::ranges::count(names, name) > 0) continue;
-    const std::size_t next = text.find_first_not_of(' ');
-    if (next == text.npos || text[next] != '(') names.push_back(name);
+  const std::vector<std::string> tokens = tokens_of(text);
+  for (std::size_t k = 0; k < tokens.size(); ++k) {
+    const bool is_name = begins_name(tokens[k][0]) && tokens[k] != "pi" && !is_called(tokens, k);
+    if (is_name && std::ranges::count(names, tokens[k]) == 0) names.push_back(tokens[k]);
   }
   return names;
 }
@@ -93,16 +79,15 @@ std::string expression_syntax() {
 std::string wrong_in_expression(const std::string& text) {
   if (text.size() > longest_expression)
     return fmt::format("is longer than {} bytes", longest_expression);
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::string_view token = take_token(rest);
+  const std::vector<std::string> tokens = tokens_of(text);
+  for (std::size_t k = 0; k < tokens.size(); ++k) {
+    const std::string& token = tokens[k];
     if (is_digit(token[0]) || token[0] == '.') continue;
     if (!begins_name(token[0])) {
-      if (std::string_view("+-*/^(), ").find(token[0]) != std::string_view::npos) continue;
+      if (std::string_view("+-*/^(),").find(token[0]) != std::string_view::npos) continue;
       return "is neither a name nor an expression";
     }
-    const std::size_t next = rest.find_first_not_of(' ');
-    if (next == rest.npos || rest[next] != '(') continue;
-    if (std::ranges::find(expression_functions, token) == expression_functions.end()) {
+    if (is_called(tokens, k) && std::ranges::count(expression_functions, token) == 0) {
       return fmt::format("uses the unknown function {}", token);
     }
   }
