@@ -6,27 +6,16 @@
 
 namespace shearcell::bench {
 
-Packing loose_packing(const Parameters& parameters, std::uint64_t seed) {
-  Packing packing{parameters, make_cell(geometry(parameters), seed), settle_scene(parameters), {}};
-  packing.state = fill_cell(packing.cell, geometry(parameters), seed);
-  return packing;
-}
-
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
-  Packing packing = loose_packing(parameters, seed);
-  packing.state = pressed(packing.cell, packing.state, packing.scene);
-  packing.scene = shear_scene(parameters);
+  const Geometry shape = geometry(parameters);
+  Packing packing{parameters, make_cell(shape, seed), shear_scene(parameters), {}};
+  packing.state =
+      pressed(packing.cell, fill_cell(packing.cell, shape, seed), settle_scene(parameters));
   return packing;
 }
 
 Simulation simulate(const Packing& packing, const SimulationSettings& settings) {
   return {packing.cell, packing.scene, packing.state, settings};
-}
-
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive) {
-  Simulation simulation = simulate(packing);
-  simulation.advance(drive, steps);
-  return simulation.state();
 }
 
 }  // namespace shearcell::bench

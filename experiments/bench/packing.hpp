@@ -17,17 +17,10 @@ struct Packing {
   State state;
 };
 
-/// The cell of these parameters with its loose grains and the scene of settling. Throws
-/// GeometryError.
-Packing loose_packing(const Parameters& parameters, std::uint64_t seed);
-
-/// A loose packing pressed together without gravity: dense but not at rest, at step 0, with the
-/// scene of shearing.
+/// Loose grains pressed together without gravity: dense but not at rest, at step 0, with the scene
+/// of shearing. Throws GeometryError.
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 
 Simulation simulate(const Packing& packing, const SimulationSettings& settings = {});
-
-/// The state after `steps`. Throws NumericalFailure.
-State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
 
 }  // namespace shearcell::bench

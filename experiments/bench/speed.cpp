@@ -105,7 +105,9 @@ Packing prepare(std::size_t grains) {
   Parameters parameters;
   parameters.grains = (grains + parts - 1) / parts;
   Packing made = pressed_packing(parameters, 1);
-  made.state = advanced(made, 2000);  // under the grains' weight too
+  Simulation simulation = simulate(made);
+  simulation.advance({}, 2000);  // under the grains' weight too
+  made.state = simulation.state();
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
 }

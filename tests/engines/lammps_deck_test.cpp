@@ -7,17 +7,17 @@
 #include <fstream>
 #include <sstream>
 
-#include "experiments/bench/packing.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_deck.hpp"
 #include "tests/experiments/temporary_store.hpp"
+#include "tests/support/packing.hpp"
 #include "tests/support/text.hpp"
 
 namespace shearcell::test {
 namespace {
 
 LammpsTask loose_task(const Parameters& p) {
-  const bench::Packing packing = bench::loose_packing(p, 1);
+  const Packing packing = loose_packing(p, 1);
   return {.cell = packing.cell,
           .scene = shear_scene(p),
           .drive = drive(p),

@@ -18,8 +18,6 @@
 namespace shearcell::test {
 namespace {
 
-using bench::loose_packing;
-
 std::uint64_t set_in_environment(const char* name, std::uint64_t otherwise) {
   const char* set = std::getenv(name);
   return set != nullptr ? std::stoull(set) : otherwise;

@@ -62,6 +62,12 @@ Scene only_springs() {
   return scene;
 }
 
+State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive) {
+  Simulation simulation = simulate(packing);
+  simulation.advance(drive, steps);
+  return simulation.state();
+}
+
 Packing settled() {
   static const Packing packing = [] {
     Parameters parameters;

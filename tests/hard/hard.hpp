@@ -16,7 +16,6 @@
 
 namespace shearcell::test {
 
-using bench::advanced;
 using bench::simulate;
 using V = Eigen::Vector3d;
 
@@ -40,6 +39,9 @@ class Hard : public testing::TestWithParam<HardCase> {};
 
 /// The case's name with '_' for what a test's name cannot hold.
 std::string test_name(const testing::TestParamInfo<HardCase>& hard);
+
+/// The state after `steps`. Throws NumericalFailure.
+State advanced(const Packing& packing, std::uint64_t steps, const Drive& drive = {});
 
 /// Whether the very long cases take all of their steps: if SHEARCELL_HARD is "full", as in
 /// table.sh.

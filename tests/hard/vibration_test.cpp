@@ -115,7 +115,7 @@ Packing crystal_in_fluid() {
 Packing loose() {
   Parameters parameters;
   parameters.grains = 60;
-  return bench::loose_packing(parameters, 1);
+  return loose_packing(parameters, 1);
 }
 
 template <Packing (*make)()>

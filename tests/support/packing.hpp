@@ -9,11 +9,20 @@
 #include "analysis/analyse.hpp"
 #include "core/diagnostics.hpp"
 #include "experiments/bench/packing.hpp"
+#include "experiments/manifest/conversion.hpp"
 #include "protocols/settle.hpp"
 
 namespace shearcell::test {
 
 using bench::Packing;
+
+/// The cell of these parameters with its loose grains and the scene of settling.
+inline Packing loose_packing(const Parameters& parameters, std::uint64_t seed) {
+  const Geometry shape = geometry(parameters);
+  Packing packing{parameters, make_cell(shape, seed), settle_scene(parameters), {}};
+  packing.state = fill_cell(packing.cell, shape, seed);
+  return packing;
+}
 
 /// Grains at rest in a smooth cell (width, height, depth) whose bottom wall moves.
 inline Packing placed(const Scene& scene, const std::vector<Eigen::Vector3d>& positions,
@@ -42,7 +51,7 @@ inline void settle(Simulation& simulation, const SettleParameters& parameters, c
 /// A settled packing at step 0, with the scene of settling. Throws NumericalFailure if the grains
 /// do not settle.
 inline Packing settled_packing(const Parameters& parameters, std::uint64_t seed) {
-  Packing packing = bench::loose_packing(parameters, seed);
+  Packing packing = loose_packing(parameters, seed);
   Simulation simulation = bench::simulate(packing);
   settle(simulation, {}, packing.scene);
   packing.state = simulation.state();
