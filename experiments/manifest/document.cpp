@@ -234,7 +234,7 @@ class TreeBuilder : public YAML::EventHandler {
       const std::string name = printable(node.text);
       if (!keys.insert(node.text).second) {
         refuse(file_, node.at, name, "appears twice in one map", "",
-               is_number(name) ? kDecimalPoint : "Keep one of them.");
+               read_number<double>(name) ? kDecimalPoint : "Keep one of them.");
       }
       Node value{.at = node.at,  // an empty value is reported at its key
                  .key = std::move(node.text),
@@ -337,10 +337,6 @@ Node read_document(string_view text, string_view file) {
            syntax_remedy(text, error));
   }
   return builder.take();
-}
-
-bool is_number(string_view key) {
-  return read_number<double>(key).has_value();
 }
 
 std::string printable(string_view text, std::size_t longest) {

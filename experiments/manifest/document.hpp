@@ -37,9 +37,7 @@ struct Node {
 /// are no characters. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
-/// Whether a key is a number, as after a decimal comma in braces: "05" in `{amplitude_rad: 0,05}`.
-bool is_number(std::string_view key);
-/// The remedy for a key that is a number.
+/// The remedy for a key that is a number, such as "05" in `{amplitude_rad: 0,05}`.
 inline constexpr const char* kDecimalPoint =
     "If it follows a comma: a number takes a decimal point, as in 0.05.";
 

@@ -23,6 +23,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
@@ -436,7 +437,9 @@ struct Reader {
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
     if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
-    if (is_number(in.key)) return reject_key(in, "is a number where a key belongs", kDecimalPoint);
+    if (read_number<double>(in.key)) {
+      return reject_key(in, "is a number where a key belongs", kDecimalPoint);
+    }
     for (const auto& [names, instead] : kNotModelled) {
       for (const string_view name : names) {
         if (in.key == name || in.key.starts_with(string(name) + "_")) {
