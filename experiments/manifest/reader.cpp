@@ -747,13 +747,10 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<VariantLabel>& labels) {
     if (!in.is_map()) return reject_type(in, about.wanted, remedy_of(about));
     for (const Node& part : in.parts) {
-      constexpr std::size_t longest = 60;  // [bytes]
-      const string& name = part.text;
-      if (!part.is_scalar() || name.empty() || name.size() > longest ||
-          name.find('\n') != name.npos) {
-        reject_type(part, "a name", fmt::format("It takes a text of at most {} bytes.", longest));
-      }
-      labels.push_back({read_selector(part), name, part.key_at});
+      VariantLabel& label = labels.emplace_back();
+      read(part, {.longest = 60}, label.name);
+      label.where = read_selector(part);
+      label.at = part.key_at;
     }
   }
 
