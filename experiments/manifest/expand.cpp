@@ -95,6 +95,11 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
+    // Variants that start from one packing share it, so its place says no variant.
+    Ask& packing = run.prepare->asks.emplace_back(common);
+    packing.variant = "packing";
+    packing.seed = seed;
+    packing.checkpoint_phases.clear();
   }
   run.stage = last_stage(run.parameters, seed, recorded == nullptr ? *run.prepare : *recorded);
   if (run.stage.kind == name_of(StageKind::shear) && scale.until.until) {

@@ -27,7 +27,7 @@ struct ExpandOptions {
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest states it; the only ask of its `stage` is its own. The scale is empty if the
+/// A run as a manifest states it; each of its stages has one ask. The scale is empty if the
 /// manifest has no scales, the variant "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state

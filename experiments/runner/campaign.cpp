@@ -409,25 +409,12 @@ std::vector<StageJob> declare(Store& store, const Plan& plan) {
   std::vector<Stage> stages;
   std::set<std::string> known;
   for (const PlannedRun& run : plan.runs) {
-    for (const Stage* planned : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
-      if (planned == nullptr) continue;
-      Stage stage = *planned;
-      const bool prepare = stage.kind == name_of(StageKind::prepare);
-      const bool first = known.insert(stage.id).second;
-      if (prepare && !first) continue;
-      stage.asks = {run};
-      if (prepare) {
-        // Variants that start from one packing share it, so its place says no variant.
-        Ask& packing = stage.asks.front();
-        packing = {{.experiment = run.experiment,
-                    .scale = run.scale,
-                    .variant = "packing",
-                    .seed = run.seed,
-                    .manifest = run.manifest}};
-        packing.checkpoint_every = run.checkpoint_every;
-      }
-      store.declare_stage(stage);
-      if (first) stages.push_back(std::move(stage));
+    for (const Stage* stage : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
+      if (stage == nullptr) continue;
+      const bool first = known.insert(stage->id).second;
+      if (!first && stage != &run.stage) continue;  // a packing of several variants
+      store.declare_stage(*stage);
+      if (first) stages.push_back(*stage);
     }
   }
   return jobs_of(stages, VariantNames(store));
