@@ -121,16 +121,6 @@ void apply(std::vector<Submission>& known, const Event& event) {
   }
 }
 
-/// The runs, and the stages that they start from, down to their packings.
-std::set<std::string> with_packings(const Store& store, const std::vector<std::string>& runs) {
-  std::set<std::string> stages;
-  for (const std::string& run : runs) {
-    for (std::string id = run; !id.empty() && stages.insert(id).second;)
-      id = store.stage(id).parent;
-  }
-  return stages;
-}
-
 fs::path report_file(fs::path folder) {
   return folder += ".progress.json";
 }
@@ -250,7 +240,7 @@ Submission prepare_submission(Store& store, const Proposal& proposal, json facts
       made.tasks.push_back(share.runs);
       facts["tasks"].push_back({{"runs", share.runs}});
       Store own(made.task_store(store.folder(), made.tasks.size()), Access::create);
-      merge_stores(own, {store.folder()}, with_packings(store, share.runs));
+      merge_stores(own, {store.folder()}, with_parents(store, share.runs));
     }
     facts["command"] = array_job(made, store.folder(), proposal.job).command;
     store.record(kSubmissions, {"CampaignSubmitted", facts}, seen);
@@ -304,7 +294,7 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
     for (const auto& task : submission.tasks) runs.insert(runs.end(), task.begin(), task.end());
   }
   for (const Lease& lease : store.leases()) runs.push_back(lease.run);
-  std::set<std::string> busy = with_packings(store, runs);
+  std::set<std::string> busy = with_parents(store, runs);
   for (const Stage& run : store.stages()) {
     if (run.kind == name_of(StageKind::prepare) && run.state == StageState::completed)
       busy.erase(run.id);
@@ -363,7 +353,7 @@ QueueView view_queue(const Store& store) {
     for (std::size_t task = 1; task <= open.tasks.size(); ++task) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
-      for (const std::string& id : with_packings(store, open.tasks[task - 1])) {
+      for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
         QueuedRun& run = view.runs[id] = {queued, {}};  // of the newest submission that has it
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;

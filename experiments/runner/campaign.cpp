@@ -421,18 +421,14 @@ std::vector<StageJob> declare(Store& store, const Plan& plan) {
 }
 
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes) {
-  std::vector<Stage> asked;
-  for (const std::string& prefix : prefixes) asked.push_back(store.find_stage(prefix));
-  if (prefixes.empty()) {
-    asked = store.stages();
-    std::erase_if(asked, [&](const Stage& run) { return look_at(store, run).done; });
+  std::vector<std::string> asked;
+  for (const std::string& prefix : prefixes) asked.push_back(store.find_stage(prefix).id);
+  std::vector<Stage> stages = store.stages();
+  for (const Stage& run : stages) {
+    if (prefixes.empty() && !look_at(store, run).done) asked.push_back(run.id);
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
-  std::set<std::string> wanted;
-  for (Stage run : asked) {
-    while (wanted.insert(run.id).second && !run.parent.empty()) run = store.stage(run.parent);
-  }
-  std::vector<Stage> stages = store.stages();
+  const std::set<std::string> wanted = with_parents(store, asked);
   std::erase_if(stages, [&](const Stage& run) { return !wanted.contains(run.id); });
   return jobs_of(stages, VariantNames(store));
 }

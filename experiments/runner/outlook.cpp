@@ -541,6 +541,14 @@ double Work::seconds(std::size_t at_a_time) const {
   return std::max(longest_seconds, core_seconds / static_cast<double>(at_a_time));
 }
 
+std::set<std::string> with_parents(const Store& store, const std::vector<std::string>& stages) {
+  std::set<std::string> all;
+  for (const std::string& stage : stages) {
+    for (std::string id = stage; !id.empty() && all.insert(id).second;) id = store.stage(id).parent;
+  }
+  return all;
+}
+
 bool waits_for_failed(const Store& store, const Stage& stage) {
   return !has_ended(stage.state) && !stage.parent.empty() &&
          store.stage(stage.parent).state == StageState::failed;

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -184,6 +185,9 @@ struct Work {
   /// Wall time [s] with so many stages at a time.
   double seconds(std::size_t at_a_time) const;
 };
+
+/// The stages with these ids, and those that they start from, down to their packings.
+std::set<std::string> with_parents(const Store& store, const std::vector<std::string>& stages);
 
 /// Whether the stage cannot start, because the one before it failed.
 bool waits_for_failed(const Store& store, const Stage& stage);
