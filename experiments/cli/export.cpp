@@ -43,7 +43,7 @@ struct ExportFormat {
   const char* title;
   const char* ending;  ///< of the file's name; "" for a folder
   /// Makes a writer of so many frames to `out`; null for a crate, which has no frames.
-  FrameWriter (*writer)(const fs::path& out, std::size_t frames, Lengths lengths);
+  FrameWriter (*writer)(const fs::path& out, std::size_t frames, LengthUnit unit);
 };
 
 // A new format is one entry here.
@@ -51,7 +51,7 @@ const std::array kFormats = {
     ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
                  [](const auto& out, auto frames, auto) { return h5md_writer(out, frames); }},
     ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
-                 [](const auto& out, auto, auto lengths) { return extxyz_writer(out, lengths); }},
+                 [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
     ExportFormat{"lammps", "LAMMPS data with a script to continue, a folder: LAMMPS, OVITO; SI", "",
@@ -188,8 +188,8 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const std::vector<CheckpointRecord> records = chosen(store, run, options);
   const bool folder = *format.ending == '\0';
   if (folder) fs::create_directory(out);
-  const Lengths lengths = options.metres ? Lengths::metres : Lengths::diameters;
-  std::vector<FrameWriter> writers = {format.writer(out, records.size(), lengths)};
+  const LengthUnit unit = options.metres ? LengthUnit::m : LengthUnit::d;
+  std::vector<FrameWriter> writers = {format.writer(out, records.size(), unit)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
   const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
   MeasureSources sources(store);

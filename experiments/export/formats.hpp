@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "experiments/export/frame.hpp"
+#include "experiments/manifest/packing_file.hpp"
 
 namespace shearcell {
 
@@ -20,15 +21,13 @@ using FrameWriter = std::function<void(const Frame&)>;
 /// know metres. `frames`: the number of frames that will be written.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
-enum class Lengths { diameters, metres };
-
 /// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
 /// scalars. Readers require chemical symbols: species H is a grain, He a wall grain. The column
 /// `wall_side` is Frame::type, which OVITO would take for a second species if it were called
 /// `type`. A text that ASE or OVITO would read as a number or a logical value is in single quotes:
 /// the experiment T is 'T'. Lengths in metres, or in grain diameters, since OVITO and ASE expect
 /// numbers of order 1 (the radius is 0.5); d_m is then d in metres.
-FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths);
+FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
 /// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.

@@ -37,12 +37,11 @@ std::string quoted(std::string text) {
   return looks_like_a_value(text) ? "\"'" + text + "'\"" : '"' + text + '"';
 }
 
-std::string xyz_comment(const Frame& f, Lengths lengths) {
-  const bool si = lengths == Lengths::metres;
+/// `length`: the unit of lengths [m].
+std::string xyz_comment(const Frame& f, LengthUnit unit, double length) {
   const Checkpoint& c = f.checkpoint;
-  const double d = 2 * f.radius;
-  const Eigen::Matrix3d e = f.edges / (si ? 1 : d);
-  const Eigen::Vector3d o = f.origin / (si ? 1 : d);
+  const Eigen::Matrix3d e = f.edges / length;
+  const Eigen::Vector3d o = f.origin / length;
   std::string line = fmt::format(
       "Lattice=\"{:.17g}\" Origin=\"{:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
@@ -50,8 +49,8 @@ std::string xyz_comment(const Frame& f, Lengths lengths) {
   for (const FrameColumn& column : f.columns) {
     line += fmt::format(":{}:{}:1", column.name, column.whole ? 'I' : 'R');
   }
-  line += fmt::format(" length_unit={} velocity_unit={} d_m={:.17g} checkpoint={}", si ? "m" : "d",
-                      si ? "m/s" : "d/s", d, quoted(f.sha256));
+  line += fmt::format(" length_unit={0} velocity_unit={0}/s d_m={1:.17g} checkpoint={2}",
+                      name_of(unit), 2 * f.radius, quoted(f.sha256));
   for (const auto* facts : {&f.run, &f.parameters}) {
     for (const auto& [key, value] : *facts) {
       if (value == "") continue;  // ASE would take the next key for its value
@@ -77,16 +76,16 @@ std::string lammps_title(const Frame& f) {
 
 }  // namespace
 
-FrameWriter extxyz_writer(const std::filesystem::path& file, Lengths lengths) {
-  return [lengths, out = std::make_shared<NewFile>(file)](const Frame& f) {
-    const double unit = lengths == Lengths::metres ? 1 : 2 * f.radius;
-    std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, lengths));
+FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
+  return [unit, out = std::make_shared<NewFile>(file)](const Frame& f) {
+    const double length = unit == LengthUnit::m ? 1 : 2 * f.radius;
+    std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, unit, length));
     for (std::size_t i = 0; i < f.particles(); ++i) {
-      const Eigen::Vector3d r = f.position.col(static_cast<Eigen::Index>(i)) / unit;
-      const Eigen::Vector3d v = f.velocity.col(static_cast<Eigen::Index>(i)) / unit;
+      const Eigen::Vector3d r = f.position.col(static_cast<Eigen::Index>(i)) / length;
+      const Eigen::Vector3d v = f.velocity.col(static_cast<Eigen::Index>(i)) / length;
       const auto line = std::back_inserter(text);
       fmt::format_to(line, "{} {:.17g} {:.17g} {} {:.17g} {}", f.type[i] == 0 ? "H" : "He",
-                     fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / unit, f.type[i]);
+                     fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / length, f.type[i]);
       for (const FrameColumn& column : f.columns) {
         fmt::format_to(line, " {:.17g}", column.values[i]);
       }

@@ -227,7 +227,7 @@ void write_texts(const fs::path& at) {
                            "nano", "0x10", "{a}", "fluid=T", "_JSON_1"}) {
     texts[name] = name;
   }
-  const FrameWriter xyz = extxyz_writer(at / "texts.xyz", Lengths::diameters);
+  const FrameWriter xyz = extxyz_writer(at / "texts.xyz", LengthUnit::d);
   Frame frame = frame_of(checkpoints().front(), {}, about());
   std::size_t k = 0;
   for (const auto& [name, as_text] : texts.items()) {
@@ -248,8 +248,8 @@ TEST(Export, OtherProgramsReadEveryNumber) {
   {
     const std::vector<Checkpoint> all = checkpoints();
     const FrameWriter writers[] = {h5md_writer(at / "run.h5md", all.size()),
-                                   extxyz_writer(at / "run.xyz", Lengths::diameters),
-                                   extxyz_writer(at / "metres.xyz", Lengths::metres),
+                                   extxyz_writer(at / "run.xyz", LengthUnit::d),
+                                   extxyz_writer(at / "metres.xyz", LengthUnit::m),
                                    vtk_writer(at / "vtk", all.size()),
                                    facts_writer(at / "vtk", all.size()),
                                    lammps_writer(at / "lammps")};
@@ -365,14 +365,14 @@ TEST(Export, IsReadBackAsAStart) {
   const std::vector<Checkpoint> all = checkpoints();
   const Frame upright = frame_of(all.front(), {}, about()),
               tilted = frame_of(all.back(), {}, about());
-  extxyz_writer(at / "d.xyz", Lengths::diameters)(upright);
-  extxyz_writer(at / "m.xyz", Lengths::metres)(upright);
+  extxyz_writer(at / "d.xyz", LengthUnit::d)(upright);
+  extxyz_writer(at / "m.xyz", LengthUnit::m)(upright);
   lammps_writer(at)(upright);
   const PackingFacts facts{.diameter_m = upright.radius * 2, .largest_overlap = 0.25};
   expect_the_checkpoint(at / "d.xyz", facts);
   expect_the_checkpoint(at / "m.xyz", facts);
   expect_the_checkpoint(at / "frame_3.data", facts);
-  extxyz_writer(at / "tilted.xyz", Lengths::metres)(tilted);
+  extxyz_writer(at / "tilted.xyz", LengthUnit::m)(tilted);
   lammps_writer(at)(tilted);
   for (const char* name : {"tilted.xyz", "frame_3.25.data"}) {
     expect_refused<ManifestError>([&] { read_packing(read_bytes(at / name), name, facts); },
@@ -456,8 +456,7 @@ TEST(Export, CallsTheScaleOfAManifestWithoutScalesBase) {
   const TemporaryFolder folder;
   shearcell::Run run = about();
   run.scale.clear();  // a manifest without scales
-  extxyz_writer(folder.path() / "run.xyz",
-                Lengths::diameters)(frame_of(checkpoints().back(), {}, run));
+  extxyz_writer(folder.path() / "run.xyz", LengthUnit::d)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
   EXPECT_TRUE(has(text, " experiment=\"drag\" scale=\"base\" variant="));
 }
@@ -472,7 +471,7 @@ TEST(Export, HasOnlyKeysOfAManifest) {
 
 TEST(Export, ReportsWhatItCannotWrite) {
   const Frame frame = frame_of(checkpoints().front());
-  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", Lengths::metres), std::runtime_error);
+  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", LengthUnit::m), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
   EXPECT_THROW(vtk_writer("/nowhere", 1)(frame), std::runtime_error);
   EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);
