@@ -92,17 +92,18 @@ struct VariantCheck {
   }
 
   // `cause`: a key to blame if this one is a default.
-  void report(string_view key, string problem, string remedy, string_view cause = "") {
+  void report(string_view key, const string& problem, const string& remedy,
+              string_view cause = "") {
     const Setting* stated = find(key);
     const json value = stated != nullptr ? stated->value : find_field(key)->get(p);
     const string text = value == "auto" ? "auto" : value.dump();
     const Setting* blamed = stated == nullptr ? find(cause) : stated;
-    problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), std::move(problem),
-                 stated != nullptr ? text : "the default " + text, std::move(remedy));
+    problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), problem,
+                 stated != nullptr ? text : "the default " + text, remedy);
   }
 
-  void refuse(const Position& at, const char* key, string problem, string remedy) {
-    problems.add(at, key, std::move(problem), "", std::move(remedy));
+  void refuse(const Position& at, const char* key, const string& problem, const string& remedy) {
+    problems.add(at, key, problem, "", remedy);
   }
 
   // The last of the keys that is stated; "" if none is.
@@ -226,8 +227,8 @@ struct VariantCheck {
     constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
-    } else if (string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(at, key, std::move(why), "Leave them out, or the engine.");
+    } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
+      refuse(at, key, why, "Leave them out, or the engine.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
              format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
@@ -241,8 +242,9 @@ struct VariantCheck {
 /// must look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
-  const auto reject = [&](const VariantLabel& label, string problem, string got, string remedy) {
-    problems.add(label.at, "labels", std::move(problem), std::move(got), std::move(remedy));
+  const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
+                          const string& remedy) {
+    problems.add(label.at, "labels", problem, got, remedy);
   };
   for (const VariantLabel& label : manifest.labels) {
     if (!as_seen(label.name).empty()) continue;
@@ -324,7 +326,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
       if (why.empty()) break;
     }
     if (why.empty()) continue;
-    warnings.push_back(ManifestProblem{manifest.file, at, key, why, "", "Leave it out."}.text());
+    warnings.push_back(problem_text(manifest.file, at, key, why, "", "Leave it out."));
   }
 }
 

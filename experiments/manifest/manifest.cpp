@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <fstream>
+#include <ranges>
 #include <system_error>
-#include <tuple>
 
 #include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
@@ -15,22 +14,6 @@
 #include "provenance/words.hpp"
 
 namespace shearcell {
-namespace {
-
-constexpr std::size_t kMostReported = 20;
-
-std::string join(const std::vector<ManifestProblem>& problems) {
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < std::min(problems.size(), kMostReported); ++i) {
-    lines.push_back(problems[i].text());
-  }
-  if (problems.size() > kMostReported) {
-    lines.push_back(fmt::format("and {} more problems", problems.size() - kMostReported));
-  }
-  return fmt::format("{}", fmt::join(lines, "\n"));
-}
-
-}  // namespace
 
 std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   const std::string name = path.string();
@@ -54,40 +37,37 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   return text;
 }
 
-std::string ManifestProblem::text() const {
-  std::string result = printable(file, 4096);
-  if (at.line > 0) result += fmt::format(":{}:{}", at.line, at.column);
-  result += ": ";
-  if (!key.empty()) result += key + ": ";
-  result += problem;
-  if (!got.empty()) result += fmt::format(" (got {})", got);
-  if (!remedy.empty()) result += ". " + remedy;
-  return result;
+std::string problem_text(std::string_view file, Position at, const std::string& key,
+                         const std::string& problem, const std::string& got,
+                         const std::string& remedy) {
+  std::string text = printable(file, 4096);
+  if (at.line > 0) text += fmt::format(":{}:{}", at.line, at.column);
+  text += ": ";
+  if (!key.empty()) text += key + ": ";
+  text += problem;
+  if (!got.empty()) text += fmt::format(" (got {})", got);
+  if (!remedy.empty()) text += ". " + remedy;
+  return text;
 }
 
-ManifestError::ManifestError(std::vector<ManifestProblem> problems)
-    : UsageError(join(problems)), problems_(std::move(problems)) {}
-
-void refuse(std::string_view file, Position at, std::string key, std::string problem,
-            std::string got, std::string remedy) {
-  throw ManifestError({{std::string(file), at, std::move(key), std::move(problem), std::move(got),
-                        std::move(remedy)}});
+void refuse(std::string_view file, Position at, const std::string& key, const std::string& problem,
+            const std::string& got, const std::string& remedy) {
+  throw ManifestError(problem_text(file, at, key, problem, got, remedy));
 }
 
-void ProblemList::add(Position at, std::string key, std::string problem, std::string got,
-                      std::string remedy) {
-  ManifestProblem entry{
-      file_, at, std::move(key), std::move(problem), std::move(got), std::move(remedy)};
-  if (texts_.insert(entry.text()).second) problems_.push_back(std::move(entry));
+void ProblemList::add(Position at, const std::string& key, const std::string& problem,
+                      const std::string& got, const std::string& remedy) {
+  const std::string text = problem_text(file_, at, key, problem, got, remedy);
+  if (known_.insert(text).second) problems_.emplace(at, text);
 }
 
-void ProblemList::raise() {
+void ProblemList::raise() const {
   if (problems_.empty()) return;
-  const auto place = [](const ManifestProblem& problem) {
-    return std::tuple(problem.at.line, problem.at.column);
-  };
-  std::ranges::stable_sort(problems_, {}, place);
-  throw ManifestError(std::move(problems_));
+  constexpr std::size_t most = 20;
+  std::vector<std::string> lines;
+  for (const auto& [at, text] : problems_ | std::views::take(most)) lines.push_back(text);
+  if (size() > most) lines.push_back(fmt::format("and {} more problems", size() - most));
+  throw ManifestError(fmt::format("{}", fmt::join(lines, "\n")));
 }
 
 Manifest load_manifest(const std::filesystem::path& path) {

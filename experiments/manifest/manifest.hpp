@@ -3,6 +3,7 @@
 // ManifestError that names the place and the remedy of each problem.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -34,28 +35,20 @@ struct ManifestLimits {
 struct Position {
   int line = 0;
   int column = 0;
+
+  auto operator<=>(const Position&) const = default;
 };
 
-struct ManifestProblem {
-  std::string file;
-  Position at;
-  std::string key;      ///< path to the key, as in "scales.smoke.grains"; may be empty
-  std::string problem;  ///< what is wrong
-  std::string got;      ///< the offending value as written; may be empty
-  std::string remedy;   ///< what to do, a sentence; may be empty
-
-  /// "file:line:column: key: problem (got VALUE). remedy"
-  std::string text() const;
-};
+/// One problem of a manifest: "file:line:column: key: problem (got VALUE). remedy". `key` is the
+/// path to the key, as in "scales.smoke.grains"; `got` the offending value as written; `remedy` a
+/// sentence. Each of these may be empty.
+std::string problem_text(std::string_view file, Position at, const std::string& key,
+                         const std::string& problem, const std::string& got,
+                         const std::string& remedy);
 
 /// The problems of one manifest; what() has one per line.
-class ManifestError : public UsageError {
- public:
-  explicit ManifestError(std::vector<ManifestProblem> problems);
-  const std::vector<ManifestProblem>& problems() const { return problems_; }
-
- private:
-  std::vector<ManifestProblem> problems_;
+struct ManifestError : UsageError {
+  using UsageError::UsageError;
 };
 
 /// Collects the problems of a manifest, so that all are reported at once.
@@ -63,23 +56,25 @@ class ProblemList {
  public:
   explicit ProblemList(std::string_view file) : file_(file) {}
 
-  /// Adds a problem, unless it was added before: many variants may share one.
-  void add(Position at, std::string key, std::string problem, std::string got, std::string remedy);
+  /// Adds a problem_text(), unless it was added before: many variants may share one.
+  void add(Position at, const std::string& key, const std::string& problem, const std::string& got,
+           const std::string& remedy);
 
   std::size_t size() const { return problems_.size(); }
 
   /// Throws ManifestError, with the problems in the order of the text, if there are any.
-  void raise();
+  void raise() const;
 
  private:
   std::string file_;
-  std::vector<ManifestProblem> problems_;
-  std::set<std::string> texts_;
+  std::multimap<Position, std::string> problems_;
+  std::set<std::string> known_;
 };
 
-/// Throws a ManifestError with this problem.
-[[noreturn]] void refuse(std::string_view file, Position at, std::string key, std::string problem,
-                         std::string got, std::string remedy);
+/// Throws a ManifestError with this problem_text().
+[[noreturn]] void refuse(std::string_view file, Position at, const std::string& key,
+                         const std::string& problem, const std::string& got,
+                         const std::string& remedy);
 
 /// A checked value, or "auto" (resolve_auto), and where it was written.
 struct Setting {

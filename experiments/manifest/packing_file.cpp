@@ -132,20 +132,20 @@ class PackingReader {
 
   // --- Refusing ---
 
-  [[noreturn]] void refuse_file(string problem, string remedy) const {
-    refuse(file_, {}, "", std::move(problem), "", std::move(remedy));
+  [[noreturn]] void refuse_file(const string& problem, const string& remedy) const {
+    refuse(file_, {}, "", problem, "", remedy);
   }
-  [[noreturn]] void refuse_at(int line, string problem, string remedy) const {
-    refuse(file_, {line, 1}, "", std::move(problem), "", std::move(remedy));
+  [[noreturn]] void refuse_at(int line, const string& problem, const string& remedy) const {
+    refuse(file_, {line, 1}, "", problem, "", remedy);
   }
-  [[noreturn]] void refuse_line(string problem, string remedy) const {
-    refuse_at(number_, std::move(problem), std::move(remedy));
+  [[noreturn]] void refuse_line(const string& problem, const string& remedy) const {
+    refuse_at(number_, problem, remedy);
   }
   /// `part` is of the present line.
-  [[noreturn]] void refuse_part(string_view part, string key, string problem, string remedy) const {
+  [[noreturn]] void refuse_part(string_view part, const string& key, const string& problem,
+                                const string& remedy) const {
     const auto column = static_cast<int>(part.data() - line_.data()) + 1;
-    refuse(file_, {number_, column}, std::move(key), std::move(problem), printable(part),
-           std::move(remedy));
+    refuse(file_, {number_, column}, key, problem, printable(part), remedy);
   }
 
   // --- Lines and numbers ---

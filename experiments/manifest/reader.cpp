@@ -418,19 +418,19 @@ struct Reader {
   const Scale& base;  // what is stated for all scales
 
   // Reports a problem with the value, and quotes it.
-  void reject_value(const Node& in, string problem, string remedy) {
-    problems.add(in.at, in.path, std::move(problem), shown(in), std::move(remedy));
+  void reject_value(const Node& in, const string& problem, const string& remedy) {
+    problems.add(in.at, in.path, problem, shown(in), remedy);
   }
   // Reports that the value is not `wanted`, as in "a list".
-  void reject_type(const Node& in, string_view wanted, string remedy) {
-    reject_value(in, fmt::format("is not {}", wanted), std::move(remedy));
+  void reject_type(const Node& in, string_view wanted, const string& remedy) {
+    reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
   // Reports a problem at the value, or at the key, without a quotation.
-  void reject(const Node& in, string problem, string remedy) {
-    problems.add(in.at, in.path, std::move(problem), "", std::move(remedy));
+  void reject(const Node& in, const string& problem, const string& remedy) {
+    problems.add(in.at, in.path, problem, "", remedy);
   }
-  void reject_key(const Node& in, string problem, string remedy) {
-    problems.add(in.key_at, in.path, std::move(problem), "", std::move(remedy));
+  void reject_key(const Node& in, const string& problem, const string& remedy) {
+    problems.add(in.key_at, in.path, problem, "", remedy);
   }
 
   // Reports that the key is not one of those `allowed` in its map, with the nearest of them.
