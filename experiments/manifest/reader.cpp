@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <ranges>
 #include <set>
 #include <span>
 #include <utility>
@@ -49,11 +51,9 @@ Names joined(Names names, const More&... more) {
 
 // The parameters that distinguish runs. The record of a run does not hold the others.
 Names parameters() {
-  Names names;
-  for (const Field& field : schema()) {
-    if (field.identity.distinguishes_runs()) names.push_back(field.name);
-  }
-  return names;
+  return names_of(schema() | std::views::filter([](const Field& field) {
+                    return field.identity.distinguishes_runs();
+                  }));
 }
 
 Names measures(MeasureKind kind) {
@@ -64,11 +64,7 @@ Names measures(MeasureKind kind) {
 
 // The parameters that are numbers.
 Names numbers() {
-  Names names;
-  for (const Field& field : schema()) {
-    if (!field.is_choice()) names.push_back(field.name);
-  }
-  return names;
+  return names_of(schema() | std::views::filter(std::not_fn(&Field::is_choice)));
 }
 
 void fields(Checkpoints& checkpoints, const auto& visit) {
@@ -255,10 +251,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
-  static const Names scalars = measures(MeasureKind::number);
-  static const Names runs = measures(MeasureKind::run);
-  static const Names can_be_compared = joined({}, scalars, runs);
-  static const Names terms = joined({"cycle"}, scalars, runs, numbers());
+  static const Names can_be_compared =
+      joined(measures(MeasureKind::number), measures(MeasureKind::run));
+  static const Names terms = joined({"cycle"}, can_be_compared, numbers());
   visit(claim.name, {.name = "name", .doc = "required", .required = true});
   visit(claim.figure, {.name = "figure", .doc = "as of a plot"});
   visit(claim.compare, {.name = "compare",

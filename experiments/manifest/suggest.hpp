@@ -40,7 +40,7 @@ std::string some_of(const auto& names, std::size_t most = 3) {
 }
 
 /// The member `name` of each item.
-std::vector<std::string_view> names_of(const auto& list) {
+std::vector<std::string_view> names_of(auto&& list) {
   std::vector<std::string_view> names;
   for (const auto& one : list) names.emplace_back(one.name);
   return names;
