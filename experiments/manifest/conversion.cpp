@@ -155,12 +155,13 @@ double pressing_time_s(const Parameters& p) {
                        static_cast<double>(p.grains) / (width * width));
 }
 
-double expected_interior_grains(const Parameters& p) {
+bool has_interior(const Parameters& p) {
   const double margin =
       interior_distance + (p.walls == WallTexture::rough ? rough_wall_surface : 0.0);
   const double width = cell_width(geometry(p)), height = p.height_over_width * width;
   const double per_d3 = p.nominal_packing_fraction * 6 / std::numbers::pi;
-  return per_d3 * std::max(width - 2 * margin, 0.0) * std::max(height - 2 * margin, 0.0) * width;
+  const double across = std::max(width - 2 * margin, 0.0), up = std::max(height - 2 * margin, 0.0);
+  return per_d3 * across * up * width >= 1;
 }
 
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key) {

@@ -93,9 +93,9 @@ double damping_time_s(const Parameters& parameters);
 /// earlier.
 double pressing_time_s(const Parameters& parameters);
 
-/// Expected number of interior grains (analysis/packing_fraction.hpp) at the nominal height; 0 in a
-/// cell that is too small for any.
-double expected_interior_grains(const Parameters& parameters);
+/// Whether at least one interior grain (analysis/packing_fraction.hpp) is expected at the nominal
+/// height.
+bool has_interior(const Parameters& parameters);
 
 /// Advice against a time step below 0.15 or above 0.7 of the stability limit; `key` names it
 /// ("steps_per_cycle"). Nothing for other time steps.

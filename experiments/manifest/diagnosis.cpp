@@ -40,10 +40,6 @@ bool is_wide_enough(const Parameters& p) {
   return cell_width(geometry(p)) >= kShallowestCell;
 }
 
-bool has_interior(const Parameters& p) {
-  return expected_interior_grains(p) >= 1;
-}
-
 /// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
 /// "Use more grains." if N is beyond the range of `grains`.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
