@@ -53,9 +53,9 @@ const Parameters& parameters_of(const Line& line) {
 // The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = parameters_of(line);
-  if (line.stage.kind == name_of(StageKind::prepare)) return settle_time_step(p);
+  if (line.stage.kind == name_of(StageKind::prepare)) return time_step(p, p.settle_time_step_s);
   if (line.stage.kind == name_of(StageKind::stiffen)) return std::nullopt;
-  return shear_time_step(p);
+  return time_step(p, shear_time_step_s(p));
 }
 
 nlohmann::json facts(const std::optional<TimeStep>& step) {

@@ -13,11 +13,6 @@
 namespace shearcell {
 namespace {
 
-TimeStep time_step(const Parameters& p, double seconds) {
-  const double contact_time = std::numbers::pi / std::sqrt(2 * p.stiffness_N_per_m / p.mass_kg);
-  return {seconds, seconds / contact_time, seconds / stability_limit_s(p)};
-}
-
 /// Whole steps in `duration` at Table I's fraction of the stability limit; at least 1.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
@@ -127,12 +122,9 @@ void resolve_auto(std::string_view key, Parameters& p) {
   }
 }
 
-TimeStep shear_time_step(const Parameters& parameters) {
-  return time_step(parameters, shear_time_step_s(parameters));
-}
-
-TimeStep settle_time_step(const Parameters& parameters) {
-  return time_step(parameters, parameters.settle_time_step_s);
+TimeStep time_step(const Parameters& p, double seconds) {
+  const double contact_time = std::numbers::pi / std::sqrt(2 * p.stiffness_N_per_m / p.mass_kg);
+  return {seconds, seconds / contact_time, seconds / stability_limit_s(p)};
 }
 
 double expected_overlap(const Parameters& p) {

@@ -59,8 +59,7 @@ struct TimeStep {
   double over_stability_limit = 0;  ///< of stability_limit_s()
 };
 
-TimeStep shear_time_step(const Parameters& parameters);
-TimeStep settle_time_step(const Parameters& parameters);
+TimeStep time_step(const Parameters& parameters, double seconds);
 
 /// Whether `settle` may state the parameter for the packing alone: it acts on the grains or on the
 /// moving wall, and is not part of the cell, the grains or their units.

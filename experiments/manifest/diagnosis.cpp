@@ -372,8 +372,9 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
         p.settle_time_limit_s));
   }
   for (const auto& [step, key, is_used] :
-       {std::tuple(shear_time_step(p), "steps_per_cycle", p.protocol != ProtocolKind::stiffen),
-        {settle_time_step(packing), "settle_time_step_s", settles}}) {
+       {std::tuple(time_step(p, shear_time_step_s(p)), "steps_per_cycle",
+                   p.protocol != ProtocolKind::stiffen),
+        {time_step(packing, packing.settle_time_step_s), "settle_time_step_s", settles}}) {
     if (const auto one = time_step_advice(step, key); one && is_used) advice.push_back(*one);
   }
   return advice;

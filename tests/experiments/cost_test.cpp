@@ -115,7 +115,8 @@ void expect_bounded(const std::string& text) {
       EXPECT_LE(static_cast<double>(run.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
                 2 * kMostSteps);
       EXPECT_TRUE(std::isfinite(expected_overlap(p)));
-      for (const TimeStep& step : {shear_time_step(p), settle_time_step(p)}) {
+      for (const TimeStep& step :
+           {time_step(p, shear_time_step_s(p)), time_step(p, p.settle_time_step_s)}) {
         EXPECT_TRUE(step.seconds > 0 && std::isfinite(step.over_stability_limit));
       }
       for (const Stage* stage : {&*run.prepare, &run.stage}) {

@@ -68,7 +68,8 @@ TEST(Conversion, StaysFiniteAtTheEndsOfTheRanges) {
     }
     for (const double value :
          {scene.drag_rate, scene.gravity, pause_time_steps(p), expected_overlap(p),
-          settle_time_step(p).over_stability_limit, shear_time_step(p).over_contact_time}) {
+          time_step(p, p.settle_time_step_s).over_stability_limit,
+          time_step(p, shear_time_step_s(p)).over_contact_time}) {
       EXPECT_TRUE(std::isfinite(value)) << value;
     }
   }
@@ -157,12 +158,12 @@ TEST(Conversion, StabilityLimitIsThatOfAnFccCrystal) {
 }
 
 TEST(TimeStep, OfTableI) {
-  const TimeStep step = shear_time_step({});
+  const TimeStep step = time_step({}, shear_time_step_s({}));
   EXPECT_NEAR(step.seconds, 4.386e-5, 1e-8);
   // k/m = 3.27e7 /s^2: pi/sqrt(2 k/m) = 3.885e-4 s, 2/sqrt(8 k/m) = 1.2365e-4 s.
   EXPECT_NEAR(step.over_contact_time, 0.1129, 1e-4);
   EXPECT_NEAR(step.over_stability_limit, 0.3547, 1e-4);
-  EXPECT_EQ(step.seconds, settle_time_step({}).seconds);
+  EXPECT_EQ(step.seconds, Parameters{}.settle_time_step_s);
 }
 
 TEST(TimeStep, FollowsTheStiffnessIfAuto) {
@@ -180,7 +181,7 @@ TEST(TimeStep, FollowsTheStiffnessIfAuto) {
     const Parameters& p = swept[i].parameters;
     EXPECT_EQ(p.steps_per_cycle, steps[i]);
     EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
-    EXPECT_NEAR(shear_time_step(p).over_stability_limit, 0.3547, 1e-4);
+    EXPECT_NEAR(time_step(p, shear_time_step_s(p)).over_stability_limit, 0.3547, 1e-4);
     EXPECT_FALSE(has(swept[i].variant, "steps_per_cycle"));
   }
   // A swept key and a scale's number override it.
