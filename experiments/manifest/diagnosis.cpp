@@ -113,7 +113,7 @@ struct VariantCheck {
   bool autos_are_in_range() {
     bool sound = true;
     for (const auto& [key, setting] : scale.settings) {
-      if (!is_auto(setting)) continue;
+      if (setting.value != "auto") continue;
       const Field& field = *find_field(key);
       const json value = field.get(p);
       if (!check_value(field, value)) continue;

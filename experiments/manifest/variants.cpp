@@ -118,15 +118,11 @@ std::set<std::string> parts_of(const std::string& list) {
 
 void apply(const Settings& settings, Parameters& parameters) {
   for (const auto& [key, setting] : settings) {
-    if (!is_auto(setting)) find_field(key)->set(parameters, setting.value);
+    if (setting.value != "auto") find_field(key)->set(parameters, setting.value);
   }
 }
 
 }  // namespace
-
-bool is_auto(const Setting& setting) {
-  return setting.value == "auto";
-}
 
 json value_at(const Scale& scale, std::string_view key) {
   const auto stated = scale.settings.find(key);
@@ -215,7 +211,7 @@ std::vector<Variant> variants_of(const Scale& scale) {
     made.packing = made.parameters;
     apply(scale.settle, made.packing);
     for (const auto& [key, setting] : scale.settings) {
-      if (!is_auto(setting) || made.swept.contains(key)) continue;
+      if (setting.value != "auto" || made.swept.contains(key)) continue;
       resolve_auto(key, made.parameters);
       resolve_auto(key, made.packing);
     }

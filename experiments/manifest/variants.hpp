@@ -20,9 +20,6 @@ namespace shearcell {
 /// The value of a parameter at this scale, if it is not swept; or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
-/// Whether the setting is `auto`, which variants_of() resolves.
-bool is_auto(const Setting& setting);
-
 /// A combination of swept values.
 struct Variant {
   std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
