@@ -458,21 +458,16 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
                 back == 0 ? "" : format(" with another one {} before it", counted(back, "cycle")));
 }
 
-// Whether the run will have a checkpoint at the cycle, and one so many cycles before.
-bool has_checkpoint(const FigureRun& run, std::uint64_t cycle, std::uint64_t back) {
+// Whether the run will have a checkpoint at a cycle from `first` to `end`, and one `back` cycles
+// before it. Whether a multiple of the cadence has the earlier one depends on `back` alone, so the
+// first multiple and the last cycle decide.
+bool has_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end,
+                    std::uint64_t back) {
   const std::uint64_t every = run.checkpoint_every, last = run.target_cycles;
+  const std::uint64_t begin = std::max(first, back);
   const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
-  return cycle >= back && has(cycle) && has(cycle - back);
-}
-
-// The same of any cycle from `first` to `end`. Whether a multiple of the cadence has the earlier
-// checkpoint depends on `back` alone, so the first multiple and the last cycle decide.
-bool has_any_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end,
-                        std::uint64_t back) {
-  const std::uint64_t begin = std::max(first, back), every = run.checkpoint_every;
-  for (const std::uint64_t cycle :
-       {begin, (begin + every - 1) / every * every, run.target_cycles}) {
-    if (begin <= cycle && cycle <= end && has_checkpoint(run, cycle, back)) return true;
+  for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
+    if (begin <= cycle && cycle <= end && has(cycle) && has(cycle - back)) return true;
   }
   return false;
 }
@@ -497,7 +492,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureR
   for (const string& measure : {plot.y, plot.x}) {
     const std::uint64_t back = cycles_back(measure);
     const bool any = std::ranges::any_of(runs, [&](const FigureRun& run) {
-      return has_any_checkpoint(run, cycles[0], cycles[1], back);
+      return has_checkpoint(run, cycles[0], cycles[1], back);
     });
     if (any) continue;
     return format(
@@ -517,7 +512,7 @@ string lack_of(const ClaimSpec& claim, const FigureRun& run) {
   }
   // If one of them lacks a checkpoint, so does one of the first two or the last.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
-    if (has_checkpoint(run, cycle, back)) continue;
+    if (has_checkpoint(run, cycle, cycle, back)) continue;
     return format(
         "it needs {}, which the runs do not have. Ask for more checkpoints (`every_cycles`).",
         words_of_checkpoint(format(" at cycle {}", cycle), back));
