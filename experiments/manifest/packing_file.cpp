@@ -645,10 +645,8 @@ class PackingReader {
   Eigen::Matrix3Xd columns(Quantity first, double scale) const {
     Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(rows_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      for (int k = 0; k < 3; ++k) {
-        const auto q = static_cast<std::size_t>(first + k);
-        all(k, static_cast<Eigen::Index>(i)) = rows_[i].value[q] * scale;
-      }
+      const Eigen::Map<const Eigen::Vector3d> row(&rows_[i].value[first]);
+      all.col(static_cast<Eigen::Index>(i)) = row * scale;
     }
     return all;
   }
