@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <cstdlib>
 #include <limits>
@@ -124,9 +125,7 @@ std::optional<double> slurm_seconds(const std::string& time) {
 }
 
 std::string output_pattern(const fs::path& folder, std::string_view file) {
-  std::string pattern;
-  for (const char c : folder.string()) pattern += c == '%' ? "%%" : std::string(1, c);
-  return pattern + "/" + std::string(file);
+  return boost::replace_all_copy(folder.string(), "%", "%%") + "/" + std::string(file);
 }
 
 void require_slurm() {
