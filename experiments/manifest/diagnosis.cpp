@@ -386,13 +386,9 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::vector<string>& warnings) {
   const Start& start = scale.start;
   const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
-  std::vector<std::pair<string, std::vector<string>>> advice;  // with the names of the variants
+  nlohmann::ordered_map<string, std::vector<string>> advice;  // with the names of the variants
   for (const Variant& variant : variants) {
-    for (const string& one : advice_on(variant, settles)) {
-      auto known = std::ranges::find(advice, one, [](const auto& of) { return of.first; });
-      if (known == advice.end()) known = advice.insert(known, {one, {}});
-      known->second.push_back(variant.name);
-    }
+    for (const string& one : advice_on(variant, settles)) advice[one].push_back(variant.name);
   }
   const auto draws = [&](const Variant& variant) {  // something by the seed
     return start.is_recorded()
