@@ -159,7 +159,6 @@ bool ChildProcess::reap(int options) {
   }
   if (ended == 0) return false;
   exit_code_ = ended < 0 ? 127 : WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  peak_bytes_ = static_cast<std::size_t>(used.ru_maxrss) * 1024;
   for (const timeval& time : {used.ru_utime, used.ru_stime}) {
     core_seconds_ += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   }

@@ -5,7 +5,6 @@
 
 #include <sys/types.h>
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -55,9 +54,6 @@ class ChildProcess {
   /// Waits for the end of the program and returns exit_code().
   int wait();
 
-  /// Peak memory of the ended process [bytes]; 0 while it runs.
-  std::size_t peak_bytes() const { return peak_bytes_; }
-
   /// Processor time of the program so far, without that of its children.
   double core_seconds() const;
 
@@ -66,7 +62,6 @@ class ChildProcess {
 
   pid_t pid_ = 0;
   std::optional<int> exit_code_;
-  std::size_t peak_bytes_ = 0;
   double core_seconds_ = 0;  // of the ended process
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <charconv>
@@ -17,7 +18,7 @@ namespace shearcell {
 struct LammpsResult {
   State state;             ///< at the end of the task
   double loop_seconds;     ///< wall time of its time loop, as it printed it
-  std::size_t peak_bytes;  ///< memory of its largest process
+  std::size_t peak_bytes;  ///< memory of the largest process of LAMMPS so far
 };
 
 /// The task must ask for one frame, its last. Throws ProgramError.
@@ -28,9 +29,11 @@ inline LammpsResult run_lammps(const LammpsProgram& program, const LammpsTask& t
   const int code = process->wait();
   const std::string log = read_plain(folder.path() / "log", kLargestFile).value_or("");
   if (code != 0) throw ProgramError(fmt::format("LAMMPS ended with code {}: {}", code, log));
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
   LammpsResult result{read_lammps_frame(folder.path() / fmt::format("frame.{}", task.end),
                                         static_cast<std::size_t>(task.state.position.cols())),
-                      0, process->peak_bytes()};
+                      0, static_cast<std::size_t>(used.ru_maxrss) * 1024};
   // "Loop time of T on P procs for S steps with A atoms", once for each run.
   constexpr std::string_view title = "Loop time of ";
   for (auto at = log.find(title); at != log.npos; at = log.find(title, at + 1)) {
