@@ -126,11 +126,11 @@ class Campaign {
   Campaign(Store& store, const std::vector<StageJob>& jobs, const Parallel& parallel, bool quiet,
            std::function<void(const std::string&)> when_done)
       : store_(store),
-        jobs_(jobs),
         progress_(jobs.size(), quiet),
         parallel_(parallel),
-        when_done_(std::move(when_done)),
-        states_(jobs.size()) {}
+        when_done_(std::move(when_done)) {
+    for (const StageJob& job : jobs) jobs_.push_back({job});
+  }
 
   CampaignResult run(std::size_t workers) {
     // Shows other programs that this one is alive, also during long simulations.
@@ -150,31 +150,28 @@ class Campaign {
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-  struct Job {
+  struct Job : StageJob {
     JobState state = JobState::waiting;
     // Of a run that another program holds or took; used only by the thread that runs the job.
     Clock::time_point check_at = {};
     int losses = 0;
   };
 
-  // The first job that may begin, or else the first held one that is due for a check; kNone if
+  // The first job that may begin, or else the first held one that is due for a check; null if
   // there is none now. Jobs that can no longer begin are ended.
-  std::size_t next_job() {
-    std::size_t held_job = kNone;
-    for (std::size_t j = 0; j < jobs_.size(); ++j) {
-      Job& job = states_[j];
+  Job* next_job() {
+    Job* held_job = nullptr;
+    for (Job& job : jobs_) {
       const bool held = job.state == JobState::held;
       if (job.state != JobState::waiting && !held) continue;
-      const JobState before = parent_state(j);
+      const JobState before = parent_state(job);
       if (before == JobState::ended || error_ || stop_requested()) {
         job.state = JobState::ended;
-        ++(was_done(jobs_[j]) ? result_.already : result_.blocked);
+        ++(was_done(job) ? result_.already : result_.blocked);
       } else if (held) {
-        if (held_job == kNone && Clock::now() >= job.check_at) held_job = j;
+        if (held_job == nullptr && Clock::now() >= job.check_at) held_job = &job;
       } else if (before == JobState::done) {
-        return j;
+        return &job;
       }
     }
     return held_job;
@@ -189,22 +186,21 @@ class Campaign {
     }
   }
 
-  JobState parent_state(std::size_t j) const {
-    for (std::size_t k = 0; k < jobs_.size(); ++k) {
-      if (jobs_[k].id == jobs_[j].parent) return states_[k].state;
-    }
+  JobState parent_state(const Job& job) const {
+    const auto parent = std::ranges::find(jobs_, job.parent, &Job::id);
+    if (parent != jobs_.end()) return parent->state;
     return JobState::done;  // a first stage, or one whose parent was not asked for
   }
 
   std::size_t count(JobState state) const {
-    return static_cast<std::size_t>(std::ranges::count(states_, state, &Job::state));
+    return static_cast<std::size_t>(std::ranges::count(jobs_, state, &Job::state));
   }
 
   void work() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      const std::size_t j = next_job();
-      if (j == kNone) {
+      Job* const job = next_job();
+      if (job == nullptr) {
         const std::size_t held = count(JobState::held);
         if (held == 0 && (count(JobState::waiting) == 0 || count(JobState::running) == 0)) break;
         if (held > 0) {
@@ -215,12 +211,12 @@ class Campaign {
         }
         continue;
       }
-      const bool was_held = states_[j].state == JobState::held;
-      states_[j].state = JobState::running;
+      const bool was_held = job->state == JobState::held;
+      job->state = JobState::running;
       lock.unlock();
-      const JobState state = run_job(j, was_held);
+      const JobState state = run_job(*job, was_held);
       lock.lock();
-      states_[j].state = state;
+      job->state = state;
       changed_.notify_all();
     }
     changed_.notify_all();
@@ -243,10 +239,9 @@ class Campaign {
         true);
   }
 
-  JobState run_job(std::size_t j, bool was_held) {
-    const StageJob& job = jobs_[j];
+  JobState run_job(Job& job, bool was_held) {
     try {
-      return compute(j, was_held);
+      return compute(job, was_held);
     } catch (const StoreDamaged& damage) {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
@@ -274,20 +269,19 @@ class Campaign {
     return std::ranges::find(leases, run, &Lease::run) != leases.end();
   }
 
-  JobState put_off(std::size_t j) {
-    states_[j].check_at = Clock::now() + kCheckInterval;
+  JobState put_off(Job& job) {
+    job.check_at = Clock::now() + kCheckInterval;
     return JobState::held;
   }
 
-  JobState compute(std::size_t j, bool was_held) {
-    const StageJob& job = jobs_[j];
+  JobState compute(Job& job, bool was_held) {
     const Stage run = store_.stage(job.id);
     if (is_done(store_, run)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
              was_held ? "done by another program" : "", true);
       return JobState::done;
     }
-    if (held_by_another(job.id)) return put_off(j);
+    if (held_by_another(job.id)) return put_off(job);
     if (was_held && run.state == StageState::failed) {
       note(job, &CampaignResult::failed, run.error);  // it would fail here too
       return JobState::ended;
@@ -322,12 +316,12 @@ class Campaign {
       case StageOutcome::held:
       case StageOutcome::lost:
         progress_.end(job, "", false);
-        if (++states_[j].losses > kMostLosses && !held_by_another(job.id)) {
+        if (++job.losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
                "it cannot be started; `shearcell verify` may show why");
           return JobState::ended;
         }
-        return put_off(j);
+        return put_off(job);
     }
     return JobState::ended;
   }
@@ -351,13 +345,12 @@ class Campaign {
   }
 
   Store& store_;
-  const std::vector<StageJob>& jobs_;
   Progress progress_;
   Parallel parallel_;
   std::function<void(const std::string&)> when_done_;
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
-  std::vector<Job> states_;
+  std::vector<Job> jobs_;
   std::size_t shown_held_ = 0;
   CampaignResult result_;
   std::set<std::string> damaged_;  // ids of the stages that count as such in result_
