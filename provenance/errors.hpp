@@ -33,14 +33,9 @@ struct TooLittleMemory : MachineError {
   using MachineError::MachineError;
 };
 
-/// Another writer was faster: it took the run, or wrote what the caller has not read.
+/// Another writer was faster: it holds the run, took it, or wrote what the caller has not read.
 struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
-};
-
-/// Another program holds the lease of the run (lease.hpp).
-struct RunHeld : ConcurrencyConflict {
-  using ConcurrencyConflict::ConcurrencyConflict;
 };
 
 /// The bytes of the store are not what was once written: not a store, a newer schema, a truncated

@@ -291,7 +291,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   if (!known) throw unknown_stage(id);
   for (const Lease& lease : query_leases(database_, id)) {
     if (lease.holder.token == self_.token || lapsed(lease, now_ms())) continue;
-    throw RunHeld(
+    throw ConcurrencyConflict(
         fmt::format("run {}: another program computes it ({})", id, describe(lease.holder)));
   }
   if ((known->state == StageState::completed) != fill) {

@@ -109,10 +109,10 @@ class Store {
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
   /// from this checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when
-  /// the run or the checkpoint is unknown, RunHeld when another program computes the run, and
-  /// ConcurrencyConflict when this object holds the run, when the run is completed, or when a later
-  /// checkpoint was recorded. With `fill` the run must be completed: the attempt records missing
-  /// checkpoints before the last one, and completes the run again.
+  /// the run or the checkpoint is unknown, and ConcurrencyConflict when this object or another
+  /// program holds the run, when the run is completed, or when a later checkpoint was recorded.
+  /// With `fill` the run must be completed: the attempt records missing checkpoints before the last
+  /// one, and completes the run again.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);

@@ -313,7 +313,6 @@ class Campaign {
         note(job, &CampaignResult::failed, store_.stage(job.id).error);
         progress_.end(job, "FAILED", false);
         return JobState::ended;
-      case StageOutcome::held:
       case StageOutcome::lost:
         progress_.end(job, "", false);
         if (++job.losses > kMostLosses && !held_by_another(job.id)) {

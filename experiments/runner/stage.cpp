@@ -744,8 +744,6 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
         outlook(run, run.asks, store.checkpoints(id, Listed::and_pruned)).missing;
     if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
-  } catch (const RunHeld&) {
-    return StageOutcome::held;
   } catch (const Interrupted&) {
     return StageOutcome::interrupted;  // before an attempt was recorded
   } catch (const ConcurrencyConflict&) {

@@ -21,10 +21,9 @@ struct Parallel {
   std::size_t ranks = 1;    ///< processes of LAMMPS, under mpirun when more than one
 };
 
-/// How a stage ended in this process. `already`: nothing was left to compute. `held`: another
-/// program holds the stage; nothing was started. `lost`: meanwhile another program took the lease,
-/// completed the stage or recorded a later state.
-enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, held, lost };
+/// How a stage ended in this process. `already`: nothing was left to compute. `lost`: another
+/// program holds the stage or took its lease, completed it or recorded a later state.
+enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, lost };
 
 struct StageOptions {
   Parallel parallel = {};

@@ -41,8 +41,9 @@ TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   Store second = open();
   first.start_stage(id_, {});
   EXPECT_THROW(first.start_stage(id_, {}), ConcurrencyConflict) << "it holds the run already";
-  expect_refused<RunHeld>([&] { second.start_stage(id_, {}); },
-                          {"process " + std::to_string(getpid())});
+  expect_refused<ConcurrencyConflict>(
+      [&] { second.start_stage(id_, {}); },
+      {"another program computes it", "process " + std::to_string(getpid())});
   const std::vector<Lease> leases = second.leases();
   ASSERT_EQ(leases.size(), 1u);
   EXPECT_EQ(leases[0].run, id_);
@@ -69,7 +70,8 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
   for (int i = 0; i < 6; ++i) {
     std::this_thread::sleep_for(100ms);
     first.renew_leases();
-    EXPECT_THROW(second.start_stage(id_, {}), RunHeld);
+    expect_refused<ConcurrencyConflict>([&] { second.start_stage(id_, {}); },
+                                        {"another program computes it"});
   }
   std::this_thread::sleep_for(500ms);
   EXPECT_TRUE(first.holds(id_)) << "nobody took it";
@@ -152,7 +154,8 @@ TEST_F(LeaseTest, IsGrantedToOneOfMany) {
     try {
       store.start_stage(id_, {});
       ++won;
-    } catch (const RunHeld&) {
+    } catch (const ConcurrencyConflict& conflict) {
+      EXPECT_TRUE(has(conflict.what(), "another program computes it"));
       ++refused;
     }
     while (won + refused < 8) std::this_thread::sleep_for(1ms);
