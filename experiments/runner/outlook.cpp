@@ -182,12 +182,11 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
     look.checkpoints *= (length - now) / (static_cast<double>(to_come.back()) - now);
   }
   double steps = std::max(0.0, length - now);
-  if (stage.step > 0) {
+  if (stage.step > 0 && engine == EngineKind::shearcell) {
     std::set<std::uint64_t> known;
     for (const CheckpointRecord& one : checkpoints) known.insert(one.step);
-    auto lacking = steps_between(cadences, motion, 0, std::min(now - 1, length), kMostListed);
-    std::erase_if(lacking, [&](std::uint64_t step) { return known.contains(step); });
-    (engine == EngineKind::shearcell ? look.missing : look.lost) = std::move(lacking);
+    look.missing = steps_between(cadences, motion, 0, std::min(now - 1, length), kMostListed);
+    std::erase_if(look.missing, [&](std::uint64_t step) { return known.contains(step); });
   }
   // The last checkpoint before a step that has a file; nothing to begin with the stage.
   const auto recorded_before = [&](std::uint64_t step) {
@@ -205,9 +204,7 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
     steps += steps_to(checkpoints.back().step, recorded_before(checkpoints.back().step));
   }
   if (!look.missing.empty()) {
-    const CheckpointRecord* from = recorded_before(look.missing.front());
-    look.from = from != nullptr ? from->cycle : 0;
-    steps += steps_to(look.missing.back(), from);
+    steps += steps_to(look.missing.back(), recorded_before(look.missing.front()));
     look.checkpoints += static_cast<double>(look.missing.size());
   }
   look.particle_steps = static_cast<double>(stage.grains) * steps;
@@ -217,7 +214,7 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
 
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures) {
-  Outlook look{.from = stage.cycle};
+  Outlook look;
   const bool long_enough = find_end(stage, asks, checkpoints, measures, look);
   const bool completed = stage.state == StageState::completed;
   try {
@@ -346,7 +343,7 @@ Outlook look_at(const Store& store, const Stage& stage) {
     return outlook(stage, stage.asks, store.checkpoints(stage.id, Listed::and_pruned));
   } catch (const StoreDamaged& damage) {
     const bool completed = stage.state == StageState::completed;
-    return {.done = completed, .from = stage.cycle, .unreadable = damage.what()};
+    return {.done = completed, .unreadable = damage.what()};
   }
 }
 

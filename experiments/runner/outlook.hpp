@@ -30,15 +30,10 @@ using KnownMeasures = std::map<std::string, Measures>;
 struct Outlook {
   /// The stage is completed for all asks and no checkpoint is missing.
   bool done = false;
-  /// The cycle from which the stage continues: of its last checkpoint or, if checkpoints are
-  /// missing, of the last one before the first missing one.
-  double from = 0;
   /// Ascending steps of missing checkpoints: asked for, before the last checkpoint, and never
-  /// recorded, for example because a denser cadence was asked for later. A replay makes them.
+  /// recorded, for example because a denser cadence was asked for later. A replay makes them. None
+  /// of LAMMPS, which does not repeat bits: they cannot be made later.
   std::vector<std::uint64_t> missing = {};
-  /// Steps of missing checkpoints of LAMMPS, which cannot be made later because LAMMPS does not
-  /// repeat bits.
-  std::vector<std::uint64_t> lost = {};
   /// The cycle at which the stage ends: the largest number of cycles that is asked for, or an
   /// earlier one at which `until` is known to end the stage.
   double end = 0;

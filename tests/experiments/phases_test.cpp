@@ -46,11 +46,14 @@ class Phases : public DrawingTest {
     return contents;
   }
 
-  // Cycle from which `plan` and `submit` say that the run of the store is left to compute.
+  // Step from which `plan` and `submit` say that the run of the store is replayed, up to the last
+  // missing checkpoint.
   std::optional<double> left_of(const std::string& text) const {
     const Plan plan = expand(parse_manifest(text, "t"));
-    const Outlook look = look_at({&plan, 1}, &store_).at(1).look;
-    return look.done ? std::nullopt : std::optional(look.from);
+    const PlannedStage run = look_at({&plan, 1}, &store_).at(1);
+    if (run.look.done) return std::nullopt;
+    return static_cast<double>(run.look.missing.back()) -
+           run.look.particle_steps / static_cast<double>(run.stage.grains);
   }
 
   Store plain_{folder_.path() / "plain", Access::create};
