@@ -21,7 +21,7 @@ namespace shearcell::events {
 
 struct ManifestRegistered {
   static constexpr std::string_view kType = "ManifestRegistered";
-  std::string sha256, path, text;
+  std::string sha256, path, text;  ///< the path as given; only a name
   nlohmann::json info;
   static void fields(auto& e, auto field) {
     field("sha256", e.sha256), field("path", e.path), field("text", e.text);

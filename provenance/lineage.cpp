@@ -7,7 +7,6 @@
 #include <set>
 
 #include "provenance/errors.hpp"
-#include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 
@@ -170,8 +169,8 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
           "`verify`",
           event.seq));
     }
-    return ManifestText{sha256, std::move(found.path), std::move(found.text), std::move(found.info),
-                        event.recorded_at};
+    found.sha256 = sha256;  // that of a forged payload may be anything
+    return ManifestText{std::move(found), event.recorded_at};
   }
   return std::nullopt;
 }

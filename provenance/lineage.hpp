@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "provenance/events.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -89,11 +90,7 @@ struct ComputingTime {
 /// damaged payload.
 ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle);
 
-struct ManifestText {
-  std::string sha256;
-  std::string path;           ///< as given when it was registered; only a name
-  std::string text;           ///< its SHA-256 was checked
-  nlohmann::json info;        ///< as given when it was registered
+struct ManifestText : events::ManifestRegistered {
   std::string registered_at;  ///< UTC
 };
 

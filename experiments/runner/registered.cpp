@@ -5,7 +5,6 @@
 
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -22,11 +21,13 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   // Not in the order of the log, which a merge decides.
   std::ranges::stable_sort(events, {}, &Event::recorded_at);
   for (const Event& event : events) {
-    auto [sha256, path, text, info] = std::get<events::ManifestRegistered>(events::decode(event));
+    auto registered = std::get<events::ManifestRegistered>(events::decode(event));
+    RegisteredManifest& manifest = found.emplace_back();
+    static_cast<ManifestText&>(manifest) = {std::move(registered), event.recorded_at};
     try {
-      found.push_back({std::move(sha256), info.at("experiment").get<std::string>(),
-                       info.value("question", ""),
-                       info.at("figures").get<std::vector<std::string>>(), std::move(text)});
+      manifest.info.at("experiment").get_to(manifest.experiment);
+      manifest.question = manifest.info.value("question", "");
+      manifest.info.at("figures").get_to(manifest.figures);
     } catch (const nlohmann::json::exception& problem) {
       throw damaged_payload(event, problem);
     }

@@ -9,18 +9,17 @@
 #include <vector>
 
 #include "experiments/manifest/manifest.hpp"
+#include "provenance/lineage.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
 
-/// A registered manifest: its hash, experiment, question, names of figures, and its text for
-/// recorded_manifest().
-struct RegisteredManifest {
-  std::string sha256;
+/// A registered manifest with what its info says: experiment, question and names of figures. The
+/// text, for recorded_manifest(), may have another SHA-256 in a damaged store.
+struct RegisteredManifest : ManifestText {
   std::string experiment;
   std::string question;
   std::vector<std::string> figures;
-  std::string text;
 };
 
 /// Display names of all variants in a store, by variant_names() of each manifest. A settled packing
