@@ -444,7 +444,6 @@ json run_rows(const Packings& packings, const Experiment& experiment) {
 
 json experiment_json(const Content& content, const Experiment& experiment) {
   const RegisteredManifest& manifest = experiment.manifest;
-  const auto known = content.manifests.find(manifest.sha256);
   json verdict = json::array();
   for (const auto& [ruling, number] : rulings_of(experiment.verdicts)) {
     verdict.push_back(ruling_json(ruling));
@@ -455,9 +454,7 @@ json experiment_json(const Content& content, const Experiment& experiment) {
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
           {"stage_count", experiment.runs.size()},
-          {"manifest",
-           {{"brief", brief(manifest.sha256)},
-            {"path", known == content.manifests.end() ? "" : known->second.path}}},
+          {"manifest", {{"brief", brief(manifest.sha256)}, {"path", manifest.path}}},
           {"steps", workflow(content, experiment)},
           {"figures", experiment.figures},
           {"unmade", experiment.unmade},
