@@ -34,9 +34,10 @@ trap 'rm -rf "$new"' EXIT
 # Of `cost`, whose runs are partly LAMMPS's, no rows are published.
 for folder in ${1:-$(sed -n '/^#/d; /^cost/d; s/ |.*//p' "$here/published.txt")}; do
   line=$(grep "^$folder |" "$here/published.txt") || { echo "published.txt has no folder $folder" >&2; exit 2; }
-  # A figure of all experiments has the manifest `*.yaml`; its folder is named by the scale alone.
+  # The folder of a figure of all experiments is named by the scale alone. Its manifests are all but accuracy.yaml,
+  # which needs LAMMPS and has no part in it.
   case $(column 2) in
-    \*.yaml) name="" ;;
+    *\**) name="" ;;
     *) name=$(sed -n 's/^experiment: //p' "experiments/$(column 2)") ;;
   esac
   # shellcheck disable=SC2046  # one word an option
