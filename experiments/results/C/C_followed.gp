@@ -74,26 +74,26 @@ $series9 << EOD
 1,20,,
 EOD
 plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
-     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 0.4 notitle, \
+     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05', \
-     keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0667', \
-     keyentry with points lc rgb '#009e73' lw 1.2 pt 8 ps 0.4 notitle, \
+     keyentry with points lc rgb '#009e73' lw 1.2 pt 8 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.0833', \
-     keyentry with points lc rgb '#0072b2' lw 1.2 pt 10 ps 0.4 notitle, \
+     keyentry with points lc rgb '#0072b2' lw 1.2 pt 10 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 title '{/:Italic A} = 0.1', \
-     keyentry with points lc rgb '#d55e00' lw 1.2 pt 12 ps 0.4 notitle, \
-     $series9 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 12 ps 0.4 notitle, \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 12 ps 1.1 notitle, \
+     $series9 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 12 ps 1.1 notitle, \
      $series8 every 1 using 1:($2-$4>0?$2-$4:1.09860284):(0):($2+$4-($2-$4>0?$2-$4:1.09860284)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
      $series8 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
-     $series7 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 10 ps 0.4 notitle, \
+     $series7 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 10 ps 1.1 notitle, \
      $series6 every 1 using 1:($2-$4>0?$2-$4:1.09860284):(0):($2+$4-($2-$4>0?$2-$4:1.09860284)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
      $series6 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
-     $series5 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 8 ps 0.4 notitle, \
+     $series5 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 8 ps 1.1 notitle, \
      $series4 every 1 using 1:($2-$4>0?$2-$4:1.09860284):(0):($2+$4-($2-$4>0?$2-$4:1.09860284)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
      $series4 every 1 using 1:2 with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
-     $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 1.1 notitle, \
      $series2 every 1 using 1:($2-$4>0?$2-$4:1.09860284):(0):($2+$4-($2-$4>0?$2-$4:1.09860284)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series2 every 1 using 1:2 with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 0.4 notitle
+     $series1 every 1 using 1:2 with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 1.1 notitle
 set output
