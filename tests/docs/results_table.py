@@ -40,7 +40,7 @@ HEADLINES = [
      ("S7", "E: crystallites are more probable near the top", "in the upper minus the lower third", "more near the top, by over 0.2")],
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
-SOURCES = ("earlier/decide", "earlier/larger_step", "earlier/volume", "earlier/paper", "desk", "earlier")
+SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices", "accuracy")
 
