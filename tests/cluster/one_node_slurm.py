@@ -218,7 +218,8 @@ class OneNodeSlurm:
         lost = self.job_processes()
         for process in lost:
             kill(process)
-        wait_for("the node's processes to be gone", lambda: not set(lost) & set(self.job_processes()))
+        # Every process has a space in its command line here, but one that has ended has none.
+        wait_for("the node's processes to be gone", lambda: not set(lost) & set(processes(" ")))
 
     def ask(self, *words):
         """What one of Slurm's programs says; None when it fails."""
