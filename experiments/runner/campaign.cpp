@@ -53,7 +53,8 @@ class Progress {
   void begin(const StageJob& job) {
     const std::lock_guard lock(mutex_);
     running_[job.id] = {job.name, "starting", {}};
-    if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
+    if (terminal_ || quiet_) return;
+    print_stderr("{}: started ({} of {} stages done)\n", job.name, done_, stages_);
   }
 
   void update(const StageJob& job, const std::string& text) {

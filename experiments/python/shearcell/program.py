@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The program shearcell: where it is, its errors, and a campaign with a progress bar."""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Union
+
+if TYPE_CHECKING:
+    import pandas
+
+    from .store import Store
+
+PathLike = Union[str, "os.PathLike[str]"]
+Manifest = Union[PathLike, Mapping[str, Any]]
+
+
+class ShearcellError(RuntimeError):
+    """The program ended with an error; the text is its message.
+
+    Attributes:
+        code: its exit code: 1 the machine failed, 2 usage or manifest, 3 a run failed numerically, 4 the
+            store is damaged, 85 interrupted. 128 + N if signal N ended it. None if there is no program.
+    """
+
+    def __init__(self, message: str, code: int | None = None) -> None:
+        super().__init__(message)
+        self.code = code
+
+    def __reduce__(self) -> Any:
+        return type(self), (str(self), self.code)
+
+
+def need(*modules: str) -> Any:
+    """The first of these modules. Raises ImportError that says how to install what is missing."""
+    for name in reversed(modules):
+        try:
+            found = importlib.import_module(name)
+        except ImportError:
+            raise ImportError(f"this needs the Python package {name}: pip install {name}, or Debian's "
+                              f"package python3-{name}", name=name) from None
+    return found
+
+
+def find_program(program: PathLike | None = None) -> str:
+    """The program: as given, $SHEARCELL, that in this package's wheel, or that in PATH."""
+    own = Path(__file__).with_name("program") / "shearcell"
+    name = os.fspath(program or os.environ.get("SHEARCELL") or (own if own.is_file() else "shearcell"))
+    found = shutil.which(name)
+    if found is None:
+        raise ShearcellError(f"there is no program {name}: add its folder to PATH, or name it in $SHEARCELL")
+    return os.path.abspath(found)
+
+
+def call(program: str, *arguments: PathLike) -> subprocess.CompletedProcess[bytes]:
+    """Runs the program to its end, whatever its exit code."""
+    return subprocess.run([program, *map(_encoded, arguments)], capture_output=True, check=False)
+
+
+def output_of(program: str, *arguments: PathLike) -> str:
+    """Output of the program. Raises ShearcellError."""
+    done = call(program, *arguments)
+    if done.returncode != 0:
+        raise error_of(done.returncode, done.stderr.decode(errors="replace").splitlines())
+    return done.stdout.decode()
+
+
+def error_of(code: int, lines: Iterable[str], hidden: Iterable[PathLike] = ()) -> ShearcellError:
+    """The exception for an exit code and the lines on standard error. `hidden`: what _files() made."""
+    text = "\n".join(line[11:] if line.startswith("shearcell: ") else line for line in lines
+                     if not line.startswith(("warning: ", "Run with --help", "Interrupted. ")))
+    text = _shown(text, hidden)
+    if code < 0:
+        code, text = 128 - code, text or f"{signal.Signals(-code).name} ended the program"
+    if code == 85:
+        text = text or "the program was interrupted; the same call continues"
+    return ShearcellError(text.strip() or f"exit code {code}", code)
+
+
+def options(**given: Any) -> list[str]:
+    """--NAME VALUE for each option that is not None, several times for a list; a bare --NAME for True."""
+    words = []
+    for name, values in given.items():
+        option = "--" + name.replace("_", "-")
+        several = isinstance(values, Iterable) and not isinstance(values, (str, os.PathLike))
+        for value in values if several else [values]:
+            if value is True:
+                words.append(option)
+            elif value is not None and value is not False:
+                words += [option, str(value)]
+    return words
+
+
+def run(manifest: Manifest | Iterable[Manifest], scale: str | None = None,
+        store: PathLike = "shearcell-store", jobs: int | None = None, *, program: PathLike | None = None,
+        **more: Any) -> "Store":
+    """Computes the runs of manifests that the store does not have, and returns the store.
+
+    Shows a progress bar: that of tqdm if it is installed, else lines of text. Ctrl-C (in a notebook
+    "interrupt") stops as in a terminal: the program writes checkpoints and KeyboardInterrupt is raised.
+    The same call continues, bit for bit. A second Ctrl-C ends the program at once; nothing recorded is lost.
+
+    Args:
+        manifest: path of a manifest, its text (with a line break), or a dict of it; or a list of these.
+            A relative `start: {file: ...}` of a text or a dict is of the working directory.
+        scale: named size (default: desk).
+        store: folder of the store, or a Store.
+        jobs: runs at a time (default: one per core).
+        program: the program shearcell; default as for Store.
+        more: further options of `shearcell run`, such as cycles=20, seeds=3, seed="4-6", threads=2,
+            keep_every=10, variant=["fluid=cell"].
+
+    Raises:
+        ShearcellError: with the message and the exit code of the program; code 3 if a run failed
+            numerically. The other runs are computed before.
+    """
+    from .store import Store
+
+    found, folder = find_program(program), _folder(store)
+    with _files(manifest) as (files, made):
+        words = ["run", *files, *options(scale=scale, jobs=jobs, **more), "--json", "--store", folder]
+        _compute(found, words, made)
+    return Store(folder, program)
+
+
+def plan(manifest: Manifest | Iterable[Manifest], scale: str | None = None,
+         store: PathLike = "shearcell-store", *, program: PathLike | None = None,
+         **more: Any) -> "pandas.DataFrame":
+    """What `run` with these arguments would compute, and its cost: a row for each stage; needs pandas.
+
+    `core_seconds_left` is an estimate by the speed of earlier runs of the store, or an assumed one
+    (`attrs["rate_measured"]`). `attrs` of the DataFrame has the sums: `seconds_left` on `cores` cores,
+    `bytes_left`, `runs`, `notes` and what else `shearcell plan --json` says.
+    """
+    pandas = need("pandas")
+    found = find_program(program)
+    with _files(manifest) as (files, made):
+        done = call(found, "plan", *files, *options(scale=scale, **more), "--json", "--store", _folder(store))
+        if done.returncode != 0:
+            raise error_of(done.returncode, done.stderr.decode(errors="replace").splitlines(), made)
+    facts = json.loads(done.stdout)
+    for warning in facts["warnings"]:
+        warnings.warn(_shown(warning, made), stacklevel=2)
+    rate = facts["particle_steps_per_second_and_core"]
+    first = ("experiment", "stage", "variant", "seed", "N", "cycles", "state")
+    frame = pandas.DataFrame([{**{key: stage[key] for key in first},
+                               "core_seconds_left": stage["particle_steps_left"] / rate,
+                               **{key: value for key, value in stage.items() if not isinstance(value, dict)}}
+                              for stage in facts.pop("stages")])
+    frame.attrs.update(facts)
+    return frame
+
+
+def _shown(text: str, made: Iterable[PathLike]) -> str:
+    """The text with the user's word for files that _files() made."""
+    for file in made:
+        text = text.replace(str(file), "manifest")
+    return text
+
+
+def _encoded(argument: PathLike) -> bytes:
+    # The program reads and writes UTF-8 whatever Python takes for the locale's encoding.
+    if isinstance(argument, str):
+        return argument.encode("utf-8", "surrogateescape")
+    return os.fsencode(argument)
+
+
+def _folder(store: Any) -> Path:
+    return Path(getattr(store, "path", store)).absolute()
+
+
+@contextlib.contextmanager
+def _files(manifest: Manifest | Iterable[Manifest]) -> Iterator[tuple[list[PathLike], list[PathLike]]]:
+    """Paths of the manifests, and those of them that exist for as long as the context does: texts and dicts. These are
+    in the working directory, if it can be written to, since paths in a manifest are relative to its folder."""
+    several = isinstance(manifest, Iterable) and not isinstance(manifest, (str, os.PathLike, Mapping))
+    paths: list[PathLike] = []
+    made: list[PathLike] = []
+    try:
+        for one in manifest if several else [manifest]:
+            if isinstance(one, Mapping):
+                text = json.dumps(one, indent=1, ensure_ascii=False, allow_nan=False, default=_plain) + "\n"
+            elif isinstance(one, str) and "\n" in one:
+                text = one
+            elif isinstance(one, (str, os.PathLike)):
+                paths.append(one)
+                continue
+            else:
+                raise TypeError(f"a manifest is a path, a text or a dict, not {type(one).__name__}")
+            here = os.curdir if os.access(os.curdir, os.W_OK) else None
+            file, path = tempfile.mkstemp(".yaml", ".shearcell-", here)
+            made.append(path)
+            paths.append(path)
+            with open(file, "w", encoding="utf-8") as written:
+                written.write(text)
+        yield paths, made
+    finally:
+        for path in made:
+            os.unlink(path)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of numpy, paths, and other collections, for JSON."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, Iterable):
+        return list(value)
+    raise TypeError(f"{value!r} cannot be a value of a manifest")
+
+
+class _Bar:
+    """Progress of a campaign in stages. With tqdm a bar, else a line that is written over on a terminal."""
+
+    def __init__(self) -> None:
+        self.running: dict[str, float] = {}  # share that is done of each running stage
+        self.done, self.total, self.shown = 0, 0, 0
+        self.tqdm = None
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                from tqdm.auto import tqdm
+                self.tqdm = tqdm(total=None, unit="stage", bar_format="{percentage:3.0f}%|{bar}| {desc}")
+        except ImportError:
+            pass
+
+    def read(self, line: str) -> bool:
+        """Takes a line of the program's progress; returns whether it is one."""
+        if ended := re.fullmatch(r"(.*): (.*) \((\d+) of (\d+) stages done\)", line):
+            name, how = ended[1], ended[2]
+            self.done, self.total = int(ended[3]), int(ended[4])
+            self.running.pop(name, None)
+            if how == "started":
+                self.running[name] = 0
+            text = f"{name}: {how}"
+        elif now := re.fullmatch(r"(.*): (cycle ([\d.]+) of (\d+)|step \d+) .*", line):
+            if now[3] and float(now[4]) > 0:
+                self.running[now[1]] = min(1.0, float(now[3]) / float(now[4]))
+            text = re.sub(" +", " ", line)
+        else:
+            return False
+        done = self.done + sum(self.running.values())
+        if self.tqdm is not None:
+            self.tqdm.total, self.tqdm.n = self.total, round(done, 2)
+            self.tqdm.set_description_str(f"{self.done} of {self.total} stages; {text}", refresh=False)
+            self.tqdm.refresh()
+            return True
+        text = f"{100 * done / max(1, self.total):3.0f} %, {self.done} of {self.total} stages; {text}"
+        over = sys.stderr is not None and sys.stderr.isatty()
+        print(text.ljust(self.shown) if over else text, end="\r" if over else "\n", file=sys.stderr, flush=True)
+        self.shown = len(text) if over else 0
+        return True
+
+    def say(self, line: str) -> None:
+        if self.tqdm is not None:
+            self.tqdm.write(line, file=sys.stderr)
+        else:
+            print(line.ljust(self.shown), file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        if self.tqdm is not None:
+            self.tqdm.leave = self.total > 0  # not where nothing was left to compute
+            self.tqdm.close()
+        elif self.shown > 0:
+            print(file=sys.stderr)
+
+
+def _end_with_parent() -> None:
+    """In the child: it gets SIGTERM when Python is killed, and then writes checkpoints."""
+    _prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
+
+
+_prctl = ctypes.CDLL(None).prctl
+
+
+def _compute(program: str, words: list[PathLike], made: list[PathLike]) -> None:
+    """Runs `run` with its progress. In a session of its own, since a terminal or a notebook sends SIGINT to the whole
+    group, and the program takes a second one as the wish to end at once."""
+    lines: list[str] = []
+    bar = _Bar()
+    with tempfile.TemporaryFile() as output:
+        process = subprocess.Popen([program, *map(_encoded, words)], stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=subprocess.PIPE, start_new_session=True, preexec_fn=_end_with_parent)
+        stopped = None
+        while True:
+            try:
+                for line in process.stderr:
+                    line = _shown(line.decode(errors="replace").rstrip("\n"), made)
+                    if bar.read(line):
+                        continue
+                    lines.append(line)
+                    if line.startswith("warning: "):
+                        warnings.warn(line[9:], stacklevel=3)
+                    elif bar.total > 0 and not line.startswith("Interrupted. "):  # else the exception says it
+                        bar.say(line)
+                process.stderr.close()
+                process.wait()
+                break
+            except KeyboardInterrupt as stop:
+                stopped = stop
+                process.send_signal(signal.SIGINT)
+                bar.say("interrupted: the program writes checkpoints; the same call continues")
+            except BaseException:
+                process.send_signal(signal.SIGINT)
+                process.wait()
+                raise
+        bar.close()
+        output.seek(0)
+        said = output.read().decode(errors="replace")
+    if stopped is not None:
+        raise stopped
+    if process.returncode != 0:
+        with contextlib.suppress(ValueError, LookupError):
+            lines = json.loads(said)["messages"] or lines
+        raise error_of(process.returncode, lines, made)
