@@ -66,6 +66,12 @@ TEST(Expression, IsArithmetic) {
   EXPECT_EQ(names_in("stress_xy_Pa/(2*pi*max(phi, phi)) + 1e5"),
             (std::vector<std::string>{"stress_xy_Pa", "phi"}));
   EXPECT_EQ(names_in("phi"), std::vector<std::string>{"phi"});
+  // Long texts, which are no expressions, overflow no stack.
+  for (const char c : {'a', '1', ' ', '+'}) {
+    const std::string text(1'000'000, c);
+    names_in(text);
+    EXPECT_EQ(wrong_in_expression(text), "is longer than 200 bytes");
+  }
   EXPECT_FALSE(is_expression("msd_1_cycle_d2"));
   EXPECT_TRUE(is_expression("-phi") && is_expression("1/phi") && is_expression("2"));
 }
