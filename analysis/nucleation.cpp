@@ -253,7 +253,7 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {
   return rates;
 }
 
-std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
+std::optional<Estimate> size_exponent(RunGroup runs, Region region, double level) {
   Shares amplitudes;
   std::set<std::string> packings;
   std::size_t counted = 0;
@@ -284,8 +284,7 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
   const Likelihood best = likelihood(amplitudes, value);
   const boost::math::chi_squared one_parameter(1);
   const double shared = packings.size() < counted ? variance_between_packings(best) : 1;
-  const double least =
-      best.logarithm - shared * boost::math::quantile(one_parameter, confidence_level) / 2;
+  const double least = best.logarithm - shared * boost::math::quantile(one_parameter, level) / 2;
   const auto unlikely = [&](double exponent) {
     return likelihood(amplitudes, exponent).logarithm < least;
   };
@@ -294,7 +293,7 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region) {
           ? bisected(-widest, value, [&](double exponent) { return !unlikely(exponent); })
           : -infinite,
       unlikely(widest) ? bisected(value, widest, unlikely) : infinite};
-  return estimate_with(value, interval, normal_quantile((1 + confidence_level) / 2), counted);
+  return estimate_with(value, interval, normal_quantile((1 + level) / 2), counted);
 }
 
 }  // namespace shearcell

@@ -85,6 +85,7 @@ inline constexpr double rate_step = 0.0005;
 /// Sinica 21, 129 (2011)). None unless runs of a larger cell (more grains N) were at about the phi
 /// of some event, and runs of a smaller cell at that of some event; none for fewer than least_runs
 /// packings.
-std::optional<Estimate> size_exponent(RunGroup runs, Region region);
+std::optional<Estimate> size_exponent(RunGroup runs, Region region,
+                                      double level = confidence_level);
 
 }  // namespace shearcell

@@ -2,6 +2,8 @@
 #include "analysis/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -16,10 +18,13 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t bootstrap_selections = 1000;
-constexpr double upper = (1 + confidence_level) / 2;
 
-Interval around(double value, double error, double freedom) {
-  const double half = error > 0 ? student_quantile(upper, freedom) * error : 0;
+double upper(double level = confidence_level) {
+  return (1 + level) / 2;
+}
+
+Interval around(double value, double error, double freedom, double level) {
+  const double half = error > 0 ? student_quantile(upper(level), freedom) * error : 0;
   return {value - half, value + half};
 }
 
@@ -144,17 +149,18 @@ double normal_quantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 
-std::optional<Estimate> mean_of(std::span<const double> values) {
+std::optional<Estimate> mean_of(std::span<const double> values, double level) {
   const RunStatistics found = over_runs(values);
   if (found.runs < least_runs) return std::nullopt;
   const auto n = static_cast<double>(found.runs);
   return Estimate{.value = *found.mean,
-                  .interval = around(*found.mean, *found.standard_error, n - 1),
+                  .interval = around(*found.mean, *found.standard_error, n - 1, level),
                   .runs = found.runs,
                   .spread = *found.standard_error * std::sqrt(n)};
 }
 
-std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b) {
+std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b,
+                                            double level) {
   const RunStatistics x = over_runs(a);
   const RunStatistics y = over_runs(b);
   if (std::min(x.runs, y.runs) < least_runs) return std::nullopt;
@@ -165,27 +171,52 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
   const double freedom = (xx + yy) * (xx + yy) / (xx * xx / (n - 1) + yy * yy / (m - 1));
   const double difference = *x.mean - *y.mean;
   return Estimate{.value = difference,
-                  .interval = around(difference, std::sqrt(xx + yy), freedom),
+                  .interval = around(difference, std::sqrt(xx + yy), freedom, level),
                   .runs = std::min(x.runs, y.runs),
                   .groups = 2,
                   .spread = std::sqrt(n * xx + m * yy)};
 }
 
-std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic) {
+std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
+                                     double level) {
   if (runs < least_bootstrap_runs) return std::nullopt;
   std::vector<std::size_t> every(runs);
   std::iota(every.begin(), every.end(), std::size_t{0});
   const double value = statistic(every);
   if (!std::isfinite(value)) return std::nullopt;
   const auto n = static_cast<double>(runs);
-  const double t = student_quantile(upper, n - 1);
+  const double t = student_quantile(upper(level), n - 1);
   const double tail = boost::math::cdf(boost::math::normal(), -t * std::sqrt(n / (n - 1)));
   return estimate_with(value, percentiles(bootstrap_values(runs, runs, statistic), tail), t, runs);
 }
 
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic) {
   if (runs < least_bootstrap_runs) return {-infinite, infinite};
-  return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper);
+  return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper());
+}
+
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups) {
+  double n = 0, k = 0, sum = 0, sum_of_squares = 0, sizes = 0, within = 0;
+  for (const std::vector<double>& group : groups) {
+    const RunStatistics found = over_runs(group);
+    if (found.runs == 0) continue;
+    const double size = static_cast<double>(found.runs), mean = *found.mean;
+    k += 1;
+    n += size;
+    sizes += size * size;
+    sum += size * mean;
+    sum_of_squares += size * mean * mean;
+    within += std::pow(found.standard_error.value_or(0), 2) * size * (size - 1);
+  }
+  if (k < 2 || n == k) return std::nullopt;
+  constexpr double tail = 0.05;
+  const double size = (n - sizes / n) / (k - 1);
+  const double between = (sum_of_squares - sum * sum / n) / (k - 1), noise = within / (n - k);
+  const double least = boost::math::quantile(boost::math::fisher_f(k - 1, n - k), tail);
+  const double chi = boost::math::quantile(boost::math::chi_squared(k - 1), tail);
+  const auto root = [size](double variance) { return std::sqrt(std::max(0.0, variance) / size); };
+  return SpreadBetween{root(between - noise), root((between - least * noise) * (k - 1) / chi),
+                       between / noise};
 }
 
 Estimate ratio(const Estimate& a, const Estimate& b) {
@@ -211,11 +242,11 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   const double hit = both_sides ? (1 + power) / 2 : power;
   const double ratio = estimate.spread / distance;
   // Student's quantiles exceed the normal ones, so fewer runs are never enough.
-  const double least = std::pow((normal_quantile(upper) + normal_quantile(hit)) * ratio, 2);
+  const double least = std::pow((normal_quantile(upper()) + normal_quantile(hit)) * ratio, 2);
   if (!(least <= most)) return std::nullopt;
   for (auto n = std::max(least_runs, static_cast<std::size_t>(least)); n <= most; ++n) {
     const auto freedom = static_cast<double>(estimate.groups * (n - 1));
-    const double needed = student_quantile(upper, freedom) + student_quantile(hit, freedom);
+    const double needed = student_quantile(upper(), freedom) + student_quantile(hit, freedom);
     if (needed * ratio <= std::sqrt(static_cast<double>(n))) return n;
   }
   return std::nullopt;
@@ -262,7 +293,8 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {
   return variance > 0 ? excess / std::sqrt(variance) : 0;
 }
 
-std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b) {
+std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
+                                        double level) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
   std::set<double> factors;  // log2 of those at which the order of the two groups changes
@@ -273,7 +305,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   }
   if (factors.empty()) return std::nullopt;
   const std::vector<double> edges(factors.begin(), factors.end());
-  const double limit = student_quantile(upper, static_cast<double>(a.size() + b.size() - 2));
+  const double limit = student_quantile(upper(level), static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
   double negative = edges.front();  // the statistic is negative below this factor
   double positive = edges.back();   // and positive above this one

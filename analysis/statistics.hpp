@@ -38,8 +38,9 @@ using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 /// two runs, or if fewer than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
-/// Confidence level of all intervals. A 90 % interval that lies within a margin is equivalent to
-/// two one-sided tests at 5 %: Schuirmann, J. Pharmacokinet. Biopharm. 15, 657 (1987).
+/// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
+/// is equivalent to two one-sided tests at 5 %: Schuirmann, J. Pharmacokinet. Biopharm. 15, 657
+/// (1987).
 inline constexpr double confidence_level = 0.9;
 
 /// With fewer runs, or fewer pairs of runs, nothing is estimated. [choice]
@@ -59,7 +60,7 @@ struct Interval {
 
 struct Estimate {
   double value = 0;
-  Interval interval;       ///< at confidence_level; an end may be infinite
+  Interval interval;       ///< an end may be infinite
   std::size_t runs = 0;    ///< or pairs; of two groups the smaller one
   std::size_t groups = 1;  ///< 2: two independent groups
   double spread = 0;       ///< the standard error would be spread / sqrt(n) with n runs a group
@@ -73,22 +74,40 @@ double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);
 
 /// Mean of one value per run, or per pair of runs, by Student's t: mean +- t s / sqrt(n).
-std::optional<Estimate> mean_of(std::span<const double> values);
+std::optional<Estimate> mean_of(std::span<const double> values, double level = confidence_level);
 
 /// mean(a) - mean(b) of two independent groups that may differ in variance: B. L. Welch,
 /// Biometrika 34, 28 (1947).
-std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b);
+std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b,
+                                            double level = confidence_level);
 
 /// Estimates a statistic that is not a mean, with the expanded percentile interval of the
 /// bootstrap: T. C. Hesterberg, The American Statistician 69, 371 (2015). For a mean this interval
 /// would have the length of Student's interval. The statistic of a selection may be infinite;
 /// selections without a statistic widen the interval at both ends. None for fewer than
 /// least_bootstrap_runs, or if all runs together have no finite statistic.
-std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic);
+std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
+                                     double level = confidence_level);
 
 /// Where 90 % of repetitions with `chosen` runs lie: 5 and 95 % quantiles of the statistic of so
 /// many of the `runs`, drawn with replacement. Unbounded for fewer than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
+
+/// Standard deviation between the true means of groups that are drawn from many (one-way random
+/// effects).
+struct SpreadBetween {
+  double value = 0;        ///< sqrt of (variance between groups - variance within) / group size
+  double upper_limit = 0;  ///< exceeds the true one with 95 % probability
+  double f = 0;            ///< variance ratio; with no difference between groups it is about 1
+};
+/// Analysis of variance of groups of one value per run, which may be of unequal size: S. R. Searle,
+/// G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit is that
+/// of J. S. Williams, Biometrika 49, 278 (1962), with k groups and f = n - k:
+///
+///     limit^2 = (k - 1) MSB (1 - F / f_ratio) / (n0 chi^2),   F, chi^2: 5 % quantiles
+///
+/// None for fewer than two groups with values, or without a group of two.
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups);
 
 /// a / b of two independent estimates of positive quantities. The errors of the logarithms are
 /// added in squares, on each side those that move the ratio there: G. Y. Zou and A. Donner, Stat.
@@ -137,6 +156,7 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 /// test compares with Student's t, n + m - 2 degrees of freedom: with the normal distribution the
 /// intervals of 4 to 12 runs a group cover 86 to 88 %. The interval is infinite where too few
 /// events were observed. None for fewer than least_runs in a group, or without an event.
-std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b);
+std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
+                                        double level = confidence_level);
 
 }  // namespace shearcell

@@ -19,18 +19,6 @@ using nlohmann::json;
 
 constexpr int significant = 6;  // digits
 
-Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
-  const bool is_above = interval.low > margin;
-  const bool is_below = interval.high < margin;
-  if (claimed == Relation::same) {
-    if (interval.low >= -margin && interval.high <= margin) return Ruling::agrees;
-    return is_above || interval.high < -margin ? Ruling::differs : Ruling::undecided;
-  }
-  if (is_above) return claimed == Relation::higher ? Ruling::supported : Ruling::refuted;
-  if (is_below) return claimed == Relation::lower ? Ruling::supported : Ruling::refuted;
-  return Ruling::undecided;
-}
-
 std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, Relation claimed) {
   const bool within = claimed == Relation::same;
   const bool may_be_zero = estimate.interval.low <= 0 && estimate.interval.high >= 0;
@@ -66,6 +54,18 @@ json claim_of(const Verdict& verdict) {
 }
 
 }  // namespace
+
+Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
+  const bool is_above = interval.low > margin;
+  const bool is_below = interval.high < margin;
+  if (claimed == Relation::same) {
+    if (interval.low >= -margin && interval.high <= margin) return Ruling::agrees;
+    return is_above || interval.high < -margin ? Ruling::differs : Ruling::undecided;
+  }
+  if (is_above) return claimed == Relation::higher ? Ruling::supported : Ruling::refuted;
+  if (is_below) return claimed == Relation::lower ? Ruling::supported : Ruling::refuted;
+  return Ruling::undecided;
+}
 
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, FigureTable entered, Counted counted) {

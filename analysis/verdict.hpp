@@ -57,7 +57,10 @@ struct Verdict {
 };
 
 /// agrees, supported: the interval lies where the claim puts it. differs, refuted: the interval
-/// lies wholly outside. undecided: otherwise, and without an estimate. `runs_needed` runs would
+/// lies wholly outside. undecided: otherwise.
+Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
+
+/// The ruling of the estimate's interval; undecided without an estimate. `runs_needed` runs would
 /// decide with 90 % probability if the true value is 0 or twice the margin. If the interval
 /// excludes 0, or that many runs exist already, the true value is taken to be the estimate.
 /// `runs_needed` is always more than the runs of the estimate.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -148,6 +149,71 @@ TEST(Bootstrapped, SelectionsWithoutAValueWidenIt) {
   EXPECT_TRUE(std::isinf(found.interval.low) && std::isinf(found.interval.high));
   EXPECT_FALSE(runs_to_resolve(found, 1, true).has_value());
   EXPECT_FALSE(bootstrapped(6, [](auto) { return std::nan(""); }).has_value());
+}
+
+TEST(Levels, AreThoseOfTheQuantile) {
+  const std::vector<double> a = {1, 2, 3, 6}, b = {2, 2.5, 1, 0};
+  const auto ratio = [](const Estimate& at_96, const Estimate& at_90) {
+    return half_length(at_96) / half_length(at_90);
+  };
+  EXPECT_NEAR(ratio(*mean_of(a, 0.96), *mean_of(a)), 3.4819088 / 2.3533634, 1e-6);
+  EXPECT_GT(ratio(*difference_of_means(a, b, 0.96), *difference_of_means(a, b)), 1.2);
+  const std::vector<double> values = normal_numbers(1, 10);
+  EXPECT_GT(ratio(*bootstrapped(10, mean_over(values), 0.96), *bootstrapped(10, mean_over(values))),
+            1.1);
+}
+
+TEST(VarianceBetween, IsThatOfTheAnalysisOfVariance) {
+  // F: scipy.stats.f_oneway. Limit: quantiles of scipy.stats.
+  const std::vector<std::vector<double>> groups = {
+      {1, 2, 3, 4}, {3, 5, 4}, {6, 8, 7, 7, 9}, {2, 4}, {}};
+  const SpreadBetween found = variance_between(groups).value();
+  EXPECT_NEAR(found.f, 14.792085848, 1e-8);
+  EXPECT_NEAR(found.value, 2.406797884, 1e-8);
+  EXPECT_NEAR(found.upper_limit, 7.250134925, 1e-8);
+  const SpreadBetween same =
+      variance_between(std::vector<std::vector<double>>{{1, 3}, {3, 1}, {2, 2}}).value();
+  EXPECT_EQ(same.value, 0);
+  EXPECT_EQ(same.upper_limit, 0) << "F is below its 5 % quantile";
+  EXPECT_FALSE(variance_between(std::vector<std::vector<double>>{{1, 2}, {}}));
+  EXPECT_FALSE(variance_between(std::vector<std::vector<double>>{{1}, {2}, {3}}));
+}
+
+TEST(VarianceBetween, TheUpperLimitExceedsTheTruthInNineteenOfTwentySamples) {
+#ifdef NDEBUG
+  constexpr std::uint32_t samples = 4000;
+#else
+  constexpr std::uint32_t samples = 1000;
+#endif
+  std::printf(
+      "| group sizes | true | mean of the estimate's square | above the truth "
+      "|\n|---|---|---|---|\n");
+  for (const std::vector<std::size_t>& sizes :
+       {std::vector<std::size_t>(6, 10), {4, 12, 10, 6, 20}}) {
+    for (const double truth : {0.0, 0.3, 1.0, 5.0}) {
+      std::uint32_t held = 0;
+      double squares = 0;
+      for (std::uint32_t s = 0; s < samples; ++s) {
+        const std::vector<double> means = normal_numbers(2 * s, sizes.size());
+        const std::vector<double> noise = normal_numbers(2 * s + 1, 60);
+        std::vector<std::vector<double>> groups;
+        std::size_t next = 0;
+        for (std::size_t k = 0; k < sizes.size(); ++k) {
+          std::vector<double>& group = groups.emplace_back();
+          while (group.size() < sizes[k]) group.push_back(0.646 + truth * means[k] + noise[next++]);
+        }
+        const SpreadBetween found = variance_between(groups).value();
+        held += found.upper_limit >= truth ? 1 : 0;
+        squares += found.value * found.value / samples;
+      }
+      const double share = static_cast<double>(held) / samples;
+      std::printf("| %zu groups, %zu to %zu | %.1f | %.3f | %.3f |\n", sizes.size(),
+                  *std::ranges::min_element(sizes), *std::ranges::max_element(sizes), truth,
+                  squares, share);
+      EXPECT_GE(share, 0.94 - 3 * std::sqrt(0.95 * 0.05 / samples));
+      EXPECT_NEAR(squares, truth * truth, 0.1 * truth * truth + 0.1);
+    }
+  }
 }
 
 TEST(Repetitions, OfAMeanScatterAsItsError) {
