@@ -95,9 +95,12 @@ const std::vector<std::string> kLammpsCaveats = {
     "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
     "wall's plane ends a run."};
 
-// Notes on runs that this machine cannot hold, and on runs by another engine.
+// Notes on files of grains, runs that this machine cannot hold, and runs by another engine.
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
   std::vector<std::string> notes;
+  for (const Plan& plan : plans) {
+    if (!plan.read.empty()) notes.push_back(plan.read);
+  }
   double most = 0;
   for (const Line& line : lines) {
     most = std::max(most, run_bytes(geometry(line.run->parameters)));

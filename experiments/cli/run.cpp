@@ -145,6 +145,7 @@ void run(const RunOptions& options, Context& context) {
   std::vector<StageJob> jobs;
   std::set<std::string> known;
   for (const Plan& plan : plans) {
+    if (!plan.read.empty() && !context.json) fmt::print("{}\n", plan.read);
     for (StageJob& job : declare(store, plan)) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }

@@ -183,6 +183,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
         const PlacedGrains grains = placed(*plan.file, run.packing, seed);  // or says why it cannot
+        plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         const Cell& cell = grains.cell;
         const double height = std::fabs(grains.state.wall_height -
                                         (cell.moving == MovingWall::top ? cell.bottom : cell.top));

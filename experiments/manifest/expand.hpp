@@ -41,6 +41,7 @@ struct Plan {
   std::optional<PackingText> file = {};  ///< the grains of all packings
   std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
   std::vector<std::string> warnings;     ///< sound but unlikely to be meant; one line each
+  std::string read = {};                 ///< what was read of the file, in one line
 };
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).

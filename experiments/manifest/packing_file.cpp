@@ -2,15 +2,15 @@
 #include "experiments/manifest/packing_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <regex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +20,7 @@
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -32,59 +33,89 @@ enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
 
-/// Names of columns in a header and of properties in extended XYZ.
-struct ColumnName {
-  string_view name;
-  Quantity first;
-  int count;  ///< of columns
+/// What a column's name says. A quantity is read of the columns with the lowest rank.
+struct Meaning {
+  string_view names;        ///< in small letters; of one value each: the k-th is `first` + k
+  int first = kQuantities;  ///< kQuantities: none that is known
+  int count = 1;            ///< of values
+  double factor = 1;        ///< 2 for radii
+  enum { listed, second_best, probable } rank = listed;
+  std::optional<LengthUnit> unit = {};  ///< that the name states
 };
-constexpr auto kColumnNames = std::to_array<ColumnName>({{"x", kX, 1},
-                                                         {"y", kY, 1},
-                                                         {"z", kZ, 1},
-                                                         {"xu", kX, 1},
-                                                         {"yu", kY, 1},
-                                                         {"zu", kZ, 1},
-                                                         {"pos", kX, 3},
-                                                         {"vx", kVx, 1},
-                                                         {"vy", kVy, 1},
-                                                         {"vz", kVz, 1},
-                                                         {"vel", kVx, 3},
-                                                         {"velo", kVx, 3},
-                                                         {"velocity", kVx, 3},
-                                                         {"velocities", kVx, 3},
-                                                         {"radius", kDiameter, 1},
-                                                         {"diameter", kDiameter, 1},
-                                                         {"id", kId, 1},
-                                                         {"wall_side", kWall, 1}});
+constexpr Meaning kMeanings[] = {{"x y z", kX},
+                                 {"xu yu zu", kX, 1, 1, Meaning::second_best},
+                                 {"pos", kX, 3},
+                                 {"vx vy vz", kVx},
+                                 {"vel velo velocity velocities", kVx, 3},
+                                 {"radius", kDiameter, 1, 2},
+                                 {"diameter", kDiameter},
+                                 {"id", kId},
+                                 {"wall_side", kWall}};
+
+// What the reader of a format finds. Its texts are parts of the file, by which messages find their
+// line, or constants.
+
+struct Column {
+  string_view name;             ///< "" if it has none
+  int count = 1;                ///< of values
+  string_view count_text = {};  ///< of extended XYZ
+};
+
+struct Table {
+  string_view header = {};  ///< the line that names the columns
+  const char* remedy = "";  ///< if columns are missing
+  std::vector<Column> columns = {};
+  const char* more = nullptr;  ///< what further values of a row are; null: there must be none
+  char separator = ' ';        ///< a blank: any number of blanks and tabs
+  double first_wall = 1;       ///< smallest value of kWall for a wall grain
+  std::vector<string_view> rows = {};
+};
+
+struct Box {
+  string_view line;            ///< the last one that states a part of it
+  Eigen::AlignedBox3d planes;  ///< empty along axes that are not stated
+  double lean = 0;             ///< largest component of an edge off its axis
+  /// Axes along which LAMMPS shrinks the box to the grains; a dump has the box of an earlier step.
+  std::array<bool, 3> follows{};
+};
+
+/// A value of a row that is read.
+struct Use {
+  int quantity;
+  std::size_t field;
+  double factor = 1;
+};
 
 struct GrainRow {
-  int line = 0;
+  string_view line;
   std::array<double, kQuantities> value{};
 };
 
-/// Places of the columns in a line; -1 if there is none.
-struct Layout {
-  std::array<int, kQuantities> column;
-  double per_diameter = 1;    ///< 2 if the column of diameters holds radii
-  double first_wall = 1;      ///< smallest value of kWall for a wall grain
-  std::size_t fields = 0;     ///< of each line
-  bool more_allowed = false;  ///< further fields, which are ignored
-  char separator = ' ';       ///< a blank: any number of blanks and tabs
+bool holds(const std::vector<Use>& uses, int quantity) {
+  return std::ranges::count(uses, quantity, &Use::quantity) > 0;
+}
 
-  Layout() { column.fill(-1); }
-  bool has(Quantity q) const { return column[static_cast<std::size_t>(q)] >= 0; }
-  /// `count` quantities are in columns from `at` on.
-  void set(Quantity first, std::size_t at, int count = 1) {
-    std::iota(&column[first], &column[first] + count, static_cast<int>(at));
+string_view unquoted(string_view text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
+/// Where the first field of the text ends; quotes at its beginning enclose separators.
+std::size_t field_end(string_view text, string_view separators) {
+  std::size_t from = std::min(text.find_first_not_of(' '), text.size());
+  while (from < text.size() && text[from] == '"') {  // "" is a quote
+    from = std::min(text.find('"', from + 1), text.size() - 1) + 1;
   }
-};
+  return text.find_first_of(separators, from);
+}
 
 /// The trimmed fields of a line.
 std::vector<string_view> split(string_view text, char separator) {
   const bool blank = separator == ' ';
   std::vector<string_view> fields;
   for (;;) {
-    const std::size_t end = text.find_first_of(blank ? " \t" : string_view(&separator, 1));
+    const std::size_t end =
+        blank ? text.find_first_of(" \t") : field_end(text, string_view(&separator, 1));
     const string_view field = trimmed(text.substr(0, end));
     if (!blank || !field.empty()) fields.push_back(field);
     if (end == text.npos) return fields;
@@ -92,23 +123,59 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
-string_view unquoted(string_view text) {
-  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-  return quoted ? text.substr(1, text.size() - 2) : text;
+/// `units`: whether listed names may end in a unit, as x_m. A name that is not listed may mean a
+/// diameter, which is then compared with the run's, or a velocity, which is then refused: a packing
+/// made of such a file has had none until now, and its id must not get another state.
+Meaning meaning_of(string_view column, bool units) {
+  // A prefix of LAMMPS, the stem, a unit or index.
+  static const std::regex parts(
+      "([cf]_|d2?_(?=...)|v_(?!(?:[xyzmd]|.m)(?:\\W|_|$)))?(.+?)"
+      "(_([md])(_per_s)?|[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
+  static const std::regex size(
+      "r|rads?|d|dias?|sizes?|sigma|(?!max|min|cut).*(radius|radii|diam(?!o)).*");
+  static const std::regex velocity(
+      "(?!.*(ang|rot|omega|spin))"
+      "((v|mom|speed)[xyz0-9]?|p[xyz]|vel.*|[xyz](v|vel|dot)|.*(veloc|momenta|momentum).*)");
+  const string name = lower(column);
+  std::smatch found;
+  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // it uses the stack
+  string stem = found[2];
+  const auto unit = value_of<LengthUnit>(found.str(4));
+  const bool may_be_listed = found.length(1) == 0 && (found.length(3) == 0 || (units && unit));
+  for (Meaning meaning : kMeanings) {
+    const std::vector<string_view> names = split(meaning.names, ' ');
+    const auto at = std::ranges::find(names, stem) - names.begin();
+    if (!may_be_listed || at == std::ssize(names)) continue;
+    meaning.unit = unit;
+    if (meaning.count == 1) meaning.first += static_cast<int>(at);
+    return meaning;
+  }
+  std::erase_if(stem, [](unsigned char c) { return std::isalnum(c) == 0; });
+  Meaning meaning;
+  meaning.rank = Meaning::probable;
+  meaning.unit = unit;
+  if (std::regex_match(stem, size)) {
+    meaning.first = kDiameter;
+    meaning.factor = stem.front() == 'r' || stem.find("radi") != stem.npos ? 2 : 1;
+  } else if (std::regex_match(stem, velocity)) {
+    meaning.first = kVx;
+  }
+  return meaning;
 }
 
 class PackingReader {
  public:
   PackingReader(string_view text, string_view file, const PackingFacts& facts)
-      : rest_(text), file_(file), facts_(facts) {}
+      : text_(text), file_(file), facts_(facts) {}
 
   PackingFile read() {
-    if (rest_.size() > kLargestPackingFile) {
+    if (text_.size() > kLargestPackingFile) {
       refuse_file(fmt::format("is larger than {} MiB", kLargestPackingFile >> 20),
                   "Leave out columns that are not positions, velocities or radii.");
     }
-    check_characters(rest_, file_, "Save the positions as text: extended XYZ, LAMMPS data or CSV.");
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+    check_characters(text_, file_, "Save the positions as text: extended XYZ, LAMMPS data or CSV.");
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+    rest_ = text_;
     if (trimmed(rest_).empty()) refuse_file("is empty", kFormats);
     const string_view first = rest_.substr(0, rest_.find('\n'));
     if (read_number<std::uint64_t>(trimmed(first))) {
@@ -132,20 +199,25 @@ class PackingReader {
 
   // --- Refusing ---
 
+  /// Of a part of the text.
+  Position place(string_view part) const {
+    const string_view before =
+        text_.substr(0, static_cast<std::size_t>(part.data() - text_.data()));
+    return {1 + static_cast<int>(std::ranges::count(before, '\n')),
+            static_cast<int>(before.size() - (before.rfind('\n') + 1)) + 1};
+  }
+  int line_of(const GrainRow& row) const { return place(row.line).line; }
+
   [[noreturn]] void refuse_file(const string& problem, const string& remedy) const {
     refuse(file_, {}, "", problem, "", remedy);
   }
-  [[noreturn]] void refuse_at(int line, const string& problem, const string& remedy) const {
-    refuse(file_, {line, 1}, "", problem, "", remedy);
+  /// `in`: the line, or a part of it.
+  [[noreturn]] void refuse_line(string_view in, const string& problem, const string& remedy) const {
+    refuse(file_, {place(in).line, 1}, "", problem, "", remedy);
   }
-  [[noreturn]] void refuse_line(const string& problem, const string& remedy) const {
-    refuse_at(number_, problem, remedy);
-  }
-  /// `part` is of the present line.
   [[noreturn]] void refuse_part(string_view part, const string& key, const string& problem,
                                 const string& remedy) const {
-    const auto column = static_cast<int>(part.data() - line_.data()) + 1;
-    refuse(file_, {number_, column}, key, problem, printable(part), remedy);
+    refuse(file_, place(part), key, problem, printable(part), remedy);
   }
 
   // --- Lines and numbers ---
@@ -156,15 +228,14 @@ class PackingReader {
     line_ = rest_.substr(0, end);
     if (line_.ends_with('\r')) line_.remove_suffix(1);
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    ++number_;
     return true;
   }
 
   void require_line(const string& of) {
-    if (!next_line()) refuse_line("the file ends after this line", "It lacks " + of + ".");
+    if (!next_line()) refuse_line(line_, "the file ends after this line", "It lacks " + of + ".");
   }
 
-  /// A finite number in the present line; `name` is for the message.
+  /// A finite number; `name` is for the message.
   double number(string_view part, const char* name) const {
     const bool sign = part.size() > 1 && part.front() == '+' && part[1] != '-';
     const auto value = read_number<double>(part.substr(sign ? 1 : 0));
@@ -181,130 +252,132 @@ class PackingReader {
     refuse_part(part, name, "is not a number", "Write it in decimal digits, as 1.5e-3.");
   }
 
-  /// Three of the words, each `step` after the one before.
-  Eigen::Vector3d vector(const std::vector<string_view>& words, std::size_t first, std::size_t step,
-                         const char* name) const {
-    return {number(words[first], name), number(words[first + step], name),
-            number(words[first + 2 * step], name)};
+  Eigen::VectorXd numbers(std::span<const string_view> words, const char* name) const {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(words.size()));
+    std::ranges::transform(words, all.begin(), [&](auto word) { return number(word, name); });
+    return all;
   }
 
-  // --- Columns and rows ---
-
-  /// Enters the columns of that name from place `at` on; ignores names that are not known.
-  void enter(string_view name, std::size_t at, string_view part) {
-    const ColumnName* known = find_named(kColumnNames, name);
-    if (known == nullptr) return;
-    for (int k = 0; k < known->count; ++k) {
-      if (!layout_.has(static_cast<Quantity>(known->first + k))) continue;
-      refuse_part(part, "", "names a column that occurs twice", "Keep one of them.");
-    }
-    layout_.set(known->first, at, known->count);
-    if (name == "radius") layout_.per_diameter = 2;
-  }
-
-  void require_columns(const char* remedy) const {
-    const bool moves = layout_.has(kVx) || layout_.has(kVy) || layout_.has(kVz);
-    for (const Quantity q : {kX, kY, kZ, kVx, kVy, kVz}) {
-      if (layout_.has(q) || (q >= kVx && !moves)) continue;
-      refuse_line(fmt::format("the column {} is missing", kNamesInMessages[q]), remedy);
-    }
-  }
-
-  /// Reads the present line as one grain.
-  void add_row(const Layout& layout, std::vector<GrainRow>& rows) {
-    const std::vector<string_view> fields = split(line_, layout.separator);
-    if (fields.size() < layout.fields || (fields.size() > layout.fields && !layout.more_allowed)) {
-      refuse_line(fmt::format("has {} fields instead of {}", fields.size(), layout.fields),
-                  layout.separator == ',' && fields.size() > layout.fields
-                      ? "Numbers take a decimal point, not a comma."
-                      : "Each grain is one line with a value for each column.");
-    }
-    GrainRow row{.line = number_};
-    for (std::size_t q = 0; q < kQuantities; ++q) {
-      if (layout.column[q] < 0) continue;
-      const string_view part = unquoted(fields[static_cast<std::size_t>(layout.column[q])]);
-      row.value[q] = number(part, kNamesInMessages[q]);
-    }
-    row.value[kDiameter] *= layout.per_diameter;
-    if (layout.has(kWall) && row.value[kWall] >= layout.first_wall) {
-      ++wall_grains_;
-      return;
-    }
-    rows.push_back(row);
-  }
+  // --- The formats: each finds units, box and named columns, and names what else there is ---
 
   /// Reads `count` lines, and requires that nothing follows.
-  void read_rows(std::uint64_t count, int stated_in) {
+  void read_rows(std::uint64_t count, string_view stated_in) {
+    const int stated_at = place(stated_in).line;
     for (std::uint64_t k = 0; k < count; ++k) {
       if (!next_line()) {
-        refuse_line(fmt::format("the file ends after {} of the {} grains that line {} states", k,
-                                count, stated_in),
+        refuse_line(line_,
+                    fmt::format("the file ends after {} of the {} grains that line {} states", k,
+                                count, stated_at),
                     "Write the whole file, or correct the number.");
       }
-      add_row(layout_, rows_);
+      grains_.rows.push_back(line_);
     }
     while (next_line()) {
       if (trimmed(line_).empty()) continue;
       refuse_line(
-          fmt::format("the file goes on after the {} grains that line {} states", count, stated_in),
+          line_,
+          fmt::format("the file goes on after the {} grains that line {} states", count, stated_at),
           "Keep one frame, or correct the number.");
     }
   }
 
-  void set_unit(LengthUnit unit) {
-    if (facts_.unit && facts_.unit != unit) {
-      refuse_line(
-          fmt::format("states lengths in {}", name_of(unit)),
-          fmt::format("The manifest says `unit: {}`: remove that key.", name_of(*facts_.unit)));
-    }
-    unit_ = unit;
+  Box& box() {
+    if (!box_) box_.emplace();
+    box_->line = line_;
+    return *box_;
   }
 
-  // --- XYZ and extended XYZ ---
+  void set_planes(Eigen::Index axis, string_view low, string_view high) {
+    box().planes.min()[axis] = number(low, "box");
+    box().planes.max()[axis] = number(high, "box");
+  }
+
+  void set_lean(double by) { box().lean = std::max(box().lean, std::fabs(by)); }
+
+  static std::vector<Column> columns_of(string_view header, char separator = ' ') {
+    std::vector<Column> columns;
+    for (const string_view name : split(header, separator)) columns.push_back({unquoted(name)});
+    return columns;
+  }
+
+  /// Names what is not read; of very many, the first.
+  void leave(string_view name) {
+    constexpr std::size_t most = 100;
+    if (name.empty() || not_read_.size() == most) return;
+    if (std::ranges::count(not_read_, printable(name)) == 0) not_read_.push_back(printable(name));
+  }
+
+  // XYZ and extended XYZ
+
+  /// The pairs KEY=VALUE of a comment. Blanks may be around `=`, and quotes around VALUE.
+  static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
+    const auto cut = [&](std::size_t size) {
+      const string_view front = rest.substr(0, size);
+      rest.remove_prefix(front.size());
+      return front;
+    };
+    std::vector<std::pair<string_view, string_view>> pairs;
+    while (!rest.empty()) {
+      const string_view key = cut(rest.find_first_of("= \t,"));
+      cut(rest.find_first_not_of(" \t,"));
+      if (!rest.starts_with('=')) continue;
+      cut(1);
+      const bool blank = !cut(rest.find_first_not_of(" \t")).empty();
+      const bool quoted = rest.starts_with('"') || rest.starts_with('\'');
+      const std::size_t end = quoted ? rest.find(rest.front(), 1) : rest.npos;
+      const string_view word =
+          rest.substr(0, end == rest.npos ? rest.find_first_of(" \t,") : end + 1);
+      const bool of_next = blank && end == rest.npos && word.find('=') != word.npos;  // "a= b=1"
+      pairs.emplace_back(key, of_next ? string_view() : cut(word.size()));
+    }
+    return pairs;
+  }
 
   void read_xyz() {
     next_line();
-    const auto count = *read_number<std::uint64_t>(trimmed(line_));
+    const string_view counted_in = line_;
     require_line("the comment and the grains");
-    std::map<string, string_view, std::less<>> keys;
-    for (string_view rest = trimmed(line_); !rest.empty(); rest = trimmed(rest)) {
-      const std::size_t name_end = std::min(rest.find_first_of("= \t"), rest.size());
-      const string_view name = rest.substr(0, name_end);
-      rest.remove_prefix(name_end);
-      if (!rest.starts_with('=')) {
-        rest.remove_prefix(rest.empty() ? 0 : 1);
+    grains_ = {.header = line_,
+               .remedy = "Properties holds pos:R:3, and vel:R:3 if there are velocities.",
+               .columns = columns_of("species x y z"),
+               .more = "further columns"};
+    static constexpr string_view keys[] = {"Lattice", "Origin", "Properties", "length_unit",
+                                           "velocity_unit"};
+    static const std::regex geometric(
+        "lattice|cell|box|((cell|box)_)?origin|properties|columns|"
+        "((length|position|velocity)_)?units?",
+        std::regex::icase);
+    std::map<string_view, string_view> values;
+    for (const auto& [key, value] : pairs_of(line_)) {
+      if (key.size() > 64 || !std::regex_match(key.begin(), key.end(), geometric)) {
+        if (key != "pbc" || value != "\"F F T\"") leave(key);
         continue;
       }
-      rest.remove_prefix(1);
-      const bool quoted = rest.starts_with('"') && rest.find('"', 1) != rest.npos;
-      const std::size_t end = quoted ? rest.find('"', 1) + 1 : rest.find_first_of(" \t");
-      const string_view value = rest.substr(0, end);
-      if (!keys.emplace(name, unquoted(value)).second) {
-        refuse_part(name, "", "is a key that occurs twice", "Keep one of them.");
+      const bool blanks = value.data() != key.data() + key.size() + 1;
+      if (std::ranges::count(keys, key) == 0 || (blanks && !key.ends_with("unit"))) {
+        refuse_part(key, "", "is not read as it is written",
+                    fmt::format("The keys are {}, without blanks around `=`: write one of these, "
+                                "or remove it.",
+                                fmt::join(keys, ", ")));
       }
-      rest.remove_prefix(value.size());
+      const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
+      if (!values.emplace(key, quoted ? value.substr(1, value.size() - 2) : value).second) {
+        refuse_part(key, "", "is a key that occurs twice", "Keep one of them.");
+      }
     }
-    if (const auto unit = keys.find("length_unit"); unit != keys.end()) {
-      const auto known = value_of<LengthUnit>(unit->second);
-      if (!known) refuse_part(unit->second, "length_unit", "is not read", "It takes m or d.");
-      set_unit(*known);
+    for (const char* key : {"length_unit", "velocity_unit"}) {
+      const string_view unit = values[key];
+      if (unit.data() == nullptr) continue;
+      take_unit(key, unit.substr(0, unit.size() - (unit.ends_with("/s") ? 2 : 0)));
     }
-    if (const auto lattice = keys.find("Lattice"); lattice != keys.end()) {
-      const auto origin = keys.find("Origin");
-      read_lattice(lattice->second, origin == keys.end() ? string_view() : origin->second);
-    }
-    if (const auto properties = keys.find("Properties"); properties != keys.end()) {
-      read_properties(properties->second);
-    } else {
-      layout_.set(kX, 1, 3);
-      layout_.fields = 4;
-      layout_.more_allowed = true;
-    }
-    require_columns("Properties holds pos:R:3, and vel:R:3 if there are velocities.");
-    read_rows(count, 1);
+    if (values.contains("Lattice")) read_lattice(values["Lattice"], values["Origin"]);
+    if (values.contains("Properties")) read_properties(values["Properties"]);
+    read_rows(*read_number<std::uint64_t>(trimmed(counted_in)), counted_in);
   }
 
   void read_properties(string_view text) {
+    grains_.columns.clear();
+    grains_.more = nullptr;
     const std::vector<string_view> parts = split(text, ':');
     for (std::size_t k = 0; k < parts.size(); k += 3) {
       const auto count =
@@ -313,56 +386,26 @@ class PackingReader {
         refuse_part(parts[k], "Properties", "is not a column",
                     "A column is NAME:TYPE:COUNT, as in species:S:1:pos:R:3.");
       }
-      const string name = lower(parts[k]);
-      const ColumnName* known = find_named(kColumnNames, name);
-      if (known != nullptr && known->count != *count) {
-        refuse_part(parts[k + 2], "Properties",
-                    fmt::format("is not the number of columns of {}", printable(name)),
-                    fmt::format("It takes {}.", known->count));
-      }
-      enter(name, layout_.fields, parts[k]);
-      layout_.fields += *count;
+      grains_.columns.push_back({parts[k], *count, parts[k + 2]});
     }
   }
 
   void read_lattice(string_view text, string_view origin) {
     const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
-      refuse_line("Lattice or Origin is not complete",
+      refuse_line(line_, "Lattice or Origin is not complete",
                   "They take 9 and 3 numbers: the edges of the box and its corner.");
     }
-    Eigen::Matrix3d edges;
-    for (int k = 0; k < 3; ++k) {
-      edges.row(k) = vector(parts, 3 * static_cast<std::size_t>(k), 1, "Lattice");
-    }
+    Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
+    Eigen::Vector3d low(0, 0, 0);
+    if (!corner.empty()) low = numbers(corner, "Origin");
     edges.diagonal().setZero();
-    require_upright(edges.cwiseAbs().maxCoeff(), size.cwiseAbs().maxCoeff());
-    const Eigen::Vector3d low =
-        corner.empty() ? Eigen::Vector3d(0, 0, 0) : vector(corner, 0, 1, "Origin");
-    set_box({low, low + size});
+    set_lean(edges.cwiseAbs().maxCoeff());
+    box_->planes = {low, low + size};
   }
 
-  // --- Boxes ---
-
-  void require_upright(double lean, double size) const {
-    if (lean <= 1e-9 * size) return;
-    refuse_line(fmt::format("the box is not orthogonal: an edge leans by {:.3g}", lean),
-                "A start is upright. Of a sheared cell, write the state at the end of a cycle.");
-  }
-
-  void set_box(const Eigen::AlignedBox3d& box) {
-    for (const int k : {0, 1, 2}) {
-      const double size = box.sizes()[k];
-      if (size > 0) continue;
-      refuse_line(fmt::format("the box is {:.6g} long in {}", size, kNamesInMessages[k]),
-                  "Its edges are positive.");
-    }
-    box_ = box;
-    box_line_ = number_;
-  }
-
-  // --- LAMMPS data ---
+  // LAMMPS data
 
   /// Whether the first lines hold one such as "500 atoms".
   bool states_atoms() const {
@@ -372,15 +415,11 @@ class PackingReader {
 
   void read_data() {
     next_line();
-    read_title();
+    const bool ours = read_title();
     std::uint64_t count = 0;
-    int stated_in = 0;
-    std::vector<GrainRow> velocities;
-    Layout moving;
-    moving.set(kId, 0);
-    moving.set(kVx, 1, 3);
-    moving.fields = 4;
-    moving.more_allowed = true;
+    string_view stated_in = line_;
+    grains_ = {.header = line_, .columns = columns_of("x y z")};
+    moving_ = {.columns = columns_of("id vx vy vz"), .more = "angular velocities"};
     string section, style;
     while (next_line()) {
       const std::size_t comment = std::min(line_.find('#'), line_.size());
@@ -389,168 +428,132 @@ class PackingReader {
       if (std::isalpha(static_cast<unsigned char>(body.front())) != 0) {
         section = body;
         style = trimmed(line_.substr(std::min(comment + 1, line_.size())));
+        if (section != "Atoms" && section != "Velocities") leave(section);
       } else if (section.empty()) {
         const std::vector<string_view> words = split(body, ' ');
         if (words.size() == 2 && words[1] == "atoms") {
           count = read_number<std::uint64_t>(words[0]).value_or(0);
-          stated_in = number_;
+          stated_in = line_;
         }
-        read_bounds(words);
+        if (!ours) read_bounds(words);
       } else if (section == "Atoms") {
-        if (layout_.fields == 0) take_style(style, split(line_, ' ').size());
-        add_row(layout_, rows_);
+        if (grains_.rows.empty()) take_style(style, split(body, ' ').size(), ours);
+        grains_.rows.push_back(body);
       } else if (section == "Velocities") {
-        add_row(moving, velocities);
+        moving_.rows.push_back(body);
       }
     }
-    const std::uint64_t found = rows_.size() + wall_grains_;
-    if (found != count) {
-      refuse_at(stated_in, fmt::format("states {} atoms, and there are {}", count, found),
-                "Write the whole file, or correct the number.");
+    if (grains_.rows.size() != count) {
+      refuse_line(stated_in,
+                  fmt::format("states {} atoms, and there are {}", count, grains_.rows.size()),
+                  "Write the whole file, or correct the number.");
     }
-    take_velocities(std::move(velocities));
   }
 
-  /// Exports of this program state the unit and the planes of the cell.
-  void read_title() {
-    ours_ = line_.starts_with("LAMMPS data file by shearcell");
-    for (const string_view si : {"units si", "units = si"}) {
-      if (line_.find(si) != line_.npos) set_unit(LengthUnit::m);
+  /// The title states units, and in exports of this program the planes of the cell. Returns whether
+  /// it is one of these.
+  bool read_title() {
+    static const std::regex unit(
+        "\\bunits?\\b\\W{1,9}(m|si|d|lj|cgs|real|metal|micro|nano|electron|[cmun]m)\\b");
+    const string title(line_.substr(0, 500));  // std::regex uses the stack
+    if (std::smatch found; std::regex_search(title, found, unit)) {
+      take_unit("units", line_.substr(static_cast<std::size_t>(found.position(1)),
+                                      static_cast<std::size_t>(found.length(1))));
     }
     const std::size_t at = line_.find("cell ");
-    if (!ours_ || at == line_.npos) return;
+    if (!line_.starts_with("LAMMPS data file by shearcell") || at == line_.npos) return false;
     const std::vector<string_view> words = split(line_.substr(at + 5), ' ');
-    if (words.size() != 8) refuse_line("the cell is not complete", "Export the run again.");
-    const Eigen::AlignedBox3d cell(vector(words, 0, 2, "cell"), vector(words, 1, 2, "cell"));
-    require_upright(std::fabs(number(words[7], "tilt")), cell.sizes().y());
-    set_box(cell);
+    if (words.size() != 8) refuse_line(line_, "the cell is not complete", "Export the run again.");
+    for (const int k : {0, 1, 2}) set_planes(k, words[2U * k], words[2U * k + 1]);
+    set_lean(number(words[7], "tilt"));
+    return true;
   }
 
   void read_bounds(const std::vector<string_view>& words) {
-    if (ours_) return;
+    if (words.back().ends_with("vec")) {
+      refuse_part(words.back(), "", "states an edge of the box, which is not read",
+                  "Write the box as xlo xhi, ylo yhi and zlo zhi.");
+    }
     if (words.size() == 6 && words[3] == "xy") {
-      require_upright(vector(words, 0, 1, "tilt").cwiseAbs().maxCoeff(),
-                      bounds_.isEmpty() ? 0 : bounds_.sizes().maxCoeff());
+      set_lean(numbers(std::span(words).first(3), "tilt").cwiseAbs().maxCoeff());
     }
     if (words.size() != 4 || !words[2].ends_with("lo")) return;
-    const auto axis = string_view("xyz").find(words[2].front());
+    const std::size_t axis = string_view("xyz").find(words[2].front());
     if (axis == string_view::npos) return;
-    const auto k = static_cast<Eigen::Index>(axis);
-    bounds_.min()[k] = number(words[0], "box");
-    bounds_.max()[k] = number(words[1], "box");
-    if ((bounds_.max().array() >= -kLargest).all()) set_box(bounds_);
+    set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
   /// `style` as LAMMPS writes it after "Atoms #", or "": then the number of fields decides.
-  void take_style(string_view style, std::size_t fields) {
+  void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
     if (style.empty()) style = five ? "atomic" : seven ? "sphere" : style;
     if (style == "hybrid" && seven) style = "hybrid sphere";  // write_data names no substyles
-    layout_.set(kId, 0);
-    layout_.more_allowed = true;  // image flags
-    std::size_t x = 2;
-    if (style == "atomic") {
-      layout_.fields = 5;
-    } else if (style == "sphere" || style.starts_with("hybrid sphere")) {
-      const bool hybrid = style != "sphere";
-      x = hybrid ? 2 : 4;
-      layout_.fields = 7;
-      layout_.set(kDiameter, hybrid ? 5 : 2);
-    } else {
-      refuse_line(style.empty() ? fmt::format("an atom of {} fields is not read", fields)
+    const char* columns = style == "atomic"                    ? "id type x y z"
+                          : style == "sphere"                  ? "id type diameter density x y z"
+                          : style.starts_with("hybrid sphere") ? "id type x y z diameter density"
+                                                               : nullptr;
+    if (columns == nullptr) {
+      refuse_line(line_,
+                  style.empty() ? fmt::format("an atom of {} fields is not read", fields)
                                 : fmt::format("the atom style {} is not read", printable(style)),
                   "Write the data file with atom_style sphere or atomic.");
     }
-    layout_.set(kX, x, 3);
-    layout_.set(kWall, 1);  // the type
-    layout_.first_wall = ours_ ? 2 : std::numeric_limits<double>::infinity();
+    grains_.columns = columns_of(columns);
+    grains_.more = "image flags";
+    if (ours) grains_.columns[1].name = "wall_side";  // of a wall's grain more than 1
+    grains_.first_wall = 2;
   }
 
-  void take_velocities(std::vector<GrainRow> velocities) {
-    if (velocities.empty()) return;
-    std::map<double, GrainRow*> waiting;
-    for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
-    for (const GrainRow& row : velocities) {
-      const auto found = waiting.extract(row.value[kId]);
-      if (!found && ours_) continue;  // of a wall grain
-      if (!found) {
-        refuse_at(row.line,
-                  fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
-                  "Write the whole file.");
-      }
-      std::copy_n(&row.value[kVx], 3, &found.mapped()->value[kVx]);
-    }
-    if (!waiting.empty()) {
-      refuse_at(velocities.back().line,
-                fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
-                "Write a velocity for each atom, each once, or leave the section out.");
-    }
-    layout_.set(kVx, 0);  // known
-  }
-
-  // --- LAMMPS dumps ---
+  // LAMMPS dumps
 
   void read_dump() {
     std::optional<std::uint64_t> count;
-    int stated_in = 0;
+    string_view stated_in;
     while (next_line()) {
       const string_view item = trimmed(line_);
       if (item.starts_with("ITEM: ATOMS")) {
-        if (!count) refuse_line("the number of atoms is missing", "Write the whole dump.");
-        const std::vector<string_view> names = split(line_, ' ');
-        layout_.fields = names.size() - 2;
-        for (std::size_t k = 2; k < names.size(); ++k) enter(lower(names[k]), k - 2, names[k]);
-        require_columns("Write them: dump ... custom ... id x y z vx vy vz.");
+        if (!count) refuse_line(line_, "the number of atoms is missing", "Write the whole dump.");
+        grains_ = {.header = line_,
+                   .remedy = "Write them: dump ... custom ... id x y z vx vy vz.",
+                   .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
         return read_rows(*count, stated_in);
       }
       const bool bounds = item.starts_with("ITEM: BOX BOUNDS");
-      const bool leans = bounds && item.find("xy") != item.npos;
-      const std::vector<string_view> kinds = split(item, ' ');  // "... ss ss pp" at the end
       require_line("the rest of the dump");
-      if (item == "ITEM: UNITS" && trimmed(line_) == "si") set_unit(LengthUnit::m);
+      if (item == "ITEM: UNITS") take_unit("units", trimmed(line_));
       if (item == "ITEM: NUMBER OF ATOMS") {
         count = read_number<std::uint64_t>(trimmed(line_));
-        stated_in = number_;
+        stated_in = line_;
       }
-      if (!bounds) continue;
-      Eigen::AlignedBox3d box;
-      for (int k = 0; k < 3; ++k) {
-        if (k > 0) require_line("the rest of the box");
-        const std::vector<string_view> words = split(line_, ' ');
-        if (words.size() != (leans ? 3U : 2U)) {
-          refuse_line("is not a lower and an upper bound", "Write the whole dump.");
-        }
-        box.min()[k] = number(words[0], "box");
-        box.max()[k] = number(words[1], "box");
-        const string_view kind = kinds[kinds.size() - 3 + static_cast<std::size_t>(k)];
-        follows_[static_cast<std::size_t>(k)] = kind.find_first_of("sm") != kind.npos;
-        if (leans) require_upright(std::fabs(number(words[2], "tilt")), box.sizes()[k]);
-      }
-      set_box(box);
+      if (bounds) read_dump_box(item);
     }
-    refuse_line("the dump ends before its atoms", "Write the whole dump.");
+    refuse_line(line_, "the dump ends before its atoms", "Write the whole dump.");
   }
 
-  // --- CSV ---
+  /// The present line is the first of three.
+  void read_dump_box(string_view item) {
+    const bool leans = item.find("xy") != item.npos;
+    const std::vector<string_view> words_of_item = split(item, ' ');
+    const auto kinds = std::span(words_of_item).last(3);  // "ss ss pp"
+    const bool ours = kinds[0] != "pp" && kinds[1] != "pp" && kinds[2] == "pp";
+    if (kinds[2] != "BOUNDS" && !ours) leave(fmt::format("boundary {}", fmt::join(kinds, " ")));
+    for (const int k : {0, 1, 2}) {
+      if (k > 0) require_line("the rest of the box");
+      const std::vector<string_view> words = split(line_, ' ');
+      if (words.size() != (leans ? 3U : 2U)) {
+        refuse_line(line_, "is not a lower and an upper bound", "Write the whole dump.");
+      }
+      set_planes(k, words[0], words[1]);
+      box_->follows[k] = kinds[k].find_first_of("sm") != string_view::npos;
+      if (leans) set_lean(number(words[2], "tilt"));
+    }
+  }
+
+  // CSV
 
   static char separator_of(string_view header) {
-    const std::size_t at = header.find_first_of(",;\t");
+    const std::size_t at = field_end(header, ",;\t");
     return at == header.npos ? ',' : header[at];
-  }
-
-  /// A column's name without its unit: "x" of "x_m", "vx" of "vx_d_per_s".
-  static std::pair<string, std::optional<LengthUnit>> name_and_unit(string_view part) {
-    string name = lower(trimmed(unquoted(part)));
-    for (const LengthUnit unit : {LengthUnit::m, LengthUnit::d}) {
-      for (const char* per : {"_per_s", ""}) {
-        const string ending = fmt::format("_{}{}", name_of(unit), per);
-        if (name.ends_with(ending)) {
-          name.resize(name.size() - ending.size());
-          return {name, unit};
-        }
-      }
-    }
-    return {name, std::nullopt};
   }
 
   /// The line without what numpy writes before it.
@@ -559,87 +562,249 @@ class PackingReader {
   }
 
   static bool names_a_column(string_view line) {
-    const string_view header = header_of(line);
-    return std::ranges::any_of(split(header, separator_of(header)), [](string_view part) {
-      return find_named(kColumnNames, name_and_unit(part).first) != nullptr;
+    const string_view header = header_of(line.substr(0, 2000));
+    return std::ranges::any_of(columns_of(header, separator_of(header)), [](const Column& column) {
+      return !meaning_of(column.name, true).names.empty();
     });
   }
 
   void read_csv() {
     next_line();
     const string_view header = header_of(line_);
-    layout_.separator = separator_of(header);
-    const std::vector<string_view> parts = split(header, layout_.separator);
-    layout_.fields = parts.size();
-    std::optional<LengthUnit> unit;
-    bool any = false;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const auto [name, stated] = name_and_unit(parts[k]);
-      const ColumnName* known = find_named(kColumnNames, name);
-      if (known == nullptr || known->count != 1) continue;
-      enter(name, k, parts[k]);
-      if (known->first > kDiameter) continue;  // not a length
-      if (any && stated != unit) {
-        refuse_part(parts[k], "", "is in another unit than the columns before",
-                    "Write all lengths in _m or all in _d.");
-      }
-      any = true;
-      unit = stated;
-    }
-    require_columns("The first line names the columns, as x_m,y_m,z_m.");
-    if (unit) set_unit(*unit);
+    grains_ = {.header = line_,
+               .remedy = "The first line names the columns, as x_m,y_m,z_m.",
+               .columns = columns_of(header, separator_of(header)),
+               .separator = separator_of(header)};
+    units_in_names_ = true;
     while (next_line()) {
-      if (!trimmed(line_).empty()) add_row(layout_, rows_);
+      if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
     }
+  }
+
+  // --- What is read of it ---
+
+  /// The value of a key that states the unit of lengths; "lj" may be any.
+  void take_unit(const char* key, string_view text) {
+    const string unit = lower(text);
+    if (unit == "lj") return;
+    if (unit != "m" && unit != "si" && unit != "d") {
+      refuse_part(text, key, "is not read",
+                  key == string_view("units")
+                      ? "Lengths are in m (units si) or as the manifest states (units lj)."
+                      : "It takes m or d.");
+    }
+    set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
+  }
+
+  /// `in` is of the line that states the unit.
+  void set_unit(LengthUnit unit, string_view in) {
+    const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
+    if (other && *other != unit) {
+      refuse_line(
+          in, fmt::format("states lengths in {}", name_of(unit)),
+          unit_ ? fmt::format("The file also states {}: write all in one.", name_of(*other))
+                : fmt::format("The manifest says `unit: {}`: remove that key.", name_of(*other)));
+    }
+    unit_ = unit;
+  }
+
+  void interpret_box() {
+    if (!box_) return;
+    const auto missing = (box_->planes.max().array() < -kLargest).count();
+    if (missing == 3 && box_->lean == 0) return box_.reset();
+    if (missing > 0) {
+      refuse_line(box_->line, "the box is not complete", "It takes xlo xhi, ylo yhi and zlo zhi.");
+    }
+    const Eigen::Vector3d size = box_->planes.sizes();
+    if (box_->lean > 1e-9 * size.cwiseAbs().maxCoeff()) {
+      refuse_line(box_->line,
+                  fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
+                  "A start is upright. Of a sheared cell, write the state at the end of a cycle.");
+    }
+    for (const int k : {0, 1, 2}) {
+      if (size[k] > 0) continue;
+      refuse_line(box_->line,
+                  fmt::format("the box is {:.6g} long in {}", size[k], kNamesInMessages[k]),
+                  "Its edges are positive.");
+    }
+  }
+
+  /// Decides which columns are read, and names the others.
+  std::vector<Use> interpret(const Table& table) {
+    constexpr std::size_t most = 1000;
+    if (table.columns.size() > most) {
+      refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
+                  fmt::format("At most {} are read: leave out some.", most));
+    }
+    std::vector<Use> uses;
+    std::optional<std::optional<LengthUnit>> unit;  // of the columns before
+    std::vector<bool> used(table.columns.size());
+    for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
+      std::size_t field = 0;
+      for (std::size_t k = 0; k < used.size(); ++k) {
+        const Column& column = table.columns[k];
+        const auto at = std::exchange(field, field + static_cast<std::size_t>(column.count));
+        Meaning meaning = meaning_of(column.name, units_in_names_);
+        if (meaning.count > 1 && column.count_text.empty()) meaning.rank = Meaning::probable;
+        if (meaning.first == kQuantities || meaning.rank != rank) continue;
+        if (rank != Meaning::listed && holds(uses, meaning.first)) continue;
+        used[k] = true;
+        use(meaning, column, at, uses);
+        if (meaning.first > kDiameter) continue;  // not a length
+        if (unit && meaning.unit != *unit) {
+          refuse_part(column.name, "", "is in another unit than the columns before",
+                      "Write all lengths in _m or all in _d.");
+        }
+        unit = meaning.unit;
+      }
+    }
+    if (unit && *unit) set_unit(**unit, table.header);
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const string_view name = table.columns[k].name;
+      if (!used[k]) leave(name.empty() ? fmt::format("column {}", k + 1) : string(name));
+    }
+    return uses;
+  }
+
+  void use(const Meaning& meaning, const Column& column, std::size_t at, std::vector<Use>& uses) {
+    if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
+      refuse_part(column.name, "", "is not read under this name",
+                  "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), "
+                  "velocities in the unit of the lengths per second, or remove this one.");
+    }
+    if (meaning.count != column.count) {
+      refuse_part(column.count_text, "Properties",
+                  fmt::format("is not the number of columns of {}", printable(lower(column.name))),
+                  fmt::format("It takes {}.", meaning.count));
+    }
+    for (int k = 0; k < meaning.count; ++k) {
+      if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
+        refuse_part(column.name, "", "names a column that occurs twice", "Keep one of them.");
+      }
+      uses.push_back({meaning.first + k, at + static_cast<std::size_t>(k), meaning.factor});
+    }
+    if (meaning.rank != Meaning::probable) return;
+    about_diameter_ =
+        fmt::format(" The column {} is read as {}: if it is not, rename or remove it.",
+                    printable(column.name), meaning.factor > 1 ? "radii" : "diameters");
+  }
+
+  void require_columns() const {
+    const bool moves = holds(uses_, kVx) || holds(uses_, kVy) || holds(uses_, kVz);
+    for (const int q : {kX, kY, kZ, kVx, kVy, kVz}) {
+      if (holds(uses_, q) || (q >= kVx && !moves)) continue;
+      refuse_line(grains_.header, fmt::format("the column {} is missing", kNamesInMessages[q]),
+                  grains_.remedy);
+    }
+  }
+
+  /// The grains of a table; wall grains are left out.
+  std::vector<GrainRow> rows_of(const Table& table, const std::vector<Use>& uses) {
+    std::size_t columns = 0;
+    for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
+    std::vector<GrainRow> rows;
+    for (const string_view line : table.rows) {
+      const std::vector<string_view> fields = split(line, table.separator);
+      const bool more = fields.size() > columns;
+      if (fields.size() < columns || (more && table.more == nullptr)) {
+        refuse_line(line, fmt::format("has {} fields instead of {}", fields.size(), columns),
+                    table.separator == ',' && more
+                        ? "Numbers take a decimal point, not a comma."
+                        : "Each grain is one line with a value for each column.");
+      }
+      if (more) leave(table.more);
+      GrainRow row{.line = line};
+      for (const Use& use : uses) {
+        const auto q = static_cast<std::size_t>(use.quantity);
+        const double value = use.factor * number(unquoted(fields[use.field]), kNamesInMessages[q]);
+        const double other = std::exchange(row.value[q], value);
+        if (other == 0 || std::fabs(value - other) <= kTolerance * std::fabs(other)) continue;
+        refuse_line(line, fmt::format("states the diameters {:.6g} and {:.6g}", other, value),
+                    "Keep one column of radii or diameters.");
+      }
+      if (holds(uses, kWall) && row.value[kWall] >= table.first_wall) {
+        ++wall_grains_;
+      } else {
+        rows.push_back(row);
+      }
+    }
+    return rows;
+  }
+
+  /// Gives the grains the velocities of the other table, by id.
+  void join_velocities() {
+    std::map<double, GrainRow*> waiting;
+    for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
+    for (const GrainRow& row : rows_of(moving_, interpret(moving_))) {
+      const auto found = waiting.extract(row.value[kId]);
+      if (!found && wall_grains_ > 0) continue;  // of a wall grain
+      if (!found) {
+        refuse_line(row.line,
+                    fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
+                    "Write the whole file.");
+      }
+      std::copy_n(&row.value[kVx], 3, &found.mapped()->value[kVx]);
+    }
+    if (waiting.empty()) return;
+    refuse_line(moving_.rows.back(),
+                fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
+                "Write a velocity for each atom, each once, or leave the section out.");
   }
 
   // --- The packing ---
 
   void require_equal_diameters() const {
-    if (!layout_.has(kDiameter)) return;
+    if (!holds(uses_, kDiameter)) return;
     const auto diameter = [](const GrainRow& row) { return row.value[kDiameter]; };
     const auto [least, most] = std::ranges::minmax_element(rows_, {}, diameter);
     const double small = diameter(*least), large = diameter(*most);
     if (small <= 0) {
-      refuse_at(least->line, fmt::format("the diameter is {:.6g}", small), "It must be positive.");
+      refuse_line(least->line, fmt::format("the diameter is {:.6g}", small),
+                  "It must be positive." + about_diameter_);
     }
     if (large <= small * (1 + kTolerance)) return;
-    refuse_at(most->line,
-              fmt::format("the grains have diameters from {:.6g} (line {}) to {:.6g}, {:.2g} % "
-                          "larger",
-                          small, least->line, large, 100 * (large / small - 1)),
-              "All grains of this program are equal. Continue such a packing in LAMMPS "
-              "(`shearcell export --to lammps` writes a script for it).");
+    refuse_line(most->line,
+                fmt::format("the grains have diameters from {:.6g} (line {}) to {:.6g}, {:.2g} % "
+                            "larger",
+                            small, line_of(*least), large, 100 * (large / small - 1)),
+                "All grains of this program are equal. Continue such a packing in LAMMPS "
+                "(`shearcell export --to lammps` writes a script for it)." +
+                    about_diameter_);
   }
 
   /// From the unit of the file to diameters.
-  double scale() const {
+  double scale() {
     const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
     if (!unit) {
       refuse_file("does not state the unit of its lengths",
                   "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
     }
-    const double expected = unit == LengthUnit::m ? facts_.diameter_m : 1;
+    unit_ = unit;
+    const bool in_m = unit == LengthUnit::m;
+    const double expected = in_m ? facts_.diameter_m : 1, in_other = in_m ? 1 : facts_.diameter_m;
     const double given = rows_.front().value[kDiameter];
-    if (layout_.has(kDiameter) && std::fabs(given - expected) > kTolerance * expected) {
-      refuse_at(
-          rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),
-          unit == LengthUnit::m
-              ? fmt::format("The run's is {:.6g} m: set `diameter_m`, or scale the file.", expected)
-              : "Lengths in d are divided by the diameter, so it is 1.");
-    }
-    return 1 / expected;
+    const bool fits = std::fabs(given - expected) <= kTolerance * expected;
+    if (fits || !holds(uses_, kDiameter)) return 1 / expected;
+    const string remedy =
+        std::fabs(given - in_other) <= kTolerance * in_other
+            ? fmt::format("It would be right in {}: is the unit right?", in_m ? "d" : "m")
+        : in_m
+            ? fmt::format("The run's is {:.6g} m: set `diameter_m`, or scale the file.", expected)
+            : "Lengths in d are divided by the diameter, so it is 1.";
+    refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),
+                remedy + about_diameter_);
   }
 
   void sort_by_id() {
-    if (!layout_.has(kId)) return;
+    if (!holds(uses_, kId)) return;
     std::ranges::stable_sort(rows_, {}, [](const GrainRow& row) { return row.value[kId]; });
     const auto same =
         std::ranges::adjacent_find(rows_, {}, [](const GrainRow& row) { return row.value[kId]; });
     if (same == rows_.end()) return;
-    refuse_at(std::next(same)->line,
-              fmt::format("the id {:.17g} is that of line {}, too", same->value[kId], same->line),
-              "Each grain has an id of its own.");
+    refuse_line(
+        std::next(same)->line,
+        fmt::format("the id {:.17g} is that of line {}, too", same->value[kId], line_of(*same)),
+        "Each grain has an id of its own.");
   }
 
   Eigen::Matrix3Xd columns(Quantity first, double scale) const {
@@ -652,20 +817,30 @@ class PackingReader {
   }
 
   PackingFile packing() {
-    if (rows_.empty()) refuse_line("the file holds no grains", kFormats);
+    interpret_box();
+    std::vector<string> aside = std::exchange(not_read_, {});  // named after the columns
+    uses_ = interpret(grains_);
+    require_columns();
+    rows_ = rows_of(grains_, uses_);
+    if (rows_.empty()) refuse_line(line_, "the file holds no grains", kFormats);
+    if (!moving_.rows.empty()) join_velocities();
+    for (const string& name : aside) leave(name);
+    if (wall_grains_ > 0) leave(counted(wall_grains_, "wall grain"));
     require_equal_diameters();
     sort_by_id();
     const double scale_to_d = scale();
     PackingFile packing;
     packing.position = columns(kX, scale_to_d);
-    if (layout_.has(kVx)) packing.velocity = columns(kVx, scale_to_d);
+    packing.unit = *unit_;
+    packing.not_read = not_read_;
+    if (holds(uses_, kVx) || !moving_.rows.empty()) packing.velocity = columns(kVx, scale_to_d);
     const Eigen::Vector3d least = packing.position.rowwise().minCoeff();
     const Eigen::Vector3d most = packing.position.rowwise().maxCoeff();
     Eigen::AlignedBox3d space(least.array() - 1, most.array() + 1);
     if (box_) {
-      space = {box_->min() * scale_to_d, box_->max() * scale_to_d};
+      space = {box_->planes.min() * scale_to_d, box_->planes.max() * scale_to_d};
       for (const int k : {0, 1}) {
-        if (!follows_[static_cast<std::size_t>(k)]) continue;
+        if (!box_->follows[static_cast<std::size_t>(k)]) continue;
         space.min()[k] = least[k];
         space.max()[k] = most[k];
       }
@@ -685,20 +860,22 @@ class PackingReader {
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
     if (depth < kShallowestCell) {
-      refuse_at(box_line_, fmt::format("the box is {:.3g} d deep in z", depth),
-                fmt::format("At least {:g} d: is the unit of its lengths right?", kShallowestCell));
+      refuse_line(
+          box_->line, fmt::format("the box is {:.3g} d deep in z", depth),
+          fmt::format("At least {:g} d: is the unit of its lengths right?", kShallowestCell));
     }
     for (Eigen::Index i = 0; i < position.cols(); ++i) {
       const auto& row = rows_[static_cast<std::size_t>(i)];
       for (const int k : {0, 1, 2}) {
         const double at = position(k, i), further = k == 2 ? kLongestCell : 0;
         if (at >= box.min()[k] - further && at <= box.max()[k] + further) continue;
-        refuse_at(
+        refuse_line(
             row.line,
             fmt::format("the grain is outside of the box: {} = {:.6g} d is not from {:.6g} to "
                         "{:.6g} d",
                         kNamesInMessages[k], at, box.min()[k], box.max()[k]),
-            "Only z is periodic: wrap x and y into the box, or write a larger box.");
+            "Only z is periodic, x and y have walls: write a box that holds all grains (in "
+            "extended XYZ, Origin is its lower corner, without it 0 0 0).");
       }
       double& z = position(2, i);
       if (z < box.min().z() || z >= box.max().z()) {
@@ -717,16 +894,17 @@ class PackingReader {
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
-                    const int first = rows_[static_cast<std::size_t>(i)].line;
-                    const int second = rows_[static_cast<std::size_t>(j)].line;
                     const double overlap = 1 - r.norm();
                     if (overlap <= facts_.largest_overlap) return;
-                    refuse_at(
-                        std::max(first, second),
+                    const GrainRow* first = &rows_[static_cast<std::size_t>(i)];
+                    const GrainRow* second = &rows_[static_cast<std::size_t>(j)];
+                    if (first->line.data() > second->line.data()) std::swap(first, second);
+                    refuse_line(
+                        second->line,
                         overlap == 1 ? fmt::format("the grain is at the place of that of line {}",
-                                                   std::min(first, second))
+                                                   line_of(*first))
                                      : fmt::format("the grain overlaps that of line {} by {:.3g} d",
-                                                   std::min(first, second), overlap),
+                                                   line_of(*first), overlap),
                         fmt::format("At most {:g} d (`max_overlap_diameters`): are the unit of "
                                     "the lengths and the diameter right? If so, let the grains "
                                     "relax in the program that made them.",
@@ -737,27 +915,42 @@ class PackingReader {
   static constexpr double kLargest = 1e100;   // so that products of two are finite
   static constexpr double kTolerance = 1e-5;  // relative; files may have six digits
 
-  string_view rest_;
+  string_view text_;
   string_view file_;
   PackingFacts facts_;
+  string_view rest_;  ///< after the present line
   string_view line_;
-  int number_ = 0;
-  bool ours_ = false;  ///< LAMMPS data of this program
+
+  // What the reader of the format found.
+  std::optional<Box> box_;
+  Table grains_, moving_;
+  bool units_in_names_ = false;  ///< of columns
+  std::vector<string> not_read_;
+
+  // What is read of it.
   std::optional<LengthUnit> unit_;
-  Layout layout_;
+  std::vector<Use> uses_;
+  string about_diameter_;  ///< for the end of a remedy
   std::vector<GrainRow> rows_;
-  std::uint64_t wall_grains_ = 0;
-  std::optional<Eigen::AlignedBox3d> box_;
-  int box_line_ = 0;
-  /// Axes along which LAMMPS shrinks the box to the grains; a dump has the box of an earlier step.
-  std::array<bool, 3> follows_{};
-  Eigen::AlignedBox3d bounds_;  ///< of LAMMPS data; empty along axes that are not read yet
+  std::size_t wall_grains_ = 0;
 };
 
 }  // namespace
 
 PackingFile read_packing(string_view text, string_view file, const PackingFacts& facts) {
   return PackingReader(text, file, facts).read();
+}
+
+string describe(const PackingFile& packing) {
+  string box = "no box";
+  if (packing.box) {
+    const Eigen::Vector3d size = packing.box->sizes();
+    box = fmt::format("box {:.6g} x {:.6g} x {:.6g} d", size.x(), size.y(), size.z());
+  }
+  const auto count = static_cast<std::size_t>(packing.position.cols());
+  return fmt::format("{}, {}, {}{}{}", counted(count, "grain"), box,
+                     packing.velocity ? "velocities" : "no velocities",
+                     packing.not_read.empty() ? "" : "; not read: ", some_of(packing.not_read, 12));
 }
 
 }  // namespace shearcell

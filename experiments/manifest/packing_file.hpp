@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/named.hpp"
 
@@ -25,6 +27,8 @@ struct PackingFile {
   Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z within the box if there is one
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; of an export, the planes of its cell
+  LengthUnit unit = LengthUnit::d;           ///< in which the file was read
+  std::vector<std::string> not_read;         ///< names of columns, sections and keys; of many, some
 };
 
 /// What a file may leave to the manifest and to the parameters of the run.
@@ -42,5 +46,8 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 /// remedy, unless the text is a packing of equal grains within its box. Grains may overlap by at
 /// most facts.largest_overlap, with a box also across the periodic boundary in z.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
+
+/// "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".
+std::string describe(const PackingFile& packing);
 
 }  // namespace shearcell

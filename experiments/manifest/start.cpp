@@ -85,15 +85,23 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     const bool fits = grains.box ? std::fabs(over) <= tolerance * room : over <= tolerance * room;
     if (fits) continue;
     const auto fraction = fraction_for_width(geometry(p), size[axis]);
+    const bool in_m = grains.unit == LengthUnit::m;
+    const double outer = grains.box ? 0 : 1;  // half a grain on each side
+    const double in_other = outer + (size[axis] - outer) * (in_m ? p.diameter_m : 1 / p.diameter_m);
+    const bool fits_better =
+        std::fabs(std::log(in_other / room)) < 0.5 * std::fabs(std::log(size[axis] / room));
     refuse(path, {}, "",
            fmt::format("its {} are {:.9g} d {}, and the cell of the manifest is {:.9g} d",
                        grains.box ? "box and grains" : "grains", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
-           fraction ? fmt::format("State `nominal_packing_fraction: {:.10g}`, which with this "
-                                  "height_over_width makes the cell as wide and deep as that.",
-                                  *fraction)
-                    : "Use a file with a cell of another size.");
+           fits_better
+               ? fmt::format("Is the unit of its lengths right? Read in {} they are {:.4g} d.",
+                             in_m ? "d" : "m", in_other)
+           : fraction ? fmt::format("State `nominal_packing_fraction: {:.10g}`, which with this "
+                                    "height_over_width makes the cell as wide and deep as that.",
+                                    *fraction)
+                      : "Use a file with a cell of another size.");
   }
   const bool from_below = cell.moving == MovingWall::top;  // which plane stays
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),
@@ -199,7 +207,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
            fmt::format("has {}, and the manifest {}", counted(count, "grain"), p.grains), "",
            fmt::format("State `grains: {}`.", count));
   }
-  PlacedGrains made{make_cell(geometry(p), seed, poll), {}};
+  PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p, limit);
   double deepest = 0;
   const WallPose pose = wall_pose(made.cell, 0, made.state.wall_height);

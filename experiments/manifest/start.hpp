@@ -36,7 +36,8 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
 
 struct PlacedGrains {
   Cell cell;
-  State state;  ///< at step 0; the moving wall is at rest
+  State state;       ///< at step 0; the moving wall is at rest
+  std::string read;  ///< describe() of the file
 };
 
 /// Places the grains of the text in the cell of the parameters, with the wall grains of the seed.

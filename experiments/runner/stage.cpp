@@ -160,9 +160,9 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions&
   }
   if (plan.inputs.file) {
     auto [text, path] = store.packing_text(plan.inputs.file->sha256);
-    auto [cell, state] = placed({path, text, *plan.inputs.file}, plan.inputs.parameters,
-                                plan.inputs.seed, give_up_if_requested);
-    return {std::move(cell), std::move(state)};
+    PlacedGrains grains = placed({path, text, *plan.inputs.file}, plan.inputs.parameters,
+                                 plan.inputs.seed, give_up_if_requested);
+    return {std::move(grains.cell), std::move(grains.state)};
   }
   if (run.parent.empty()) {
     const Geometry shape = geometry(plan.inputs.parameters);

@@ -34,6 +34,21 @@ class Convenience : public ProgramTest {
   }
 };
 
+TEST_F(Convenience, PlanAndRunSayWhatIsReadOfAFileOfGrains) {
+  write("grains.csv", "x_d,y_d,z_d,element\n1,1,1,C\n3,1,1,\"C, N\"\n");
+  write("m.yaml", renamed(tiny_manifest("  walls: smooth\n  grains: 2\n  cycles: 0\n"
+                                        "  nominal_packing_fraction: 0.03\n"
+                                        "  fill_packing_fraction: 0.02\n  height_over_width: 1\n",
+                                        "start: {file: grains.csv}\n"),
+                          "placed"));
+  const std::string says = "grains.csv: 2 grains, no box, no velocities; not read: element";
+  EXPECT_TRUE(has(expect(0, {"plan", "m.yaml"}).out, says));
+  EXPECT_TRUE(has(json({"plan", "m.yaml", "--json"}).at("notes").dump(), says));
+  EXPECT_TRUE(has(expect(0, {"run", "m.yaml", "-q"}).out, says));
+  write("grains.csv", "x,y,z,v_x\n1,1,1,0\n3,1,1,0\n");
+  expect_refused({"run", "m.yaml"}, {"grains.csv:1:7: is not read under this name (got v_x)"});
+}
+
 TEST_F(Convenience, NewWritesAManifestThatExpandsAndNamesEveryKey) {
   expect(0, {"new", "softer"});
   const std::string text = read_bytes(path("softer.yaml"));

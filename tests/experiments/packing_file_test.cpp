@@ -141,8 +141,8 @@ const std::vector<BadPacking> kBad = {
      "a.xyz:2:1: the box is 2 d deep in z. At least 3 d: is the unit of its lengths right?"},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
      "a.xyz:4:1: the grain is outside of the box: y = -3 d is not from 0 to 9 d. Only z is "
-     "periodic: "
-     "wrap x and y into the box, or write a larger box."},
+     "periodic, x and y have walls: write a box that holds all grains (in extended XYZ, Origin is "
+     "its lower corner, without it 0 0 0)."},
     {"TooLong", "a.xyz", xyz("", "A 1 1 1\nA 3e9 3 3\n"),
      "a.xyz: the packing is 3e+09 d long. At most 100000 d: is the unit of its lengths right?"},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
@@ -243,6 +243,228 @@ TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
   expect_two("a.data", data("0 0 0 xy xz yz\n", "Atoms\n\n2 1 3 3 3 0 0 0\n1 1 1 1 1 0 0 0\n"),
              kInD);
   expect_two("a.dump", dump("id type xu yu zu", "2 1 3 3 3\n1 1 1 1 10\n"), kInD);  // z is wrapped
+}
+
+const std::string kKeys =
+    "The keys are Lattice, Origin, Properties, length_unit, velocity_unit, without blanks around "
+    "`=`: write one of these, or remove it.";
+const std::string kLammpsUnits =
+    " Lengths are in m (units si) or as the manifest states (units lj).";
+const std::string kVelocities =
+    "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), velocities in the "
+    "unit of the lengths per second, or remove this one.";
+const std::string kOneUnit = "Write all lengths in _m or all in _d.";
+const std::string kUpright =
+    "A start is upright. Of a sheared cell, write the state at the end of a cycle.";
+
+/// A frame of extended XYZ with the columns species, position and these.
+std::string with_columns(const std::string& properties, const std::string& values) {
+  return xyz(kLattice + "Properties=species:S:1:pos:R:3:" + properties,
+             "A 1 1 1 " + values + "\nA 3 3 3 " + values + "\n");
+}
+
+std::string csv(const std::string& column, const std::string& value) {
+  return "x,y,z," + column + "\n1,1,1," + value + "\n3,3,3," + value + "\n";
+}
+
+std::string titled(const std::string& title) {
+  return title + data(kBounds, kAtoms).substr(10);
+}
+
+std::string in_units(const std::string& units) {
+  return "ITEM: UNITS\n" + units + "\n" + dump("id x y z", "1 1 1 1\n2 3 3 3\n");
+}
+
+/// What becomes of two grains at (1, 1, 1) and (3, 3, 3) d: what is read, or the message after the
+/// name of the file.
+struct Parts {
+  std::string file, text, says;
+};
+
+const std::string kTwo = "2 grains, no box, no velocities", kBoxed = "2 grains, box 9 x 9 x 9 d, ",
+                  kStill = kBoxed + "no velocities";
+
+// No part of a file that changes box, unit, size or velocity is ignored without a word.
+const std::vector<Parts> kParts = {
+    // Keys of extended XYZ.
+    {"a.xyz", xyz("Lattice = \"9 0 0 2 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: is not read as it is written (got Lattice). " + kKeys},
+    {"a.xyz", xyz("Lattice= \"9 0 0 0 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: is not read as it is written (got Lattice). " + kKeys},
+    {"a.xyz", xyz("pbc=\"F F T\" Origin\t=\t\"0 0 0\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:13: is not read as it is written (got Origin). " + kKeys},
+    {"a.xyz", xyz("Properties = species:S:1:pos:R:3:radius:R:1", "A 1 1 1 .5\nA 3 3 3 .5\n"),
+     ":2:1: is not read as it is written (got Properties). " + kKeys},
+    {"a.xyz", xyz("lattice=\"9 0 0 0 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: is not read as it is written (got lattice). " + kKeys},
+    {"a.xyz", xyz("Cell=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: is not read as it is written (got Cell). " + kKeys},
+    {"a.xyz", xyz("units=angstrom", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: is not read as it is written (got units). " + kKeys},
+    {"a.xyz", xyz("length_unit = m", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+    {"a.xyz", xyz("length_unit = 'd' Lattice='9 0 0 0 9 0 0 0 9'", "A 1 1 1\nA 3 3 3\n"),
+     kStill + "; not read: species"},
+    {"a.xyz", xyz("velocity_unit=mm/s", "A 1 1 1\nA 3 3 3\n"),
+     ":2:15: velocity_unit: is not read (got mm). It takes m or d."},
+    {"a.xyz", xyz("energy= Lattice=\"9 0 0 1 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
+     ":2:1: the box is not orthogonal: an edge leans by 1. " + kUpright},
+    {"a.xyz", xyz(kLattice + "pbc=\"T T T\" energy=-1.0 note=\"a = b\"", "A 1 1 1\nA 3 3 3\n"),
+     kStill + "; not read: species, pbc, energy, note"},
+    // Comments without keys of ours.
+    {"a.xyz", xyz(" i = 0, time = 0.000, E = -17.16", "A 1 1 1\nA 3 3 3\n"),
+     kTwo + "; not read: species, i, time, E"},
+    {"a.xyz", xyz("frame 0 | Written by MDAnalysis XYZWriter", "A 1 1 1\nA 3 3 3\n"),
+     kTwo + "; not read: species"},
+    {"a.xyz", xyz("an fcc lattice, a = = b E=-1 E=-2", "A 1 1 1\nA 3 3 3\n"),
+     kTwo + "; not read: species, a, E"},
+    {"a.xyz", xyz("", "A 1 1 1 0 0 0\nA 3 3 3 0 0 0\n"),
+     kTwo + "; not read: species, further columns"},
+    // Columns of extended XYZ; momenta as ASE 3.22 writes them.
+    {"a.xyz", xyz("Properties=species:S:1:forces:R:3:pos:R:3", "A 7 7 7 1 1 1\nA 8 8 8 3 3 3\n"),
+     kTwo + "; not read: species, forces"},
+    {"a.xyz", with_columns("momenta:R:3", "1.00800000 0.00000000 0.00000000"),
+     ":2:60: is not read under this name (got momenta). " + kVelocities},
+    {"a.xyz", with_columns("velo:R:3:momenta:R:3", "1 0 0 1 0 0"),
+     kBoxed + "velocities; not read: species, momenta"},
+    {"a.xyz", with_columns("V:R:3", "1 0 0"),
+     ":2:60: is not read under this name (got V). " + kVelocities},
+    {"a.xyz", with_columns("angular_velocity:R:3:Omega:R:3", "1 0 0 1 0 0"),
+     kStill + "; not read: species, angular_velocity, Omega"},
+    {"a.xyz", with_columns("Radius:R:1:magmoms:R:1", ".5 1"),
+     kStill + "; not read: species, magmoms"},
+    {"a.xyz", with_columns("radii:R:3", "1 1 1"),
+     ":2:68: Properties: is not the number of columns of radii (got 3). It takes 1."},
+    {"a.xyz", with_columns("R:R:1", "0.7"),
+     ":3:1: the diameter is 1.4 d. Lengths in d are divided by the diameter, so it is 1. The "
+     "column R is read as radii: if it is not, rename or remove it."},
+    {"a.xyz", with_columns("radius:R:1", "0.0015"),
+     ":3:1: the diameter is 0.003 d. It would be right in m: is the unit right?"},
+    // LAMMPS data.
+    {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
+     ":5:7: states an edge of the box, which is not read (got avec). Write the box as xlo xhi, ylo "
+     "yhi and zlo zhi."},
+    {"a.data", data("0 9 xlo xhi\n0 9 ylo yhi\n", kAtoms),
+     ":6:1: the box is not complete. It takes xlo xhi, ylo yhi and zlo zhi."},
+    {"a.data", data("2 0 0 xy xz yz\n", kAtoms),
+     ":5:1: the box is not complete. It takes xlo xhi, ylo yhi and zlo zhi."},
+    {"a.data", data("2 0 0 xy xz yz\n" + kBounds, kAtoms),
+     ":8:1: the box is not orthogonal: an edge leans by 2. " + kUpright},
+    {"a.data", titled("LAMMPS data file via write_data, version 4 Feb 2025, units = cgs"),
+     ":1:62: units: is not read (got cgs)." + kLammpsUnits},
+    {"a.data", titled("soft spheres (units real)"),
+     ":1:21: units: is not read (got real)." + kLammpsUnits},
+    {"a.data", titled("LAMMPS data file via write_data, timestep = 0, units = lj"),
+     kStill + "; not read: type"},
+    {"a.data", titled("units: si"),
+     ":1:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+    {"a.data", titled("units unknown to me"), kStill + "; not read: type"},
+    {"a.data", data(kBounds, "Atoms\n\n1 1 1 1 1 # C\n2 1 3 3 3#C\n"), kStill + "; not read: type"},
+    {"a.data",
+     data(kBounds,
+          "Atom Type Labels\n\n1 C\n\nMasses\n\n1 12\n\nAtoms # atomic\n\n# first\n1 C 1 1 1 "
+          "0 0 0 # a\n2 C 3 3 3 0 0 0\n"),
+     kStill + "; not read: type, image flags, Atom Type Labels, Masses"},
+    {"a.data",
+     data(kBounds,
+          "Atoms # sphere\n\n1 1 1 1.9 1 1 1\n2 1 1 1.9 3 3 3\n\nVelocities\n\n1 1 0 0 0 0 "
+          "0\n2 0 1 0 0 0 0\n"),
+     kBoxed + "velocities; not read: type, density, angular velocities"},
+    // LAMMPS dumps.
+    {"a.dump", in_units("cgs"), ":2:1: units: is not read (got cgs)." + kLammpsUnits},
+    {"a.dump", in_units("nano"), ":2:1: units: is not read (got nano)." + kLammpsUnits},
+    {"a.dump", in_units("si"),
+     ":2:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+    {"a.dump", in_units("lj"), kStill},
+    {"a.dump", dump("id x y z xu yu zu", "1 1 1 1 1 1 10\n2 3 3 3 3 3 3\n"),
+     kStill + "; not read: xu, yu, zu"},
+    {"a.dump", dump("id type x y zu xs ix", "1 1 1 1 1 0.1 0\n2 1 3 3 12 0.3 0\n"),
+     kStill + "; not read: type, xs, ix"},
+    {"a.dump", dump("id x y z c_rad", "1 1 1 1 0.5\n2 3 3 3 0.7\n"),
+     ":11:1: the grains have diameters from 1 (line 10) to 1.4, 40 % larger. All grains of this "
+     "program are equal. Continue such a packing in LAMMPS (`shearcell export --to lammps` writes "
+     "a "
+     "script for it). The column c_rad is read as radii: if it is not, rename or remove it."},
+    {"a.dump", dump("id x y z v_x", "1 1 1 1 1\n2 3 3 3 1\n"),
+     ":9:22: is not read under this name (got v_x). " + kVelocities},
+    {"a.dump", dump("id x y z f_vel[1]", "1 1 1 1 1\n2 3 3 3 1\n"),
+     ":9:22: is not read under this name (got f_vel[1]). " + kVelocities},
+    {"a.dump", dump("id x y z vel", "1 1 1 1 1\n2 3 3 3 1\n"),
+     ":9:22: is not read under this name (got vel). " + kVelocities},
+    {"a.dump", dump("id x y z radius diameter d_radius", "1 1 1 1 .5 1 7\n2 3 3 3 .5 1 7\n"),
+     kStill + "; not read: d_radius"},
+    {"a.dump", dump("id x y z radius diameter", "1 1 1 1 .5 1\n2 3 3 3 .5 2\n"),
+     ":11:1: states the diameters 1 and 2. Keep one column of radii or diameters."},
+    {"a.dump",
+     [] {
+       std::string text = dump("id x y z", "1 1 1 1\n2 3 3 3\n");
+       return text.replace(text.find("ff ff pp"), 8, "pp pp pp");
+     }(),
+     kStill + "; not read: boundary pp pp pp"},
+    // CSV.
+    {"a.csv", csv("vx_mm_per_s", "1"),
+     ":1:7: is not read under this name (got vx_mm_per_s). " + kVelocities},
+    {"a.csv", csv("Vx (mm/s)", "1"),
+     ":1:7: is not read under this name (got Vx (mm/s)). " + kVelocities},
+    {"a.csv", csv("velocity:0", "1"),
+     ":1:7: is not read under this name (got velocity:0). " + kVelocities},
+    {"a.csv", csv("momentum_x", "1"),
+     ":1:7: is not read under this name (got momentum_x). " + kVelocities},
+    {"a.csv", csv("Velocity.X", "1"),
+     ":1:7: is not read under this name (got Velocity.X). " + kVelocities},
+    {"a.csv", csv("r", "0.5"), kTwo},
+    {"a.csv", csv("D", "1"), kTwo},
+    {"a.csv", csv("Particle Radius", "0.5"), kTwo},
+    {"a.csv", csv("sigma", "1"), kTwo},
+    {"a.csv", csv("diameter_mm", "3"),
+     ":2:1: the diameter is 3 d. Lengths in d are divided by the diameter, so it is 1. The column "
+     "diameter_mm is read as diameters: if it is not, rename or remove it."},
+    {"a.csv", csv("grain diam", "1.1"),
+     ":2:1: the diameter is 1.1 d. Lengths in d are divided by the diameter, so it is 1. The "
+     "column "
+     "grain diam is read as diameters: if it is not, rename or remove it."},
+    {"a.csv", "x_d,y_d,z_d,radii_m\n1,1,1,.5\n3,3,3,.5\n",
+     ":1:13: is in another unit than the columns before (got radii_m). " + kOneUnit},
+    {"a.csv", csv("element", "C"), kTwo + "; not read: element"},
+    {"a.csv", csv("theta_rad", "3"), kTwo + "; not read: theta_rad"},
+    {"a.csv", csv("is diamond", "1"), kTwo + "; not read: is diamond"},
+    {"a.csv", csv("cluster_size", "9"), kTwo + "; not read: cluster_size"},
+    {"a.csv", csv("", "9"), kTwo + "; not read: column 4"},
+    {"a.csv", "name,x,y,z\n\"a, b\",1,1,1\n\"say \"\"c\"\", d\",3,3,3\n",
+     kTwo + "; not read: name"},
+    {"a.csv", "x;y;z;n\n1;1;1;\"a;b\"\n3;3;3;5\" wide\n", kTwo + "; not read: n"},
+    {"a.txt", std::string("\"my, name\"\tx\ty\tz\n\"a\tb\"\t1\t1\t1\nc\t3\t3\t3\n"),
+     kTwo + "; not read: my, name"},
+    {"a.csv", "n,x,y,z\n\"open,1,1,1\nb,3,3,3\n",
+     ":2:1: has 1 fields instead of 4. Each grain is one line with a value for each column."},
+};
+
+TEST(PackingFile, EveryPartIsReadRefusedOrNamed) {
+  for (const Parts& parts : kParts) {
+    SCOPED_TRACE(parts.text);
+    std::string says;
+    try {
+      const PackingFile packing = read_packing(parts.text, parts.file, kInD);
+      says = describe(packing);
+      EXPECT_LT((packing.position.col(0).array() - 1).abs().maxCoeff(), 1e-12);
+      EXPECT_LT((packing.position.col(1).array() - 3).abs().maxCoeff(), 1e-12);
+    } catch (const ManifestError& error) {
+      says = std::string(error.what()).substr(parts.file.size());
+    }
+    EXPECT_EQ(says, parts.says);
+  }
+}
+
+TEST(PackingFile, OfManyColumnsTheFirstAreNamed) {
+  std::string names = "x,y,z", values = "1,1,1";
+  for (int k = 0; k < 20; ++k) names += fmt::format(",c{}", k), values += ",0";
+  EXPECT_EQ(
+      describe(read_packing(names + "\n" + values + "\n", "a.csv", kInD)),
+      "1 grain, no box, no velocities; not read: c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, "
+      "c11 and 8 more");
+  for (int k = 20; k < 1000; ++k) names += fmt::format(",c{}", k);
+  EXPECT_EQ(message_of<ManifestError>([&] { read_packing(names + "\n", "a.csv", kInD); }),
+            "a.csv:1:1: has 1003 columns. At most 1000 are read: leave out some.");
 }
 
 /// The numbers of truth.csv.

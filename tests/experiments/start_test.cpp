@@ -500,6 +500,20 @@ TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
             std::string::npos);
 }
 
+TEST_F(FromAFile, AWrongUnitIsAskedAbout) {
+  const std::string two =
+      "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
+      "  fill_packing_fraction: 0.02\n  height_over_width: 1\n";
+  write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
+  EXPECT_EQ(refusal_of(manifest("", two)), "");
+  write_grains("x_m,y_m,z_m\n1,1,1\n3,1,1\n");
+  const std::string wide = refusal_of(manifest("", two));
+  EXPECT_NE(wide.find(" d. Is the unit of its lengths right? Read in d they are 3 d."),
+            std::string::npos)
+      << wide;
+  EXPECT_EQ(wide.find("nominal_packing_fraction"), std::string::npos) << wide;
+}
+
 TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
   const std::string two =
       "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"

@@ -46,8 +46,22 @@ try:
     atoms.set_array("velo", numpy.array(speed))
     ase.io.write(folder / "ase.xyz", atoms)
     ase.io.write(folder / "ase_still.data", atoms, format="lammps-data")
+    del atoms.arrays["velo"]
+    atoms.set_array("forces", numpy.array(speed))
+    atoms.set_array("radius", numpy.full(500, 0.5))
+    atoms.info = {"energy": -1.5, "note": "a = b, c", "stress": numpy.zeros(6)}
+    ase.io.write(folder / "ase_columns_still.xyz", atoms, columns=["forces", "symbols", "positions", "radius"])
 except ImportError:
     print("without ASE (Debian package python3-ase)")
+
+try:
+    import MDAnalysis
+    universe = MDAnalysis.Universe.empty(500, trajectory=True)
+    universe.add_TopologyAttr("name", ["A"] * 500)
+    universe.atoms.positions = place
+    universe.atoms.write(str(folder / "mdanalysis_still.xyz"))
+except ImportError:
+    print("without MDAnalysis (Debian package python3-mdanalysis)")
 
 lammps = shutil.which("lmp")
 if lammps is None:
@@ -62,6 +76,8 @@ pair_coeff * *
 mass * 1
 dump custom all custom 1 {out}.dump id type x y z vx vy vz
 dump_modify custom format float %.17g
+dump more all custom 1 {out}_more.dump id type x y z xu yu zu ix iy iz vx vy vz fx
+dump_modify more format float %.17g units yes time yes
 dump xyz all xyz 1 {out}_still.xyz
 run 0
 write_data {out}.data
