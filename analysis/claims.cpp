@@ -269,7 +269,8 @@ FigureTable entered_with(const std::vector<std::string>& columns) {
 }
 
 void enter(const FigureRun& run, const TableRow& values, FigureTable& entered) {
-  TableRow& row = entered.rows.emplace_back(TableRow{run.variant, run.seed, packing_of(run)});
+  TableRow& row =
+      entered.rows.emplace_back(TableRow{run.place.variant, run.place.seed, packing_of(run)});
   row.insert(row.end(), values.begin(), values.end());
 }
 

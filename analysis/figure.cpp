@@ -23,7 +23,7 @@ RunValue measured(double value) {
 }
 
 nlohmann::json parameter_of(const FigureRun& run, const std::string& key) {
-  return member_of(run.swept.contains(key) ? run.swept : run.parameters, key.c_str());
+  return member_of(run.place.swept.contains(key) ? run.place.swept : run.parameters, key.c_str());
 }
 
 bool has_parameters(const FigureRun& run, const nlohmann::json& where) {
@@ -104,8 +104,9 @@ std::string averaged_key(std::span<const FigureRun> runs, const std::vector<std:
   for (const FigureRun& run : runs) {
     std::vector<nlohmann::json> curve;
     for (const std::string& key : keys) curve.push_back(parameter_of(run, key));
-    const nlohmann::json& first = curves.try_emplace(std::move(curve), run.swept).first->second;
-    for (const auto& [key, value] : run.swept.items()) {
+    const nlohmann::json& first =
+        curves.try_emplace(std::move(curve), run.place.swept).first->second;
+    for (const auto& [key, value] : run.place.swept.items()) {
       if (first.value(key, nlohmann::json()) != value) return key;
     }
   }
@@ -116,7 +117,7 @@ void require_told_apart(const std::string& figure, std::span<const FigureRun> ru
                         const std::vector<std::string>& keys, const std::string& remedy) {
   const std::string key = averaged_key(runs, keys);
   if (key.empty()) return;
-  const std::string& experiment = runs.front().experiment;
+  const std::string& experiment = runs.front().place.experiment;
   throw UsageError(
       fmt::format("figure {} would average over the values of {} that experiment {} sweeps; {}",
                   figure, key, experiment, remedy));
@@ -126,9 +127,9 @@ std::vector<std::string> varied_keys(std::span<const FigureRun> runs, std::strin
   std::set<nlohmann::json> variants;
   std::set<std::string> keys;
   for (const FigureRun& run : runs) {
-    if (!run.swept.is_object()) continue;
-    variants.insert(run.swept);
-    for (const auto& [key, value] : run.swept.items()) keys.insert(key);
+    if (!run.place.swept.is_object()) continue;
+    variants.insert(run.place.swept);
+    for (const auto& [key, value] : run.place.swept.items()) keys.insert(key);
   }
   const std::vector<nlohmann::json> list(variants.begin(), variants.end());
   std::vector<std::string> in_order(keys.begin(), keys.end());

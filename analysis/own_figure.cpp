@@ -147,11 +147,11 @@ void average_x(const PlotSpec& plot, std::vector<FigureRun>& runs) {
   const double cycle = cycle_of(plot, runs);
   std::map<std::string, std::vector<double>> found;  // of each variant
   for (const FigureRun& run : runs) {
-    std::vector<double>& of_variant = found[run.variant];
+    std::vector<double>& of_variant = found[run.place.variant];
     if (std::isfinite(y_of(plot, run, cycle))) of_variant.push_back(number_of(run, plot.x));
   }
   for (FigureRun& run : runs) {
-    const std::optional<double> mean = over_runs(found.at(run.variant)).mean;
+    const std::optional<double> mean = over_runs(found.at(run.place.variant)).mean;
     run.parameters[plot.x] = mean.value_or(std::nan(""));
   }
 }
@@ -214,18 +214,18 @@ std::vector<FigureRun> by_curve(std::span<const FigureRun> runs, const PlotSpec&
     for (const std::string& key : keys) {
       if (nlohmann::json value = parameter_of(run, key); !value.is_null()) swept[key] = value;
     }
-    if (run.swept.is_object()) run.parameters.update(run.swept);
-    run.swept = std::move(swept);
-    run.variant = run.swept.empty() ? "all" : words_of(run.swept);
-    names[run.variant].insert(run.name);
+    if (run.place.swept.is_object()) run.parameters.update(run.place.swept);
+    run.place.swept = std::move(swept);
+    run.place.variant = run.place.swept.empty() ? "all" : words_of(run.place.swept);
+    names[run.place.variant].insert(run.name);
   }
   std::vector<nlohmann::json> curves;
-  for (const FigureRun& run : found) curves.push_back(run.swept);
+  for (const FigureRun& run : found) curves.push_back(run.place.swept);
   const auto shared = name ? name(curves) : std::map<nlohmann::json, std::string>();
   for (FigureRun& run : found) {
-    const bool of_one_variant = names.at(run.variant).size() == 1 && !run.name.empty();
+    const bool of_one_variant = names.at(run.place.variant).size() == 1 && !run.name.empty();
     if (of_one_variant && plot.panel.empty()) continue;
-    run.name = name && !keys.empty() ? shared.at(run.swept) : run.variant;
+    run.name = name && !keys.empty() ? shared.at(run.place.swept) : run.place.variant;
   }
   return found;
 }
@@ -265,7 +265,7 @@ FigureTable traces(const PlotSpec& plot, std::span<const Curve> curves) {
       for (const CheckpointMeasures& c : run->checkpoints) {
         const double at = x ? c.measures.number(plot.x) : c.cycle;
         const double value = c.measures.number(plot.y);
-        TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->seed});
+        TableRow& row = table.rows.emplace_back(TableRow{curve.variant, run->place.seed});
         if (x) row.emplace_back(c.cycle);
         row.insert(row.end(), {at, value});
         if (std::isfinite(at) && std::isfinite(value)) series.points.push_back({at, value});
@@ -301,7 +301,7 @@ Points points_of(const PlotSpec& plot, const Curve& curve, double cycle) {
   for (std::size_t r = 0; r < curve.runs.size(); ++r) {
     const FigureRun& run = *curve.runs[r];
     if (of_curve == nullptr) {
-      points.add(run.seed, run, number_of(run, plot.x), y_of(plot, run, cycle));
+      points.add(run.place.seed, run, number_of(run, plot.x), y_of(plot, run, cycle));
       continue;
     }
     const Measures* measures = measures_at(run, cycle);
@@ -625,7 +625,7 @@ bool is_measured_of_run(std::string_view x) {
 
 std::size_t count_variants(RunGroup runs) {
   std::set<std::string> distinct;
-  for (const FigureRun* run : runs) distinct.insert(run->variant);
+  for (const FigureRun* run : runs) distinct.insert(run->place.variant);
   return distinct.size();
 }
 
@@ -636,7 +636,8 @@ std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
     if (has_parameters(run, where)) found.push_back(&run);
   }
   std::vector<const FigureRun*> as_stated = found;
-  std::erase_if(as_stated, [](const FigureRun* run) { return run->swept.contains("engine"); });
+  std::erase_if(as_stated,
+                [](const FigureRun* run) { return run->place.swept.contains("engine"); });
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
 }
 

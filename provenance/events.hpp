@@ -40,12 +40,13 @@ struct PackingRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  Stage run;  ///< without its id, in the state `declared`
-  Ask ask;
+  Stage stage;  ///< without its id, in the state `declared`
+  Membership membership;
   static void fields(auto& e, auto field) {
-    field("parent", e.run.parent), field("kind", e.run.kind), field("resolved", e.run.resolved);
-    field("grains", e.run.grains), field("target_cycles", e.ask.target_cycles);
-    field("membership", e.ask);
+    field("parent", e.stage.parent), field("kind", e.stage.kind),
+        field("resolved", e.stage.resolved);
+    field("grains", e.stage.grains), field("target_cycles", e.membership.ask.target_cycles);
+    field("membership", e.membership);
   }
 };
 

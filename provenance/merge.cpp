@@ -76,13 +76,13 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
 
 void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
                         const std::string& b_name) {
-  for (const Stage& run : query_stages(b)) {
-    const auto same = query_stage(a, run.id);
-    if (!same || same_computation(*same, run)) continue;
+  for (const Stage& stage : query_stages(b)) {
+    const auto same = query_stage(a, stage.id);
+    if (!same || same_computation(*same, stage)) continue;
     throw StoreDamaged(fmt::format(
         "run {}: {} and {} have different parameters for it; one of them was changed by "
         "hand. Nothing was merged",
-        run.id, a_name, b_name));
+        stage.id, a_name, b_name));
   }
 }
 
@@ -133,8 +133,8 @@ struct RunMerge {
 
   bool wants(const Database& into, const Event& event) const {
     if (event.type == events::RunDeclared::kType) {
-      const Ask ask = std::get<events::RunDeclared>(events::decode(event)).ask;
-      return !before || adds_something(query_stage(into, before->id), ask);
+      const auto declared = std::get<events::RunDeclared>(events::decode(event));
+      return !before || adds_something(query_stage(into, before->id), declared.membership);
     }
     if (events::begins_attempt(event) || events::ends_attempt(event) ||
         event.type == CheckpointRecorded::kType) {
@@ -283,9 +283,9 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   std::map<std::string, Stream> streams;
   for (const Event& event : source.events) streams[event.stream].push_back(&event);
   std::map<std::string, RunMerge> runs;  // by stream
-  for (const Stage& run : query_stages(source.tables)) {
-    const std::string stream = run_stream(run.id);
-    runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), run));
+  for (const Stage& stage : query_stages(source.tables)) {
+    const std::string stream = run_stream(stage.id);
+    runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
   std::erase_if(streams, [&log](const auto& entry) {  // texts that are known
     return holds_a_text(entry.first) && log.version(entry.first) > 0;

@@ -111,21 +111,21 @@ class Projector {
       : database_(database), event_(event), id_(event.stream.substr(event.stream.find('/') + 1)) {}
 
   void operator()(const events::RunDeclared& e) const {
-    const Stage& d = e.run;
-    const Ask& m = e.ask;
+    const Stage& d = e.stage;
+    const auto& [place, ask, newest] = e.membership;
     if (!is_sha256_hex(id_)) {
       throw StoreDamaged(
           fmt::format("event {} ({} of {:.64}): the id of the run is not a SHA-256; "
                       "run `verify`, and restore the store from a backup",
                       event_.seq, event_.type, event_.stream));
     }
-    require_cycles(m.target_cycles, m.checkpoint_every);
+    require_cycles(ask.target_cycles, ask.checkpoint_every);
     // A completed run may also have ended early, as other experiments asked for.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
-        id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, m.target_cycles,
+        id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
     // A declaration that asks for nothing more puts the run in its place again.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
@@ -134,9 +134,10 @@ class Projector {
         "target_cycles = max(target_cycles, excluded.target_cycles), "
         "checkpoint_every = excluded.checkpoint_every, until = excluded.until, "
         "checkpoint_phases = excluded.checkpoint_phases",
-        id_, m.experiment, m.scale, m.variant, m.seed, m.manifest, m.swept.dump(), m.target_cycles,
-        m.checkpoint_every, event_.seq, m.until.dump(), json(m.checkpoint_phases).dump());
-    if (d.kind != "prepare") show_newest(m.experiment, m.scale, m.manifest);
+        id_, place.experiment, place.scale, place.variant, place.seed, place.manifest,
+        place.swept.dump(), ask.target_cycles, ask.checkpoint_every, event_.seq, ask.until.dump(),
+        json(ask.checkpoint_phases).dump());
+    if (d.kind != "prepare") show_newest(place.experiment, place.scale, place.manifest);
   }
 
   /// Of a text that was registered again, the later time.
@@ -275,22 +276,23 @@ State state_of(const Database& database, const std::string& name) {
   throw damaged_table(database, "has the unknown state '" + name + "'");
 }
 
-std::vector<Ask> query_memberships(const Database& database, const std::string& id) {
+std::vector<Membership> query_memberships(const Database& database, const std::string& id) {
   Statement query(database,
                   "SELECT memberships.*, newest.manifest IS memberships.manifest FROM memberships "
                   "LEFT JOIN newest USING (experiment, scale) WHERE run = ? ORDER BY ordinal",
                   id);
   return query.all([&](const Statement& row) {
-    Ask m;
+    Membership m;
+    auto& [place, ask, is_newest] = m;
     std::string run, labels, until, phases;
     std::uint64_t newest = 0;
-    row.get(run, m.experiment, m.scale, m.variant, m.seed, m.manifest, labels, m.target_cycles,
-            m.checkpoint_every, m.ordinal, until, phases, newest);
-    m.swept = parse(database, labels);
-    m.until = parse(database, until);
-    m.checkpoint_phases = numbers(database, phases);
-    m.newest = newest != 0;
-    require_cycles(m.target_cycles, m.checkpoint_every);
+    row.get(run, place.experiment, place.scale, place.variant, place.seed, place.manifest, labels,
+            ask.target_cycles, ask.checkpoint_every, ask.ordinal, until, phases, newest);
+    place.swept = parse(database, labels);
+    ask.until = parse(database, until);
+    ask.checkpoint_phases = numbers(database, phases);
+    is_newest = newest != 0;
+    require_cycles(ask.target_cycles, ask.checkpoint_every);
     return m;
   });
 }
@@ -301,19 +303,19 @@ std::vector<Stage> select_runs(const Database& database, const std::string& rest
                                const Values&... values) {
   Statement query(database, "SELECT * FROM runs " + rest, values...);
   return query.all([&](const Statement& row) {
-    Stage run;
+    Stage stage;
     std::uint64_t ordinal = 0;
     std::string resolved, state, ends;
-    row.get(run.id, ordinal, run.parent, run.kind, resolved, state, run.grains, run.target_cycles,
-            run.attempts, run.cycle, run.step, run.state_hash, run.wall_seconds, run.particle_steps,
-            run.error, run.updated_at, ends);
-    run.ends = parse(database, ends);
-    if (!run.ends.is_array()) throw damaged_table(database, "holds no list of ends");
-    run.resolved = parse(database, resolved);
-    require_cycles(run.target_cycles, 1);
-    run.state = state_of<StageState>(database, state);
-    run.asks = query_memberships(database, run.id);
-    return run;
+    row.get(stage.id, ordinal, stage.parent, stage.kind, resolved, state, stage.grains,
+            stage.target_cycles, stage.attempts, stage.cycle, stage.step, stage.state_hash,
+            stage.wall_seconds, stage.particle_steps, stage.error, stage.updated_at, ends);
+    stage.ends = parse(database, ends);
+    if (!stage.ends.is_array()) throw damaged_table(database, "holds no list of ends");
+    stage.resolved = parse(database, resolved);
+    require_cycles(stage.target_cycles, 1);
+    stage.state = state_of<StageState>(database, state);
+    stage.memberships = query_memberships(database, stage.id);
+    return stage;
   });
 }
 
@@ -420,10 +422,10 @@ std::map<std::string, TableRows> projection_rows(const Database& database) {
   return tables;
 }
 
-bool adds_something(const std::optional<Stage>& known, const Ask& ask) {
-  return !known || std::ranges::none_of(known->asks, [&](const Ask& old) {
-    return static_cast<const Place&>(old) == ask && old.checkpoint_every == ask.checkpoint_every &&
-           old.target_cycles >= ask.target_cycles;
+bool adds_something(const std::optional<Stage>& known, const Membership& wanted) {
+  return !known || std::ranges::none_of(known->memberships, [&](const Membership& old) {
+    return old.place == wanted.place && old.ask.checkpoint_every == wanted.ask.checkpoint_every &&
+           old.ask.target_cycles >= wanted.ask.target_cycles;
   });
 }
 

@@ -53,7 +53,7 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
 /// Whether the ask is of a new place of the stage, raises its target there or has another cadence.
 /// `known`: the stage in the store, if it is there.
-bool adds_something(const std::optional<Stage>& known, const Ask& ask);
+bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// Whether no other run was declared later in this place, which several packings may share.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 

@@ -25,25 +25,38 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// What the experiment of a place asks of the stage.
-struct Ask : Place {
+/// What an experiment asks of a stage.
+struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< length
   nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
-  std::uint64_t ordinal = 0;                   ///< the event that put the stage in the place
+  std::uint64_t ordinal = 0;                   ///< the event that put the stage in its place
+};
+
+/// A stage's place in an experiment, and what the experiment asks of the stage.
+struct Membership {
+  Place place = {};
+  Ask ask = {};
   /// Whether the manifest is the last registered version among those that declared a stage at the
-  /// scale. The store sets it; a list of runs that is to be combined may clear it.
+  /// scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
-    field("experiment", m.experiment), field("scale", m.scale), field("variant", m.variant);
-    field("labels", m.swept), field("seed", m.seed), field("manifest", m.manifest);
-    field("checkpoint_every", m.checkpoint_every);
+    auto& [place, ask, newest] = m;
+    field("experiment", place.experiment), field("scale", place.scale);
+    field("variant", place.variant), field("labels", place.swept), field("seed", place.seed);
+    field("manifest", place.manifest), field("checkpoint_every", ask.checkpoint_every);
     // Recorded only if they are stated.
-    field("until", m.until, true), field("checkpoint_phases", m.checkpoint_phases, true);
+    field("until", ask.until, true), field("checkpoint_phases", ask.checkpoint_phases, true);
   }
 };
+
+inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
+  std::vector<Ask> asks;
+  for (const Membership& m : memberships) asks.push_back(m.ask);
+  return asks;
+}
 
 /// The name to show, also as JSON: "base" if the manifest has no scales. Events hold "".
 inline std::string scale_name(const std::string& scale) {
@@ -84,17 +97,21 @@ struct Stage {
   double wall_seconds = 0;                        ///< sum over recorded efforts
   double particle_steps = 0;                      ///< sum over recorded efforts
   nlohmann::json ends = nlohmann::json::array();  ///< why each completion ended the run
-  std::string error;       ///< why it failed or was interrupted; "" otherwise
-  std::string updated_at;  ///< time of its last event, UTC
-  std::vector<Ask> asks;   ///< in the order in which they were declared
+  std::string error;                    ///< why it failed or was interrupted; "" otherwise
+  std::string updated_at;               ///< time of its last event, UTC
+  std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
 /// What a user counts, lists and averages: a stage in one of its places. A stage of two experiments
 /// is a run of each.
-struct Run : Ask {
+struct Run {
+  Place place = {};
+  Ask ask = {};
   Stage stage = {};       ///< the last one: shear or stiffening
   std::string name = {};  ///< of its variant, for people
   bool named = false;     ///< by a label of the manifest
+  /// Of the newest version of its manifest, which did not later put another run in its place.
+  bool newest = true;
 };
 
 /// Whether two stages with one id describe the same computation.

@@ -115,15 +115,15 @@ json add_host(Graph& graph, const Maker& maker) {
 }
 
 /// Seed, resolved parameters and number of cycles of a run.
-json add_parameters(Graph& graph, const Stage& run) {
+json add_parameters(Graph& graph, const Stage& stage) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
-    given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", run.id, name)},
+    given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", stage.id, name)},
                                {"@type", "PropertyValue"},
                                {"name", name},
                                {"value", value.is_primitive() ? value : json(value.dump())}}));
   };
-  for (const auto& [key, value] : run.resolved.items()) {
+  for (const auto& [key, value] : stage.resolved.items()) {
     if (key == "parent") continue;  // its checkpoint is an object of its own
     if (!value.is_object()) {
       add(key, value);
@@ -131,7 +131,7 @@ json add_parameters(Graph& graph, const Stage& run) {
     }
     for (const auto& [name, inner] : value.items()) add(name, inner);
   }
-  if (run.target_cycles > 0) add("target_cycles", run.target_cycles);
+  if (stage.target_cycles > 0) add("target_cycles", stage.target_cycles);
   return given;
 }
 
@@ -196,11 +196,11 @@ json add_licence(Graph& graph, const std::string& licence) {
                                              "them before you use the data."}});
 }
 
-std::string title_of(const Stage& run) {
-  if (run.asks.empty()) return fmt::format("{} {:.12}", run.kind, run.id);
-  const Ask& member = run.asks.front();
+std::string title_of(const Stage& stage) {
+  if (stage.memberships.empty()) return fmt::format("{} {:.12}", stage.kind, stage.id);
+  const Place& member = stage.memberships.front().place;
   return fmt::format("{} {}, seed {}: {} of {} grains (run {:.12})", member.experiment,
-                     member.variant, member.seed, run.kind, run.grains, run.id);
+                     member.variant, member.seed, stage.kind, stage.grains, stage.id);
 }
 
 }  // namespace
@@ -208,9 +208,10 @@ std::string title_of(const Stage& run) {
 CrateFacts crate_facts(const Store& store, const std::string& run) {
   CrateFacts facts{run_lineage(store, run), {}};
   for (const RunLineage& stage : facts.stages) {
-    for (const Ask& member : stage.stage.asks) {
-      if (std::ranges::count(facts.manifests, member.manifest, &ManifestText::sha256) > 0) continue;
-      if (auto manifest = find_manifest(store, member.manifest)) {
+    for (const Membership& member : stage.stage.memberships) {
+      if (std::ranges::count(facts.manifests, member.place.manifest, &ManifestText::sha256) > 0)
+        continue;
+      if (auto manifest = find_manifest(store, member.place.manifest)) {
         facts.manifests.push_back(std::move(*manifest));
       }
     }
@@ -232,7 +233,10 @@ json ro_crate_metadata(const CrateFacts& facts) {
   for (const RunLineage& stage : facts.stages) {
     Given given;
     for (const ManifestText& manifest : facts.manifests) {
-      if (std::ranges::count(stage.stage.asks, manifest.sha256, &Ask::manifest) > 0) {
+      const auto states_it = [&](const Membership& m) {
+        return m.place.manifest == manifest.sha256;
+      };
+      if (std::ranges::any_of(stage.stage.memberships, states_it)) {
         given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
       }
     }
@@ -252,7 +256,7 @@ json ro_crate_metadata(const CrateFacts& facts) {
   }
   std::string newest;
   for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.stage.updated_at);
-  const Stage& run = facts.stages.back().stage;
+  const Stage& stage = facts.stages.back().stage;
   json all = json::array();
   all.push_back({{"@id", kCrateMetadata},
                  {"@type", "CreativeWork"},
@@ -261,12 +265,12 @@ json ro_crate_metadata(const CrateFacts& facts) {
   all.push_back(
       {{"@id", "./"},
        {"@type", "Dataset"},
-       {"name", title_of(run)},
+       {"name", title_of(stage)},
        {"description",
         fmt::format("Checkpoints of run {} and of the stages before it, with the program, the "
                     "machines, the manifests and the parameters that made them",
-                    run.id)},
-       {"identifier", crate_identifier(run.id)},
+                    stage.id)},
+       {"identifier", crate_identifier(stage.id)},
        {"datePublished", newest},
        {"license", licence},
        {"conformsTo", json::array({reference(kProfile)})},

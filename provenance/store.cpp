@@ -271,11 +271,11 @@ void Store::declare_stage(const Stage& declared) {
     throw std::invalid_argument(
         fmt::format("run {}: the store has this id with other parameters", declared.id));
   }
-  for (const Ask& m : declared.asks) {
+  for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
     // A start that was changed, so that another run took the place, and changed back.
-    if (!holds_place(database_, declared.id, m)) append(run_stream(declared.id), event, lock);
+    if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
 }
@@ -525,23 +525,24 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::set<std::string> needed = initial_states(log_);
   const std::vector<Stage> known = stages();
   std::set<std::pair<std::string, double>> to_come;  // run and cycle where a stage will begin
-  for (const Stage& run : known) {
-    if (!run.parent.empty() && !has_ended(run.state)) to_come.emplace(run.parent, start_cycle(run));
+  for (const Stage& stage : known) {
+    if (!stage.parent.empty() && !has_ended(stage.state))
+      to_come.emplace(stage.parent, start_cycle(stage));
   }
   std::vector<CheckpointRecord> found;
-  for (const Stage& run : known) {
-    if (!choice.runs.empty() && std::ranges::count(choice.runs, run.id) == 0) continue;
+  for (const Stage& stage : known) {
+    if (!choice.runs.empty() && std::ranges::count(choice.runs, stage.id) == 0) continue;
     // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
-    std::vector<CheckpointRecord> records = checkpoints(run.id);
-    const bool all = choice.last_too && run.state == StageState::completed;
+    std::vector<CheckpointRecord> records = checkpoints(stage.id);
+    const bool all = choice.last_too && stage.state == StageState::completed;
     bool kept = all;
     while (!records.empty() && !kept) {
       kept = load_if_readable(records.back()).has_value();
       records.pop_back();
     }
     for (CheckpointRecord& record : records) {
-      const bool settling = run.kind == "prepare" && record.step < run.step;
-      if (!settling && to_come.contains({run.id, record.cycle})) continue;
+      const bool settling = stage.kind == "prepare" && record.step < stage.step;
+      if (!settling && to_come.contains({stage.id, record.cycle})) continue;
       if (kept_by_cadence(choice, record) || (!all && needed.contains(record.sha256))) continue;
       found.push_back(std::move(record));
     }

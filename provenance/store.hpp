@@ -64,7 +64,7 @@ struct MergeReport {
 /// plausible, or if its run, step, cycle, time, units, number of grains, observables or state
 /// differ from the record or from the run's parameters.
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
-                           const Stage& run);
+                           const Stage& stage);
 
 /// Thread-safe. Several processes may open one store on a local disk; the log decides who was
 /// first. Every function may throw StoreDamaged, and std::runtime_error when the machine fails or
@@ -105,7 +105,7 @@ class Store {
   /// Records each ask of the run that is new or has a larger target. A longer target makes a
   /// completed run `declared` again. Throws std::invalid_argument when the id is not
   /// a SHA-256, belongs to other parameters, or the parent was never declared.
-  void declare_stage(const Stage& run);
+  void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
   /// from this checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when

@@ -22,18 +22,19 @@ void require_same(std::string_view what, const auto& in_file, const auto& in_log
       "its {} is {}, and the log says {}; `regenerate` computes it again", what, in_file, in_log));
 }
 
-void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const Stage& run) {
+void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const Stage& stage) {
   require_same("run", c.run, record.run);
   require_same("name", ObjectStore::file_of(record.sha256), record.file);
   require_same("step", c.state.step, record.step);
   require_same("cycle", c.cycle, record.cycle);
   require_same("time_s", c.time_s, record.time_s);
-  require_same("number of grains", static_cast<std::uint64_t>(c.state.position.cols()), run.grains);
+  require_same("number of grains", static_cast<std::uint64_t>(c.state.position.cols()),
+               stage.grains);
   for (const auto& [name, unit] :
        {std::pair("diameter_m", c.units.diameter_m), std::pair("mass_kg", c.units.mass_kg)}) {
     const nlohmann::json::json_pointer place(std::string("/parameters/") + name);
-    if (!run.resolved.is_object() || !run.resolved.contains(place)) continue;
-    const nlohmann::json& parameter = run.resolved.at(place);
+    if (!stage.resolved.is_object() || !stage.resolved.contains(place)) continue;
+    const nlohmann::json& parameter = stage.resolved.at(place);
     require_same(name, unit, parameter.is_number() ? parameter.get<double>() : std::nan(""));
   }
   auto all = c.observables;
@@ -212,10 +213,10 @@ void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport
 }  // namespace
 
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
-                           const Stage& run) {
+                           const Stage& stage) {
   Checkpoint checkpoint = decode_checkpoint(image);
   require_plausible(checkpoint);
-  require_recorded(checkpoint, record, run);
+  require_recorded(checkpoint, record, stage);
   return checkpoint;
 }
 
@@ -244,7 +245,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     }
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);
-    for (Stage& run : query_stages(fresh)) runs.emplace(run.id, std::move(run));
+    for (Stage& stage : query_stages(fresh)) runs.emplace(stage.id, std::move(stage));
     records = query_all_checkpoints(fresh);
     log_was_read = true;
     compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);

@@ -123,7 +123,8 @@ std::vector<Amplitude> amplitudes_of(std::span<const FigureRun> runs) {
                                              .point = curve_symbol(k)},
                                    .published = published_nearest(amplitude).critical_size});
     std::map<std::pair<std::string, std::string>, std::vector<const FigureRun*>> states;
-    for (const FigureRun* run : members) states[{run->variant, run->stage.parent}].push_back(run);
+    for (const FigureRun* run : members)
+      states[{run->place.variant, run->stage.parent}].push_back(run);
     for (const auto& [state, clones] : states) add_state(clones, one);
   }
   return all;

@@ -57,7 +57,7 @@ class StylesOfOthers {
     if (rests_.size() == 1 || firsts_.size() > safe_colours.size() || rests_.size() > curve_symbols)
       first = rest = first * rests_.size() + rest;
     return {{},
-            run.name.empty() ? run.variant : run.name,
+            run.name.empty() ? run.place.variant : run.name,
             safe_colours[first % safe_colours.size()],
             curve_symbol(rest)};
   }
@@ -169,7 +169,7 @@ SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
 
 std::vector<Curve> curves_of(std::span<const FigureRun> runs, std::span<const CurveStyle> styles) {
   std::map<std::string, std::vector<const FigureRun*>> variants;
-  for (const FigureRun& run : runs) variants[run.variant].push_back(&run);
+  for (const FigureRun& run : runs) variants[run.place.variant].push_back(&run);
   const StylesOfOthers others(runs);
   const bool own = std::ranges::all_of(others.keys(), [&](const std::string& key) {
     return std::ranges::any_of(styles, [&](const CurveStyle& s) { return s.where.contains(key); });

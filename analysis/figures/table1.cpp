@@ -79,7 +79,7 @@ Found found_in(const RunList& runs, const Parameter& parameter) {
     ++found.runs;
     found.take(value);
     for (const std::string& key : names_in(parameter.value)) {
-      found.varied = found.varied || run->swept.contains(key);
+      found.varied = found.varied || run->place.swept.contains(key);
     }
     // A stiffening records the stiffness at each checkpoint.
     const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");
@@ -134,7 +134,7 @@ FigureResult figure_table1(std::span<const FigureRun> given) {
   const std::vector<FigureRun> runs = with_values(given, values);
   std::map<std::string, RunList> experiments;
   for (const FigureRun& run : runs) {
-    if (!run.checkpoints.empty()) experiments[run.experiment].push_back(&run);
+    if (!run.checkpoints.empty()) experiments[run.place.experiment].push_back(&run);
   }
   FigureTable table{.name = "table1",
                     .columns = {"experiment", "parameter", "supplement", "smallest", "largest",

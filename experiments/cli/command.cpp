@@ -165,7 +165,7 @@ std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   for (const Run& run : selected) {
     const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
     if (fresh) runs.push_back({run.stage, {}});
-    runs[at->second].places.push_back(run);
+    runs[at->second].places.push_back({run.place, run.ask, run.newest});
   }
   return runs;
 }
@@ -235,11 +235,11 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
   std::set<std::string> planned;
   for (const PlannedRun& run : plan.runs) planned.insert(run.stage.id);
   const std::string own = sha256_hex(manifest.text);
-  const auto left_out = std::ranges::count_if(known, [&](const Stage& run) {
-    if (run.kind == name_of(StageKind::prepare) || planned.contains(run.id)) return false;
-    return std::ranges::any_of(run.asks, [&](const Ask& m) {
-      return m.newest && m.manifest != own && m.experiment == manifest.experiment &&
-             m.scale == plan.scale;
+  const auto left_out = std::ranges::count_if(known, [&](const Stage& stage) {
+    if (stage.kind == name_of(StageKind::prepare) || planned.contains(stage.id)) return false;
+    return std::ranges::any_of(stage.memberships, [&](const Membership& m) {
+      return m.newest && m.place.manifest != own && m.place.experiment == manifest.experiment &&
+             m.place.scale == plan.scale;
     });
   });
   if (left_out == 0) return;

@@ -104,7 +104,7 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 /// A stage with its selected places.
 struct PlacedRun {
   Stage stage;
-  std::vector<Ask> places;
+  std::vector<Membership> places;
 };
 
 /// The stages of the runs, each once, in the order of their first places.

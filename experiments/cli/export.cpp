@@ -96,30 +96,30 @@ CycleRange parse_cycles(const std::string& text) {
 // The checkpoints that the selected experiments ask for; of a run without places, which was named
 // by its id, those that any experiment asks for.
 std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
-  const Stage& run = wanted.stage;
-  if (wanted.places.empty()) return checkpoints_for(store, run, run.asks);
+  const Stage& stage = wanted.stage;
+  if (wanted.places.empty()) return checkpoints_for(store, stage, asks_of(stage.memberships));
   std::set<std::uint64_t> steps;
-  for (const Ask& place : wanted.places) {
-    for (const CheckpointRecord& c : checkpoints_for(store, run, place, {})) steps.insert(c.step);
+  for (const Membership& m : wanted.places) {
+    for (const CheckpointRecord& c : checkpoints_for(store, stage, m.ask, {})) steps.insert(c.step);
   }
-  std::vector<CheckpointRecord> records = store.checkpoints(run.id, Listed::and_pruned);
+  std::vector<CheckpointRecord> records = store.checkpoints(stage.id, Listed::and_pruned);
   std::erase_if(records, [&](const CheckpointRecord& c) { return !steps.contains(c.step); });
   return records;
 }
 
 std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
                                      const ExportOptions& options) {
-  const Stage& run = wanted.stage;
+  const Stage& stage = wanted.stage;
   const std::string& cycles = options.cycles;
   const CycleRange range = parse_cycles(cycles);
-  const std::optional<Drive> motion = shear_drive(run);
+  const std::optional<Drive> motion = shear_drive(stage);
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
   // A single cycle may also be a checkpoint that an interruption left.
   const bool by_name = range.first == range.last;
   const std::vector<CheckpointRecord> all =
-      by_name ? store.checkpoints(run.id, Listed::and_pruned) : asked_of(store, wanted);
+      by_name ? store.checkpoints(stage.id, Listed::and_pruned) : asked_of(store, wanted);
   for (const CheckpointRecord& record : all) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
@@ -127,17 +127,17 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   }
   if (records.empty()) {
     if (all.empty()) {
-      throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", run.id));
+      throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", stage.id));
     }
     throw std::invalid_argument(fmt::format(
-        "run {:.8} has no stored checkpoint{}{}; {}", run.id, cycles.empty() ? "" : " in cycles ",
+        "run {:.8} has no stored checkpoint{}{}; {}", stage.id, cycles.empty() ? "" : " in cycles ",
         cycles,
         pruned > 0 ? "`shearcell regenerate` recomputes the pruned ones"
                    : fmt::format("it has cycles {} to {}", all.front().cycle, all.back().cycle)));
   }
   if (pruned > 0) {
     print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
-                 run.id, counted(pruned, "checkpoint"));
+                 stage.id, counted(pruned, "checkpoint"));
   }
   return records;
 }
@@ -173,8 +173,8 @@ CrateFacts crate_of(const Store& store, const std::string& run, const std::strin
 }
 
 /// The place that names the run.
-Ask shown_place(const PlacedRun& run) {
-  return run.places.empty() ? first_ask(run.stage) : run.places.front();
+Place shown_place(const PlacedRun& run) {
+  return run.places.empty() ? first_place(run.stage) : run.places.front().place;
 }
 
 /// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
@@ -191,12 +191,13 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const LengthUnit unit = options.metres ? LengthUnit::m : LengthUnit::d;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), unit)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every = checkpoint_cadence(run.places.empty() ? run.stage.asks : run.places);
+  const std::uint64_t every =
+      checkpoint_cadence(asks_of(run.places.empty() ? run.stage.memberships : run.places));
   MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record,
-                                 {shown_place(run), run.stage}, &sources, every);
+                                 {shown_place(run), {}, run.stage}, &sources, every);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files
@@ -227,9 +228,9 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   parse_cycles(options.cycles);  // throws here once, not for each run
   std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
-    Stage run = store.find_stage(prefix);
-    const auto is_it = [&](const PlacedRun& other) { return other.stage.id == run.id; };
-    if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(run), {}});
+    Stage stage = store.find_stage(prefix);
+    const auto is_it = [&](const PlacedRun& other) { return other.stage.id == stage.id; };
+    if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(stage), {}});
   }
   if (!runs.empty()) return runs;
   const NewestRuns newest = newest_runs(select_runs(store, options.selection));
@@ -241,9 +242,10 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
 
 /// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
-  const Ask m = shown_place(run);
-  std::string name = fmt::format("{}_{}_seed{}_{:.8}{}", m.experiment.substr(0, 64),
-                                 m.variant.substr(0, 100), m.seed, run.stage.id, format.ending);
+  const Place place = shown_place(run);
+  std::string name =
+      fmt::format("{}_{}_seed{}_{:.8}{}", place.experiment.substr(0, 64),
+                  place.variant.substr(0, 100), place.seed, run.stage.id, format.ending);
   std::ranges::replace_if(
       name,
       [](unsigned char c) {

@@ -115,7 +115,7 @@ Store open_store(const std::string& folder, FigureOptions& how) {
 void leave_out_unselected(const Store& store, const RunSelection& runs,
                           std::vector<WantedFigure>& figures) {
   std::set<std::string> selected, others;
-  for (const Run& run : select_runs(store, runs)) selected.insert(run.experiment);
+  for (const Run& run : select_runs(store, runs)) selected.insert(run.place.experiment);
   for (const WantedFigure& figure : figures) {
     const std::string& name = figure.experiment;
     if (!name.empty() && !selected.contains(name)) others.insert(name);

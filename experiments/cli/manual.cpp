@@ -62,7 +62,8 @@ std::string measure_reference() {
 ## Measures
 
 Columns of `shearcell table`, which also has one for each swept parameter. Measures marked *plot* can
-stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are those of `--per run`.
+stand in `plots` and `claims` of a manifest, those marked *until* also in `until`. Columns from
+`critical_size` on are those of `--per run`.
 
 | column | use | meaning |
 |---|---|---|
@@ -70,8 +71,9 @@ stand in `plots` and `claims` of a manifest. Columns from `critical_size` on are
   for (const TableColumn& column : table_columns()) {
     const bool plots = find_measure(column.name) != nullptr ||
                        find_measure(column.name, MeasureKind::run) != nullptr;
-    text +=
-        fmt::format("| `{}` | {} | {} |\n", column.name, plots ? "plot" : "", cell(column.meaning));
+    const char* until = why_not_until(column.name).empty() ? ", until" : "";
+    text += fmt::format("| `{}` | {}{} | {} |\n", column.name, plots ? "plot" : "", until,
+                        cell(column.meaning));
   }
   text +=
       "\nCurves, of `shearcell table --curve` and as `y` of `plots`:\n\n"
@@ -133,7 +135,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"
-      "`shearcell manual --markdown` prints this file from the program's own tables; a test "
+      "`shearcell manual` prints this file from the program's own tables; a test "
       "compares them.\n\n" +
       manifest_reference() + measure_reference() + figure_reference() +
       "\n## Commands\n\n"

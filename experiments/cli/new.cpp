@@ -62,7 +62,7 @@ std::string text_of(const std::string& experiment) {
 experiment: {}
 question: What is to be found out?
 {}figures: [S2]
-# Plots and claims of your own (`shearcell manual --markdown`):
+# Plots and claims of your own (`shearcell manual`):
 # plots:
 #   - {{name: compaction, y: phi, x: cycle, show: traces}}
 # claims:

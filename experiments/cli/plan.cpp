@@ -32,15 +32,16 @@ std::string state_of(const Line& line) {
 
 // The number of cycles that the stage gets at most.
 double cycles_of(const Line& line) {
-  return std::max(static_cast<double>(line.run->target_cycles), line.look.end);
+  return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
 
 // Other experiments that have the stage.
 std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
-  for (const Ask& m : line.asks) {
-    const bool known = std::ranges::count(others, m.experiment) > 0;
-    if (m.experiment != line.run->experiment && !known) others.push_back(m.experiment);
+  for (const Membership& m : line.memberships) {
+    const std::string& other = m.place.experiment;
+    const bool known = std::ranges::count(others, other) > 0;
+    if (other != line.run->place.experiment && !known) others.push_back(other);
   }
   return others;
 }
@@ -119,16 +120,6 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// Whether an `until` may end what is left before the largest number of cycles without one.
-bool may_end_early(const Line& line) {
-  std::uint64_t fixed = 0, most = 0;
-  for (const Ask& ask : line.asks) {
-    std::uint64_t& cycles = has_until(ask) ? most : fixed;
-    cycles = std::max(cycles, ask.target_cycles);
-  }
-  return !line.look.done && most > fixed;
-}
-
 // Particle-steps that are left if runs end where others with the same `until` ended; null without
 // `until`, or where no such run has ended.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
@@ -137,16 +128,16 @@ nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stag
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
-    std::vector<Ask> asks = line.asks;
+    std::vector<Ask> asks = asks_of(line.memberships);
     for (Ask& ask : asks) {
-      if (!has_until(ask) || line.look.done) continue;
+      if (ask.until.is_null() || line.look.done) continue;
       const auto [end, fresh] = ends.try_emplace(ask.until);
       if (fresh) end->second = expected_end(known, ask.until);
       if (!end->second) return nullptr;
       const auto cycles = static_cast<std::uint64_t>(std::llround(*end->second));
       ask.target_cycles = std::min(ask.target_cycles, cycles);
     }
-    asked = asked || may_end_early(line);
+    asked = asked || line.look.may_end_early;
     sum += outlook(line.stage, asks, line.checkpoints).particle_steps;
   }
   return asked ? nlohmann::json(sum) : nlohmann::json();
@@ -155,8 +146,9 @@ nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stag
 void print_until(const std::vector<Line>& lines, const nlohmann::json& left, double at_most) {
   std::set<std::string> ends;
   for (const Line& line : lines) {
-    for (const Ask& ask : line.asks) {
-      if (has_until(ask) && may_end_early(line)) ends.insert(describe(until_from_json(ask.until)));
+    if (!line.look.may_end_early) continue;
+    for (const Ask& ask : asks_of(line.memberships)) {
+      if (!ask.until.is_null()) ends.insert(describe(until_from_json(ask.until)));
     }
   }
   if (ends.empty()) return;
@@ -191,9 +183,9 @@ Facts facts(const Line& line, bool of_several_experiments) {
   const std::vector<std::string> others = shared_with(line);
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
-               {"experiment", run.experiment},
-               {"variant", run.variant, "variant", prepare ? "" : run.name},
-               {"seed", run.seed, "seed"},
+               {"experiment", run.place.experiment},
+               {"variant", run.place.variant, "variant", prepare ? "" : run.name},
+               {"seed", run.place.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
                 prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
@@ -231,10 +223,10 @@ void plan(const PlanOptions& options, Context& context) {
   for (const Line& line : lines) {
     runs_planned += line.stage.kind == name_of(StageKind::prepare) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
-    const auto asks_more = [&](const Ask& ask) {  // in the store
-      return ask.target_cycles > line.run->target_cycles;
+    const auto asks_more = [&](const Membership& m) {  // in the store
+      return m.ask.target_cycles > line.run->ask.target_cycles;
     };
-    longer += std::ranges::any_of(line.stage.asks, asks_more) ? 1 : 0;
+    longer += std::ranges::any_of(line.stage.memberships, asks_more) ? 1 : 0;
   }
   const std::size_t cores = std::clamp<std::size_t>(left_runs.size(), 1, usable_cores());
   const double seconds = left.seconds(cores);

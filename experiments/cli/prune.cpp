@@ -66,16 +66,16 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   for (const CheckpointRecord& record : records) freed_by_run[record.run].push_back(record);
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
-    const Stage run = store.stage(id);
+    const Stage stage = store.stage(id);
     // All experiments that have the run: they lose its files too.
     std::set<std::string> experiments;
-    for (const Ask& m : run.asks) experiments.insert(m.experiment);
+    for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
     // Also files that a prune left behind when it was killed.
     const auto left = std::ranges::count(of_run, CheckpointState::pruned, &CheckpointRecord::state);
     const std::size_t recorded = store.checkpoints(id).size() + static_cast<std::size_t>(left);
     return {{"", id.substr(0, 8), "run"},
             {"", fmt::format("{}", fmt::join(experiments, ", ")), "experiment"},
-            {"", name_of(run.state), "state"},
+            {"", name_of(stage.state), "state"},
             {"", of_run.size(), "to free"},
             {"", recorded, "of"},
             {"", format_bytes(bytes_of(of_run)), "bytes"}};

@@ -210,7 +210,7 @@ void resume_task(const RunOptions& options, Context& context) {
   const bool is_copy = folder != task;
   std::optional<Store> store(std::in_place, folder, Access::write);
   std::set<std::string> runs;  // of the task, which alone are merged back
-  for (const Stage& run : store->stages()) runs.insert(run.id);
+  for (const Stage& stage : store->stages()) runs.insert(stage.id);
   const auto report = [&] { write_task_report(task, store->stages()); };
   const auto save = [&] {
     Store own(task, Access::write);

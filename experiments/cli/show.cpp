@@ -44,11 +44,11 @@ Facts facts_of(const CheckpointRecord& c) {
 
 /// Also `asked_by`: the indices in `memberships` of the places whose figures and tables use the
 /// checkpoint; empty if only an interruption or another experiment left it.
-std::vector<Facts> facts_of_all(const Store& store, const Stage& run,
+std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
-  for (std::size_t k = 0; k < run.asks.size(); ++k) {
-    for (const CheckpointRecord& c : checkpoints_for(store, run, run.asks[k], {})) {
+  for (std::size_t k = 0; k < stage.memberships.size(); ++k) {
+    for (const CheckpointRecord& c : checkpoints_for(store, stage, stage.memberships[k].ask, {})) {
       asked_by[c.step].push_back(k);
     }
   }
@@ -111,67 +111,67 @@ std::vector<std::string> describe(const nlohmann::json& overrides) {
   return lines;
 }
 
-Facts facts_of(const Store& store, const Stage& run) {
-  const nlohmann::json engine = engine_of_run(store, run.id), ended = end_of(run);
+Facts facts_of(const Store& store, const Stage& stage) {
+  const nlohmann::json engine = engine_of_run(store, stage.id), ended = end_of(stage);
   nlohmann::json places = nlohmann::json::array();
   std::string places_text;
-  for (const Ask& m : run.asks) {
-    const nlohmann::json overrides = overrides_of(store, run, m);
-    places.push_back({{"experiment", m.experiment},
-                      {"scale", scale_name(m.scale)},
-                      {"variant", m.variant},
-                      {"seed", m.seed},
-                      {"target_cycles", m.target_cycles},
-                      {"manifest", m.manifest},
+  for (const auto& [place, ask, newest] : stage.memberships) {
+    const nlohmann::json overrides = overrides_of(store, stage, place, ask);
+    places.push_back({{"experiment", place.experiment},
+                      {"scale", scale_name(place.scale)},
+                      {"variant", place.variant},
+                      {"seed", place.seed},
+                      {"target_cycles", ask.target_cycles},
+                      {"manifest", place.manifest},
                       {"overrides", overrides}});
-    places_text += fmt::format("{} ({}) {} seed {}, manifest {:.8}\n", m.experiment,
-                               scale_name(m.scale), m.variant, m.seed, m.manifest);
+    places_text += fmt::format("{} ({}) {} seed {}, manifest {:.8}\n", place.experiment,
+                               scale_name(place.scale), place.variant, place.seed, place.manifest);
     for (const std::string& line : describe(overrides)) places_text += line + "\n";
   }
   return {
-      {"id", run.id, "run"},
-      {"kind", run.kind, "kind"},
-      {"parent", run.parent, "parent", run.parent.empty() ? "-" : run.parent},
-      {"state", name_of(run.state), "state",
-       fmt::format("{}, cycle {:g} of {}, {}", name_of(run.state), run.cycle, run.target_cycles,
-                   counted(run.attempts, "attempt"))},
+      {"id", stage.id, "run"},
+      {"kind", stage.kind, "kind"},
+      {"parent", stage.parent, "parent", stage.parent.empty() ? "-" : stage.parent},
+      {"state", name_of(stage.state), "state",
+       fmt::format("{}, cycle {:g} of {}, {}", name_of(stage.state), stage.cycle,
+                   stage.target_cycles, counted(stage.attempts, "attempt"))},
       {"engine", engine, "engine",
        engine.is_object() ? fmt::format("{} {}, {} processes", text_at(engine, "name"),
                                         text_at(engine, "version"), text_at(engine, "processes"))
                           : ""},
-      {"error", run.error, "error"},
+      {"error", stage.error, "error"},
       {"ended", ended, "ended", describe_end(ended)},
       {"memberships", places, "part of", places_text},
-      {"attempts", run.attempts},
-      {"resolved", run.resolved},
-      {"parameters", effective_parameters(run.resolved)}};
+      {"attempts", stage.attempts},
+      {"resolved", stage.resolved},
+      {"parameters", effective_parameters(stage.resolved)}};
 }
 
 /// What the run's id is the hash of, but with the parameters that affect the run.
-Facts facts_of_id(const Stage& run) {
+Facts facts_of_id(const Stage& stage) {
   Facts facts;
-  for (const auto& [key, value] : run.resolved.items()) {
+  for (const auto& [key, value] : stage.resolved.items()) {
     if (key != "parameters") facts.push_back({"", value, key, value.dump()});
   }
-  const nlohmann::json parameters = effective_parameters(run.resolved);
+  const nlohmann::json parameters = effective_parameters(stage.resolved);
   for (const auto& [key, value] : parameters.items()) {
     facts.push_back({"", value, key, value.dump()});
   }
   return facts;
 }
 
-void show_run(const Store& store, const Stage& run, Context& context) {
-  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(run.id, Listed::all);
-  const Facts facts = facts_of(store, run);
+void show_run(const Store& store, const Stage& stage, Context& context) {
+  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(stage.id, Listed::all);
+  const Facts facts = facts_of(store, stage);
   if (context.json) {
     nlohmann::json all = to_json(facts);
-    all["checkpoints"] = to_json(facts_of_all(store, run, checkpoints));
+    all["checkpoints"] = to_json(facts_of_all(store, stage, checkpoints));
     all["measures"] = to_json(newest_measures(store, checkpoints, context));
     return print_json(all);
   }
   print_lines(facts);
   print_text("\n");
-  print_lines(facts_of_id(run));
+  print_lines(facts_of_id(stage));
   print_text("\n");
   print_table(list_of(checkpoints, [](const CheckpointRecord& c) { return facts_of(c); }));
   if (const Facts measures = newest_measures(store, checkpoints, context); !measures.empty()) {
@@ -460,12 +460,12 @@ void show(const ShowOptions& options, Context& context) {
     return show_published(store, name, list, context);
   if (name.size() >= 4) {
     if (const auto checkpoint = store.find_checkpoint(name)) {
-      for (const Stage& run : store.stages()) {
-        if (!run.id.starts_with(name)) continue;
+      for (const Stage& stage : store.stages()) {
+        if (!stage.id.starts_with(name)) continue;
         throw NotFound(
             fmt::format("a run and a checkpoint begin with '{}'; give more digits of one of\n"
                         "  run {}\n  checkpoint {}",
-                        name, run.id, checkpoint->sha256));
+                        name, stage.id, checkpoint->sha256));
       }
       return show_checkpoint(store, *checkpoint, context);
     }

@@ -35,8 +35,8 @@ struct View {
     for (Lease& lease : store.leases()) holders.emplace(lease.run, std::move(lease));
   }
 
-  const QueuedRun* queued(const Stage& run) const {
-    const auto found = queue.runs.find(run.id);
+  const QueuedRun* queued(const Stage& stage) const {
+    const auto found = queue.runs.find(stage.id);
     return found == queue.runs.end() ? nullptr : &found->second;
   }
 };
@@ -65,57 +65,59 @@ std::string describe(const QueuedTask& task) {
 }
 
 /// State and cycle of the run: as its task reports them if that is ahead, else as the store has.
-std::pair<StageState, double> progress_of(const Stage& run, const QueuedRun* queued) {
-  const bool reported = queued != nullptr && queued->reported && run.state != StageState::completed;
-  if (!reported || queued->reported->cycle < run.cycle) return {run.state, run.cycle};
+std::pair<StageState, double> progress_of(const Stage& stage, const QueuedRun* queued) {
+  const bool reported =
+      queued != nullptr && queued->reported && stage.state != StageState::completed;
+  if (!reported || queued->reported->cycle < stage.cycle) return {stage.state, stage.cycle};
   return {queued->reported->state, queued->reported->cycle};
 }
 
 /// A run in one of its places. The table shows what its task reports, JSON what the store has.
-Facts facts(const PlacedRun& listed, const Ask& place, const View& view) {
-  const Stage& run = listed.stage;
-  const auto held = view.holders.find(run.id);
+Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) {
+  const Stage& stage = listed.stage;
+  const auto held = view.holders.find(stage.id);
   const bool is_held = held != view.holders.end();
-  const QueuedRun* queued = view.queued(run);
-  const bool in_queue = queued != nullptr && run.state != StageState::completed;
-  const auto [state, cycle] = progress_of(run, queued);
-  const double rate = run.wall_seconds > 0 ? run.particle_steps / run.wall_seconds : 0;
-  const std::string name = view.names.of(run, place);
-  const auto place_facts = [&](const Ask& m) -> nlohmann::json {
-    return {{"experiment", m.experiment},
-            {"scale", scale_name(m.scale)},
-            {"variant", m.variant},
-            {"name", view.names.of(run, m)},
-            {"seed", m.seed},
+  const QueuedRun* queued = view.queued(stage);
+  const bool in_queue = queued != nullptr && stage.state != StageState::completed;
+  const auto [state, cycle] = progress_of(stage, queued);
+  const double rate = stage.wall_seconds > 0 ? stage.particle_steps / stage.wall_seconds : 0;
+  const Place& place = shown.place;
+  const std::string name = view.names.of(stage, place);
+  const auto place_facts = [&](const Membership& m) -> nlohmann::json {
+    return {{"experiment", m.place.experiment},
+            {"scale", scale_name(m.place.scale)},
+            {"variant", m.place.variant},
+            {"name", view.names.of(stage, m.place)},
+            {"seed", m.place.seed},
             {"newest", m.newest},
-            {"manifest", m.manifest}};
+            {"manifest", m.place.manifest}};
   };
-  Facts all = {{"id", run.id, "run", run.id.substr(0, 8)},
-               {"name", name, "variant", name + (place.newest ? "" : " (older version)")},
+  Facts all = {{"id", stage.id, "run", stage.id.substr(0, 8)},
+               {"name", name, "variant", name + (shown.newest ? "" : " (older version)")},
                {"seed", place.seed, "seed"},
-               {"N", run.grains, "N"},
-               {"state", name_of(run.state), "state",
+               {"N", stage.grains, "N"},
+               {"state", name_of(stage.state), "state",
                 fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
-               {"cycle", run.cycle, "cycle",
-                run.kind == name_of(StageKind::prepare)
+               {"cycle", stage.cycle, "cycle",
+                stage.kind == name_of(StageKind::prepare)
                     ? ""
-                    : fmt::format("{:.4g}/{}", cycle, run.target_cycles)},
+                    : fmt::format("{:.4g}/{}", cycle, stage.target_cycles)},
                {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
-               {"wall_seconds", run.wall_seconds, "time", format_duration(run.wall_seconds)},
+               {"wall_seconds", stage.wall_seconds, "time", format_duration(stage.wall_seconds)},
                {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
                {"experiment", place.experiment},
                {"scale", scale_name(place.scale)},
                {"variant", place.variant},
-               {"kind", run.kind},
-               {"parent", run.parent},
+               {"kind", stage.kind},
+               {"parent", stage.parent},
                {"places", list_of(listed.places, place_facts)},
-               {"target_cycles", run.target_cycles},
-               {"step", run.step},
-               {"attempts", run.attempts},
-               {"state_hash", run.state_hash},
-               {"error", run.error},
-               {"updated_at", run.updated_at},
-               {"ended", end_of(run)},
+               {"target_cycles", stage.target_cycles},
+               {"step", stage.step},
+               {"attempts", stage.attempts},
+               {"state_hash", stage.state_hash},
+               {"error", stage.error},
+               {"updated_at", stage.updated_at},
+               {"ended", end_of(stage)},
                {"holder", is_held ? facts(held->second) : nlohmann::json()}};
   if (!view.queue.runs.empty()) {
     all.push_back({"", nullptr, "queue", in_queue ? describe(queued->task) : ""});
@@ -147,7 +149,7 @@ std::optional<Estimate> estimate(const View& view) {
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) return std::nullopt;
-    made.at_most = made.at_most || std::ranges::any_of(stage.asks, has_until);
+    made.at_most = made.at_most || look.may_end_early;
     made.work.add(stage, look, rates);
   }
   if (made.work.stages == 0) return std::nullopt;
@@ -187,10 +189,11 @@ void print_tables(const View& view) {
   std::map<StageState, std::size_t> count;
   for (const PlacedRun& listed : view.runs) {
     ++count[progress_of(listed.stage, view.queued(listed.stage)).first];
-    for (const Ask& place : listed.places) {
-      const std::string name = place.experiment + " at scale " + scale_name(place.scale);
+    for (const Membership& shown : listed.places) {
+      const std::string name =
+          shown.place.experiment + " at scale " + scale_name(shown.place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
-      tables[name].push_back(facts(listed, place, view));
+      tables[name].push_back(facts(listed, shown, view));
     }
   }
   for (const std::string& name : experiments) {

@@ -78,8 +78,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   std::size_t left_out = 0, skipped = 0;
-  for (const Stage& run : store.stages()) {
-    if (why_not_again(run)) left_out += store.checkpoints(run.id, Listed::and_pruned).size();
+  for (const Stage& stage : store.stages()) {
+    if (why_not_again(stage)) left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
   }
   if (!context.json) {
     if (left_out > 0) {

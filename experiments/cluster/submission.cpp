@@ -295,17 +295,17 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
   }
   for (const Lease& lease : store.leases()) runs.push_back(lease.run);
   std::set<std::string> busy = with_parents(store, runs);
-  for (const Stage& run : store.stages()) {
-    if (run.kind == name_of(StageKind::prepare) && run.state == StageState::completed)
-      busy.erase(run.id);
+  for (const Stage& stage : store.stages()) {
+    if (stage.kind == name_of(StageKind::prepare) && stage.state == StageState::completed)
+      busy.erase(stage.id);
   }
   return busy;
 }
 
 void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
   json list = json::array();
-  for (const Stage& run : runs) {
-    list.push_back({{"id", run.id}, {"state", name_of(run.state)}, {"cycle", run.cycle}});
+  for (const Stage& stage : runs) {
+    list.push_back({{"id", stage.id}, {"state", name_of(stage.state)}, {"cycle", stage.cycle}});
   }
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");

@@ -48,10 +48,10 @@ std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
 void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
                Frame& frame) {
   frame.run = {{"run", selected.stage.id},
-               {"experiment", selected.experiment},
-               {"scale", scale_name(selected.scale)},
-               {"variant", selected.variant},
-               {"seed", selected.seed}};
+               {"experiment", selected.place.experiment},
+               {"scale", scale_name(selected.place.scale)},
+               {"variant", selected.place.variant},
+               {"seed", selected.place.seed}};
   frame.sha256 = record.sha256;
   for (const auto& [column, value] : facts_of(record, measures)) {
     // Members of Frame.

@@ -31,7 +31,7 @@ constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
 Ask ask_for(const Figure& figure, const FigureRun& run) {
-  Ask ask = run;
+  Ask ask = run.ask;
   if (!figure.within) ask.checkpoint_phases.clear();
   return ask;
 }
@@ -112,7 +112,7 @@ void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns
   for (const FigureRun& run : collected.runs) {
     const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
     const std::string name =
-        fmt::format("{} seed {}{}", run.name, run.seed, failed ? " (failed)" : "");
+        fmt::format("{} seed {}{}", run.name, run.place.seed, failed ? " (failed)" : "");
     if (run.checkpoints.empty()) {
       (asks_for_one(figure, run) ? not_begun : never).insert(name);
     } else if (run.stage.state != StageState::completed &&
@@ -178,12 +178,12 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, const std::
   if (manifest == manifests.end()) return;
   const std::vector<VariantLabel> labels = recorded_manifest(manifest->text).labels;
   std::vector<nlohmann::json> variants;
-  for (const FigureRun& run : collected.runs) variants.push_back(run.swept);
+  for (const FigureRun& run : collected.runs) variants.push_back(run.place.swept);
   const auto names = variant_names(variants, labels);
   for (FigureRun& run : collected.runs) {
-    run.name = names.at(run.swept);
+    run.name = names.at(run.place.swept);
     run.named = std::ranges::any_of(
-        labels, [&](const VariantLabel& label) { return selects(label, run.swept); });
+        labels, [&](const VariantLabel& label) { return selects(label, run.place.swept); });
   }
 }
 
@@ -192,7 +192,7 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
                          const RunSelection& selection) {
   std::vector<Run> found = select_runs(store, selection);
   std::erase_if(found, [&](const Run& s) {
-    return !wanted.experiment.empty() && s.experiment != wanted.experiment;
+    return !wanted.experiment.empty() && s.place.experiment != wanted.experiment;
   });
   if (found.empty()) {
     throw NotFound(
@@ -207,11 +207,11 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 std::string last_scale(const std::vector<Run>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
-    return std::ranges::find(manifests, run.manifest, &RegisteredManifest::sha256) !=
+    return std::ranges::find(manifests, run.place.manifest, &RegisteredManifest::sha256) !=
            manifests.end();
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
-  return (last == runs.rend() ? runs.back() : *last).scale;
+  return (last == runs.rend() ? runs.back() : *last).place.scale;
 }
 
 /// Sets WantedFigure::also.
@@ -253,7 +253,7 @@ void measure_runs(const Store& store, std::vector<FigureRun>& runs,
   for (FigureRun& run : runs) {
     for (std::size_t k = 0; k < run.checkpoints.size(); ++k) {
       if (wanted && !wanted(run, k)) continue;
-      chosen.push_back({&run.checkpoints[k], run.checkpoint_every});
+      chosen.push_back({&run.checkpoints[k], run.ask.checkpoint_every});
     }
   }
   if (!chosen.empty()) outcome += measure_checkpoints(store, chosen, providers, options);
@@ -331,8 +331,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // experiments
   std::erase_if(selected, [&](const Run& s) {
-    const bool is_at_scale = s.scale == collected.scale;
-    (is_at_scale ? at_scale : elsewhere).insert(s.experiment);
+    const bool is_at_scale = s.place.scale == collected.scale;
+    (is_at_scale ? at_scale : elsewhere).insert(s.place.experiment);
     return !is_at_scale;
   });
   std::erase_if(elsewhere, [&](const std::string& name) { return at_scale.contains(name); });
@@ -364,12 +364,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   } else {
     std::set<std::pair<std::string, std::string>> known;
     std::erase_if(collected.runs, [&](const FigureRun& run) {
-      return !known.emplace(run.experiment, run.stage.id).second;
+      return !known.emplace(run.place.experiment, run.stage.id).second;
     });
   }
   for (FigureRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.stage, run, measuring)
-                       : static_cast<double>(run.target_cycles);
+    run.end = measured ? end_for(store, run.stage, run.ask, measuring)
+                       : static_cast<double>(run.ask.target_cycles);
     add_checkpoints(store, wanted.figure, run);
   }
   if (measured) {

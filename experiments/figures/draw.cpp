@@ -49,14 +49,14 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
     const States states = states_of(used_checkpoints(store, figure, run));
     list.push_back({{"run", run.stage.id},
                     {"parent", run.stage.parent},
-                    {"experiment", run.experiment},
-                    {"manifest", run.manifest},
-                    {"variant", run.variant},
-                    {"seed", run.seed},
+                    {"experiment", run.place.experiment},
+                    {"manifest", run.place.manifest},
+                    {"variant", run.place.variant},
+                    {"seed", run.place.seed},
                     {"cycles", states.cycles},
                     {"state_hash", states.state_hash},
                     {"states_sha256", states.sha256}});
-    if (auto given = overrides_of(store, run.stage, run); !given.is_null()) {
+    if (auto given = overrides_of(store, run.stage, run.place, run.ask); !given.is_null()) {
       list.back()["overrides"] = std::move(given);
     }
   }

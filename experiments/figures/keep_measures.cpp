@@ -71,7 +71,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       sources.read_run(run.stage.id);
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
-          if (needs_a_pruned_file(sources, one, run.checkpoint_every, provider(name))) continue;
+          if (needs_a_pruned_file(sources, one, run.ask.checkpoint_every, provider(name))) continue;
           unmeasured.insert(one.sha256);
         }
       }
@@ -83,14 +83,15 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   for (const CheckpointRecord& record : records) {
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
-    if (stage.asks.empty()) stage.asks.emplace_back();  // no experiment of a damaged store has it
+    if (stage.memberships.empty())
+      stage.memberships.emplace_back();  // no experiment of a damaged store has it
     std::set<std::uint64_t> cadences;
-    for (const Ask& ask : stage.asks) {
-      FigureRun run{{ask, stage}};
+    for (const auto& [place, ask, newest] : stage.memberships) {
+      FigureRun run{{place, ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
-      for (const Figure& figure : simulating[ask.experiment]) {
+      for (const Figure& figure : simulating[place.experiment]) {
         // Only of the cycles that figures take, since a simulation takes longer than an analysis.
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;

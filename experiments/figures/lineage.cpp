@@ -86,13 +86,13 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   if (states_of(found) != input.states) input.fault = "the log has other states at these cycles";
 }
 
-// The swept values of the run, by the ask that the figure used.
-json swept_values_of(const Stage& run, const FigureInput& input) {
-  for (const Ask& member : run.asks) {
+// The swept values of the run, in the place that the figure used.
+json swept_values_of(const Stage& stage, const FigureInput& input) {
+  for (const auto& [place, ask, newest] : stage.memberships) {
     // In figures of earlier programs the variant of an older version ends in that version.
     const bool same =
-        input.variant == member.variant || input.variant.starts_with(member.variant + ",manifest=");
-    if (member.manifest == input.manifest && same) return member.swept;
+        input.variant == place.variant || input.variant.starts_with(place.variant + ",manifest=");
+    if (place.manifest == input.manifest && same) return place.swept;
   }
   return json::object();
 }
@@ -187,10 +187,10 @@ States states_of(const std::vector<CheckpointRecord>& checkpoints) {
           sha256_hex(hashes)};
 }
 
-json overrides_of(const Store& store, const Stage& run, const Ask& ask) {
-  if (run.kind != name_of(StageKind::shear)) return nullptr;
-  const auto manifest = find_manifest(store, ask.manifest);
-  return manifest ? overrides(manifest->text, ask) : json();
+json overrides_of(const Store& store, const Stage& stage, const Place& place, const Ask& ask) {
+  if (stage.kind != name_of(StageKind::shear)) return nullptr;
+  const auto manifest = find_manifest(store, place.manifest);
+  return manifest ? overrides(manifest->text, place, ask) : json();
 }
 
 std::string figure_name(const FigureRecord& record) {

@@ -62,7 +62,8 @@ struct FigureLineage {
 
 /// Values that the command line gave in place of the manifest's, as {"cycles": {"run": 8,
 /// "manifest": 5}}; null if there are none.
-nlohmann::json overrides_of(const Store& store, const Stage& run, const Ask& ask);
+nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
+                            const Ask& ask);
 /// "S2" for a record named "drag/desk/S2", or "drag/S2" or "S2" as in older stores.
 std::string figure_name(const FigureRecord& record);
 

@@ -58,12 +58,13 @@ Column of_checkpoint(std::string_view name, std::string_view meaning, Value valu
 std::vector<Column> names(const VariantNames& variants) {
   return {
       of_run("experiment", "name of the manifest's experiment",
-             [](const Run& s) { return s.experiment; }),
-      of_run("scale", "scale of the manifest", [](const Run& s) { return scale_name(s.scale); }),
+             [](const Run& s) { return s.place.experiment; }),
+      of_run("scale", "scale of the manifest",
+             [](const Run& s) { return scale_name(s.place.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
-             [variants](const Run& s) { return variants.of(s.stage, s); }),
+             [variants](const Run& s) { return variants.of(s.stage, s.place); }),
       of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
-      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.seed; }),
+      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
   };
 }
 
@@ -118,7 +119,7 @@ std::vector<Column> ends() {
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
-              [](const Run& s) { return s.target_cycles; }),
+              [](const Run& s) { return s.ask.target_cycles; }),
        of_run("wall_time_s", "time that the run took to compute, over all attempts",
               [](const Run& s) { return number(s.stage.wall_seconds); }),
        of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
@@ -129,8 +130,8 @@ std::vector<Column> ends() {
 /// The value of a parameter that some variants sweep: from the variant, or from the run's
 /// record; null if it does not affect the run, or its record cannot be read.
 json swept_value(const Field& field, const Run& run) try {
-  const auto value = run.swept.find(field.name);
-  if (value != run.swept.end()) return *value;
+  const auto value = run.place.swept.find(field.name);
+  if (value != run.place.swept.end()) return *value;
   const StageInputs record = read_stage(run.stage.resolved);
   const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
   return has_effect ? field.get(record.parameters) : json();
@@ -143,7 +144,7 @@ std::vector<Column> columns_of_runs(const std::vector<FigureRun>& runs,
                                     const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
   for (const FigureRun& run : runs) {
-    for (const auto& [key, value] : run.swept.items()) swept.insert(key);
+    for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
@@ -170,7 +171,7 @@ std::vector<FigureRun> select(const Store& store, const RunSelection& selection,
   std::vector<FigureRun> runs;
   for (Run& selected : newest.runs) {
     FigureRun& run = runs.emplace_back(figure_run(std::move(selected)));
-    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run, options)) {
+    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run.ask, options)) {
       run.checkpoints.push_back({std::move(record)});
     }
   }

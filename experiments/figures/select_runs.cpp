@@ -28,21 +28,21 @@ void require_found(const char* what, const Filter& filter) {
 }
 
 /// The same of all versions of a manifest.
-auto place(const Place& m) {
-  return std::tie(m.experiment, m.scale, m.variant, m.seed);
+auto in_any_version(const Place& place) {
+  return std::tie(place.experiment, place.scale, place.variant, place.seed);
 }
 
 using ExperimentScale = std::pair<std::string, std::string>;
-ExperimentScale experiment_scale(const Place& m) {
-  return {m.experiment, m.scale};
+ExperimentScale experiment_scale(const auto& run) {
+  return {run.place.experiment, run.place.scale};
 }
 
 /// The places of the run in each experiment at each scale: those in the newest version of the
 /// manifest or, if that does not have the run, the place that was declared last.
-std::vector<Ask> places_of(const Stage& run) {
-  std::vector<Ask> places;
-  for (const Ask& m : run.asks) {
-    const auto known = std::ranges::find(places, experiment_scale(m), experiment_scale);
+std::vector<Membership> places_of(const Stage& stage) {
+  std::vector<Membership> places;
+  for (const Membership& m : stage.memberships) {
+    const auto known = std::ranges::find(places, experiment_scale(m), experiment_scale<Membership>);
     if (known == places.end() || (known->newest && m.newest)) {
       places.push_back(m);
     } else if (m.newest || !known->newest) {
@@ -56,8 +56,10 @@ std::vector<Ask> places_of(const Stage& run) {
 /// By experiment, scale, variant and seed, so that the order does not depend on the store's
 /// history.
 bool in_order(const Run& a, const Run& b) {
-  const auto key = [](const Ask& m) { return std::tie(m.experiment, m.scale, m.swept, m.seed); };
-  return key(a) < key(b);
+  const auto key = [](const Place& place) {
+    return std::tie(place.experiment, place.scale, place.swept, place.seed);
+  };
+  return key(a.place) < key(b.place);
 }
 
 /// Says where an edited manifest asks for fewer cycles than an older version made.
@@ -68,10 +70,12 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   };
   std::map<ExperimentScale, Shortened> shortened;
   for (const Run& run : runs) {
-    const bool asked_for_more = std::ranges::any_of(run.stage.asks, [&](const Ask& older) {
-      return place(older) == place(run) && older.target_cycles > run.target_cycles;
-    });
-    if (!asked_for_more || run.stage.cycle <= static_cast<double>(run.target_cycles)) continue;
+    const bool asked_for_more =
+        std::ranges::any_of(run.stage.memberships, [&](const Membership& older) {
+          return in_any_version(older.place) == in_any_version(run.place) &&
+                 older.ask.target_cycles > run.ask.target_cycles;
+        });
+    if (!asked_for_more || run.stage.cycle <= static_cast<double>(run.ask.target_cycles)) continue;
     Shortened& found = shortened[experiment_scale(run)];
     ++found.runs;
     found.had = std::max(found.had, run.stage.cycle);
@@ -87,8 +91,8 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
 
 }  // namespace
 
-Ask first_ask(const Stage& run) {
-  return run.asks.empty() ? Ask{} : run.asks.front();
+Place first_place(const Stage& stage) {
+  return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
 }
 
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection) {
@@ -97,28 +101,28 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`
-  for (const Stage& run : store.stages()) {
-    const bool packing = run.kind == name_of(StageKind::prepare);
+  for (const Stage& stage : store.stages()) {
+    const bool packing = stage.kind == name_of(StageKind::prepare);
     if (packing && !selection.packings) continue;
-    for (const Ask& m : places_of(run)) {
+    for (const auto& [place, ask, newest] : places_of(stage)) {
       // Not by &&: each has to see every value.
-      bool passes = experiment.passes(m.experiment);
-      passes &= scale.passes(scale_name(m.scale));
-      passes &= variant.passes(m.variant);
-      passes &= seed.passes(std::to_string(m.seed));
-      passes &=
-          selection.states.empty() || std::ranges::count(selection.states, name_of(run.state)) > 0;
+      bool passes = experiment.passes(place.experiment);
+      passes &= scale.passes(scale_name(place.scale));
+      passes &= variant.passes(place.variant);
+      passes &= seed.passes(std::to_string(place.seed));
+      passes &= selection.states.empty() ||
+                std::ranges::count(selection.states, name_of(stage.state)) > 0;
       if (!passes) continue;
-      selected.push_back({m, run});
-      if (packing || !m.newest) continue;
+      selected.push_back({.place = place, .ask = ask, .stage = stage, .newest = newest});
+      if (packing || !newest) continue;
       // The same manifest may have meant another run, with another start or to another version of
       // the program.
-      const Seed same = {experiment_scale(m), m.variant, m.seed};
-      const std::size_t place = seeds.try_emplace(same, selected.size() - 1).first->second;
-      if (place == selected.size() - 1) continue;
-      Run &one = selected[place], &other = selected.back();
-      if (one.ordinal < other.ordinal) seeds[same] = selected.size() - 1;
-      (one.ordinal < other.ordinal ? one : other).newest = false;
+      const Seed same = {experiment_scale(selected.back()), place.variant, place.seed};
+      const std::size_t first = seeds.try_emplace(same, selected.size() - 1).first->second;
+      if (first == selected.size() - 1) continue;
+      Run &one = selected[first], &other = selected.back();
+      if (one.ask.ordinal < other.ask.ordinal) seeds[same] = selected.size() - 1;
+      (one.ask.ordinal < other.ask.ordinal ? one : other).newest = false;
     }
   }
   require_found("experiment", experiment);
@@ -140,21 +144,23 @@ NewestRuns newest_runs(std::vector<Run> selected) {
   std::map<std::pair<ExperimentScale, std::string>, std::vector<std::string>> left;
   for (const Run& one : std::ranges::subrange(older, selected.end())) {
     const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {
-      return place(other) == place(one) && other.manifest == one.manifest;
+      return in_any_version(other.place) == in_any_version(one.place) &&
+             other.place.manifest == one.place.manifest;
     });
     if (instead == chosen.runs.end()) {
-      left[{experiment_scale(one), one.manifest}].push_back(one.variant);
+      left[{experiment_scale(one), one.place.manifest}].push_back(one.place.variant);
     } else {
       chosen.notes.push_back(fmt::format(
           "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
           "with run {:.8} in its place",
-          one.experiment, one.stage.id, one.variant, one.seed, instead->stage.id));
+          one.place.experiment, one.stage.id, one.place.variant, one.place.seed,
+          instead->stage.id));
     }
   }
   for (const auto& [version, variants] : left) {
     const auto& [where, manifest] = version;
-    const auto shown = std::ranges::find(chosen.runs, where, experiment_scale);
-    const auto count = std::ranges::count(chosen.runs, where, experiment_scale);
+    const auto shown = std::ranges::find(chosen.runs, where, experiment_scale<Run>);
+    const auto count = std::ranges::count(chosen.runs, where, experiment_scale<Run>);
     chosen.notes.push_back(fmt::format(
         "experiment {} at scale {}: left out: {} of another version of its manifest, {:.8}: {}; "
         "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
@@ -162,7 +168,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
         where.first, scale_name(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),
-        shown == chosen.runs.end() ? "" : fmt::format(", {:.8}", shown->manifest)));
+        shown == chosen.runs.end() ? "" : fmt::format(", {:.8}", shown->place.manifest)));
   }
   return chosen;
 }

@@ -23,9 +23,8 @@ struct RunSelection {
   bool operator==(const RunSelection&) const = default;
 };
 
-/// Returns the runs in the order of declaration, without names. Ask::newest is false for a run of
-/// an older version of its manifest, and for a run whose place another run took later. Throws
-/// NotFound for an unknown experiment, scale, variant or seed, and names the known ones.
+/// Returns the runs in the order of declaration, without names. Throws NotFound for an unknown
+/// experiment, scale, variant or seed, and names the known ones.
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
@@ -39,8 +38,8 @@ struct NewestRuns {
 /// several variants is listed for each of them. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
-/// The first recorded ask of the stage; an empty one for a stage that no experiment declared, as in
-/// a damaged store.
-Ask first_ask(const Stage& run);
+/// The first recorded place of the stage; an empty one for a stage that no experiment declared, as
+/// in a damaged store.
+Place first_place(const Stage& stage);
 
 }  // namespace shearcell

@@ -422,17 +422,17 @@ ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const 
   for (const Variant& variant : variants) {
     const Parameters& p = variant.parameters;
     FigureRun& run = made.runs.emplace_back();
-    run.variant = variant.name;
-    run.swept = variant.swept;
+    run.place.variant = variant.name;
+    run.place.swept = variant.swept;
     run.name = names.at(variant.swept);
     const Stage packing = prepare_stage(variant.packing, 1);
     run.stage = last_stage(p, 1, packing);
     // With `start`, the packing is not known yet, and several variants may share it.
     if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
     for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
-    run.target_cycles = target_cycles(p);
+    run.ask.target_cycles = target_cycles(p);
     const bool stiffens = p.protocol == ProtocolKind::stiffen;
-    run.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
+    run.ask.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
   }
   return made;
 }
@@ -459,7 +459,7 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 // first multiple and the last cycle decide.
 bool has_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
-  const std::uint64_t every = run.checkpoint_every, last = run.target_cycles;
+  const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
   const std::uint64_t begin = std::max(first, back);
   const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
   for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
@@ -470,8 +470,8 @@ bool has_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end
 
 /// Why no run has a value that the plot draws; "" if one may have.
 string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureRun> runs) {
-  const auto [shortest, longest] =
-      std::ranges::minmax(std::views::transform(runs, &FigureRun::target_cycles));
+  const auto [shortest, longest] = std::ranges::minmax(
+      std::views::transform(runs, [](const FigureRun& run) { return run.ask.target_cycles; }));
   std::array<std::uint64_t, 2> cycles = {0, longest};
   string where;
   if (plot.cycles) {
@@ -503,8 +503,8 @@ string lack_of(const ClaimSpec& claim, const FigureRun& run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
   const std::uint64_t back = cycles_back(claim.compare);
-  if (last > run.target_cycles) {
-    return format("it asks for cycle {}, and the runs have {}.", last, run.target_cycles);
+  if (last > run.ask.target_cycles) {
+    return format("it asks for cycle {}, and the runs have {}.", last, run.ask.target_cycles);
   }
   // If one of them lacks a checkpoint, so does one of the first two or the last.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
@@ -522,7 +522,7 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FigureRun> runs) {
   if (plot.minus.empty() || others.size() != 1) return "";
   std::vector<string> alone;
   for (const FigureRun& run : runs) {
-    if (run.packing != others.front()->packing) alone.push_back(run.variant);
+    if (run.packing != others.front()->packing) alone.push_back(run.place.variant);
   }
   if (alone.empty()) return "";
   return format(
@@ -538,7 +538,7 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
   std::set<json> curves;
   for (const FigureRun& run : runs) {
     if (!has_parameters(run, series.where)) continue;
-    json curve = run.swept;
+    json curve = run.place.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
     curve.erase(plot.panel);
     if (!plot.by.empty()) curve = parameter_of(run, plot.by);

@@ -82,30 +82,31 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
 
 // `common`: the facts that all runs of the scale share; `recorded`: the run whose state it begins
 // with, or null; `file`: that of its grains.
-PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& variant,
+PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
   PlannedRun run;
-  static_cast<Ask&>(run) = common;
-  run.variant = variant.name;
-  run.swept = variant.swept;
-  run.seed = seed;
+  run.place = common.place;
+  run.ask = common.ask;
+  run.place.variant = variant.name;
+  run.place.swept = variant.swept;
+  run.place.seed = seed;
   run.parameters = variant.parameters;
-  run.target_cycles = target_cycles(run.parameters);
+  run.ask.target_cycles = target_cycles(run.parameters);
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
     // Variants that start from one packing share it, so its place says no variant.
-    Ask& packing = run.prepare->asks.emplace_back(common);
-    packing.variant = "packing";
-    packing.seed = seed;
-    packing.checkpoint_phases.clear();
+    Membership& packing = run.prepare->memberships.emplace_back(common);
+    packing.place.variant = "packing";
+    packing.place.seed = seed;
+    packing.ask.checkpoint_phases.clear();
   }
   run.stage = last_stage(run.parameters, seed, recorded == nullptr ? *run.prepare : *recorded);
   if (run.stage.kind == name_of(StageKind::shear) && scale.until.until) {
-    run.until = to_json(*scale.until.until);
+    run.ask.until = to_json(*scale.until.until);
   }
-  run.stage.asks = {run};
+  run.stage.memberships = {{run.place, run.ask}};
   return run;
 }
 
@@ -113,11 +114,11 @@ PlannedRun planned_run(const Ask& common, const Scale& scale, const Variant& var
 void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
   std::map<std::string, std::uint64_t> longest;  // by variant
-  for (const Stage& run : known) {
-    for (const Ask& m : run.asks) {
-      if (m.experiment != place.experiment || m.scale != place.scale) continue;
-      if (m.manifest != place.manifest) continue;
-      longest[m.variant] = std::max(longest[m.variant], m.target_cycles);
+  for (const Stage& stage : known) {
+    for (const auto& [other, ask, newest] : stage.memberships) {
+      if (other.experiment != place.experiment || other.scale != place.scale) continue;
+      if (other.manifest != place.manifest) continue;
+      longest[other.variant] = std::max(longest[other.variant], ask.target_cycles);
     }
   }
   for (Variant& variant : variants) {
@@ -148,11 +149,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   std::vector<Variant> variants = variants_of(scale);
   Plan plan{manifest, scale.name, {}, {}, {}};
   if (!scale.start.file.empty()) plan.file = read_packing_file(manifest, scale);
-  Ask common{{.experiment = manifest.experiment,
-              .scale = plan.scale,
-              .manifest = sha256_hex(manifest.text)}};
-  common.checkpoint_every = scale.checkpoints.every_cycles;
-  common.checkpoint_phases = scale.checkpoints.phases;
+  Membership common{{.experiment = manifest.experiment,
+                     .scale = plan.scale,
+                     .manifest = sha256_hex(manifest.text)}};
+  common.ask.checkpoint_every = scale.checkpoints.every_cycles;
+  common.ask.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by the last stage's key
   std::set<std::string> fitted;                   // packings into which the file fits
   Filter wanted(options.variants), seed_filter(options.only_seeds);
@@ -199,10 +200,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
         }
       }
 
-      const std::string& same = variant_of.emplace(run.stage.id, run.variant).first->second;
-      if (same == run.variant || seed != chosen_seeds.front()) continue;
+      const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
+      if (same == run.place.variant || seed != chosen_seeds.front()) continue;
       plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
-                                          manifest.file, same, run.variant));
+                                          manifest.file, same, run.place.variant));
     }
   }
   if (const std::string* missing = wanted.unfound()) {
@@ -215,10 +216,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
            fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
   }
   std::vector<nlohmann::json> swept;
-  for (const PlannedRun& run : plan.runs) swept.push_back(run.swept);
+  for (const PlannedRun& run : plan.runs) swept.push_back(run.place.swept);
   const auto names = variant_names(swept, manifest.labels);
-  for (PlannedRun& run : plan.runs) run.name = names.at(run.swept);
-  take_declared_lengths(common, options.known, variants);
+  for (PlannedRun& run : plan.runs) run.name = names.at(run.place.swept);
+  take_declared_lengths(common.place, options.known, variants);
   std::ranges::move(warnings_of(manifest, scale, variants, chosen, seeds.size()),
                     std::back_inserter(plan.warnings));
   return plan;
@@ -228,16 +229,17 @@ void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
   std::map<std::string, std::size_t> places;  // in `known`, by id
   for (std::size_t k = 0; k < known.size(); ++k) {
     places.emplace(known[k].id, k);
-    for (Ask& ask : known[k].asks) {
-      if (ask.experiment == plan.manifest.experiment && ask.scale == plan.scale) ask.newest = false;
+    for (auto& [place, ask, newest] : known[k].memberships) {
+      const bool same = place.experiment == plan.manifest.experiment && place.scale == plan.scale;
+      newest = newest && !same;
     }
   }
   for (const PlannedRun& run : plan.runs) {
     const auto [place, fresh] = places.try_emplace(run.stage.id, known.size());
     if (fresh) known.push_back(run.stage);
     Stage& stage = known[place->second];
-    if (!fresh) stage.asks.push_back(run);
-    stage.cycle = std::max(stage.cycle, static_cast<double>(run.target_cycles));
+    if (!fresh) stage.memberships.push_back({run.place, run.ask});
+    stage.cycle = std::max(stage.cycle, static_cast<double>(run.ask.target_cycles));
   }
 }
 

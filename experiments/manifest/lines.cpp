@@ -74,24 +74,24 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   return found;
 }
 
-nlohmann::json overrides(std::string_view text, const Ask& ask) try {
+nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask) try {
   const Manifest manifest = parse_manifest(text, "manifest");
   nlohmann::json found;
   const auto add = [&](const char* key, const nlohmann::json& run, const nlohmann::json& stated) {
     found[key] = {{"run", run}, {"manifest", stated}};
   };
-  const Scale& stated = scale_of(manifest, ask.scale);
+  const Scale& stated = scale_of(manifest, place.scale);
   for (const Variant& variant : variants_of(stated)) {
     const std::uint64_t cycles = target_cycles(variant.parameters);
-    const bool is_it = variant.swept.empty() || selects({variant.swept, "", {}}, ask.swept);
+    const bool is_it = variant.swept.empty() || selects({variant.swept, "", {}}, place.swept);
     if (cycles == ask.target_cycles || !is_it) continue;
     add("cycles", ask.target_cycles, cycles);
     break;
   }
   const std::vector<std::uint64_t>& seeds = stated.seeds.values;
-  if (std::ranges::count(seeds, ask.seed) == 0) add("seed", ask.seed, seeds);
-  const auto engine = ask.swept.find("engine");
-  if (engine != ask.swept.end() && find_axis(stated.sweep, "engine") == nullptr) {
+  if (std::ranges::count(seeds, place.seed) == 0) add("seed", place.seed, seeds);
+  const auto engine = place.swept.find("engine");
+  if (engine != place.swept.end() && find_axis(stated.sweep, "engine") == nullptr) {
     add("engine", *engine, value_at(stated, "engine"));
   }
   return found;

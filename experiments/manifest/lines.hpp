@@ -26,6 +26,6 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
 /// How a shear run differs from its manifest because of --cycles, --seeds or --engine: {"cycles",
 /// "seed" or "engine": {"run": VALUE, "manifest": VALUE}}. The manifest's value of "seed" is its
 /// list of seeds. Null if nothing differs or the manifest cannot be read.
-nlohmann::json overrides(std::string_view text, const Ask& ask);
+nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask);
 
 }  // namespace shearcell

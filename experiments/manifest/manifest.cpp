@@ -10,6 +10,7 @@
 
 #include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/document.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
@@ -86,27 +87,35 @@ Manifest recorded_manifest(std::string_view text) try {
   return {};  // of another version of the schema
 }
 
+std::string_view why_not_until(std::string_view measure) {
+  for (const Provider& by : all_providers()) {
+    const Measure* found = find_named(by.measures, measure);
+    if (found == nullptr) continue;
+    if (found->kind == MeasureKind::run) return "is a number of a whole run, which has not ended";
+    if (found->kind == MeasureKind::curve) return "is a curve";
+    if (found->kind == MeasureKind::grains) return "has a number for each grain";
+    if (by.from == ComputedFrom::simulation) return "takes a simulation";
+    return by.cycles_back > 0 ? "compares the checkpoint with an earlier one" : "";
+  }
+  return "is not a measure";
+}
+
 nlohmann::json to_json(const Until& until) {
-  return {{std::string(name_of(until.measure)), until.value}, {"extra_cycles", until.extra_cycles}};
+  return {{until.measure, until.value}, {"extra_cycles", until.extra_cycles}};
 }
 
 Until until_from_json(const nlohmann::json& json) {
-  for (const std::string_view measure : kNames<StopMeasure>) {
-    const std::string name(measure);
-    if (!json.is_object() || !json.contains(name)) continue;
-    const auto extra = json.find("extra_cycles");
-    if (json.size() != 2 || !json.at(name).is_number() || extra == json.end() ||
-        !extra->is_number_unsigned() || *extra > StoreLimits::cycles) {
-      break;
-    }
-    return {value_of<StopMeasure>(name).value(), json.at(name).get<double>(),
-            extra->get<std::uint64_t>()};
+  const nlohmann::json extra = member_of(json, "extra_cycles");
+  const bool fits = json.size() == 2 && extra.is_number_unsigned() && extra <= StoreLimits::cycles;
+  for (const auto& [name, value] : json.items()) {
+    if (!fits || !value.is_number() || !why_not_until(name).empty()) continue;
+    return {name, value.get<double>(), extra.get<std::uint64_t>()};
   }
   throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N at most 1000000");
 }
 
 std::string describe(const Until& until) {
-  std::string text = fmt::format("{} >= {}", name_of(until.measure), until.value);
+  std::string text = fmt::format("{} >= {}", until.measure, until.value);
   if (until.extra_cycles > 0)
     text += fmt::format(" and {}", counted(until.extra_cycles, "more cycle"));
   return text;

@@ -103,22 +103,19 @@ struct Seeds {
   Position at = {};  ///< line 0: not stated
 };
 
-/// Measures of a checkpoint (analysis/measures.hpp) that can end a run.
-enum class StopMeasure : std::uint8_t { crystalline_percent, largest_crystallite, phi };
-template <>
-inline constexpr auto kNames<StopMeasure> = names_in_order<StopMeasure>("crystalline_percent",
-                                                                        "largest_crystallite",
-                                                                        "phi");
-
 /// `until`: a run ends `extra_cycles` after the first checkpoint at which the measure is at least
 /// `value`. It is not part of a run's identity.
 struct Until {
-  StopMeasure measure = StopMeasure::crystalline_percent;
+  std::string measure = {};
   double value = 0;
   std::uint64_t extra_cycles = 0;
 
   bool operator==(const Until&) const = default;
 };
+
+/// Why the measure cannot end a run; "" if it can. A measure that can is one number of a checkpoint
+/// that follows from this checkpoint alone, without a simulation.
+std::string_view why_not_until(std::string_view measure);
 
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);

@@ -72,10 +72,20 @@ void fields(Checkpoints& checkpoints, const auto& visit) {
   visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
 }
 
+// Of a measure as a key of `until`.
+Field field_of_until(const Measure& one) {
+  const bool counts = one.kind == MeasureKind::count;
+  Field field{.name = one.name, .unit = one.unit, .whole = counts};
+  field.range = counts ? Range{1, 1e8} : Range{-1e100, 1e100};
+  if (one.unit == "%") field.range = {0, 100, true};
+  if (one.name == "phi" || one.name.ends_with("_phi")) field.range = {0, 1, true};
+  return field;
+}
+
 void fields(Until& until, const auto& visit) {
-  visit(until.value, {.name = "crystalline_percent", .unit = "%", .range = {0, 100, true}});
-  visit(until.value, {.name = "largest_crystallite", .range = {1, 1e8}, .whole = true});
-  visit(until.value, {.name = "phi", .range = {0, 1, true}});
+  for (const Provider& by : all_providers()) {
+    for (const Measure& one : by.measures) visit(until.value, field_of_until(one));
+  }
   visit(until.extra_cycles, {.name = "extra_cycles", .range = kCycles});
 }
 
@@ -456,7 +466,7 @@ struct Reader {
     } else if (allowed.size() <= sections.size()) {
       reject_key(in, "is an unknown key", fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
     } else {
-      reject_key(in, "is an unknown key", "`shearcell manual --markdown` lists the keys.");
+      reject_key(in, "is an unknown key", "`shearcell manual` lists the keys.");
     }
   }
 
@@ -506,7 +516,7 @@ struct Reader {
             with_nearest(fmt::format("uses {}, which is not a number of a run or checkpoint",
                                      printable(name)),
                          name, about.terms),
-            "`shearcell manual --markdown` lists measures and parameters.");
+            "`shearcell manual` lists measures and parameters.");
         return false;
       }
       of_run = of_run || find_measure(name, MeasureKind::run) != nullptr;
@@ -955,13 +965,15 @@ struct Reader {
   }
 
   void check(const Node& in, const Field& about, Until& until) {
+    static const std::vector<Field> known = keys_of<Until>();
     bool named = false;
     for (const Node& part : in.parts) {
-      const auto measure = value_of<StopMeasure>(part.key);
-      if (!measure) continue;
+      if (part.key == "extra_cycles" || find_named(known, part.key) == nullptr) continue;
       if (named) problems.add(part.key_at, in.path, "names two measures", "", "Keep one of them.");
       named = true;
-      until.measure = *measure;
+      until.measure = part.key;
+      const string why(why_not_until(part.key));
+      if (!why.empty()) reject_key(part, why, "Name a number of one checkpoint, such as phi.");
     }
     if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
       reject(in, "names no measure", remedy_of(about));

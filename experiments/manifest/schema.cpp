@@ -77,7 +77,7 @@ bool names_no_number(string_view text) {
 
 std::string takes(const Field& field) {
   constexpr std::size_t shown = 20;
-  return field.names.size() > shown ? "`shearcell manual --markdown` lists them."
+  return field.names.size() > shown ? "`shearcell manual` lists them."
                                     : fmt::format("It takes {}.", expected_values(field));
 }
 

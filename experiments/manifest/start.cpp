@@ -125,24 +125,24 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     refuse(manifest.file, start.at, "start", "names the experiment and the scale of these runs", "",
            "Give the manifest another `experiment`.");
   }
-  const auto is_it = [&](const Ask& ask) {
-    return ask.newest && ask.experiment == start.experiment &&
-           scale_name(ask.scale) == scale_name(at_scale) &&
-           ask.seed == variant.parameters.start_seed &&
-           (start.variant.empty() || Filter(std::vector{start.variant}).passes(ask.variant));
+  const auto is_it = [&](const Membership& m) {
+    return m.newest && m.place.experiment == start.experiment &&
+           scale_name(m.place.scale) == scale_name(at_scale) &&
+           m.place.seed == variant.parameters.start_seed &&
+           (start.variant.empty() || Filter(std::vector{start.variant}).passes(m.place.variant));
   };
   std::vector<const Stage*> found;
   for (const Stage& stage : known) {
     if (stage.kind != name_of(StageKind::shear)) continue;
-    const bool fits = start.run.empty() ? std::ranges::any_of(stage.asks, is_it)
+    const bool fits = start.run.empty() ? std::ranges::any_of(stage.memberships, is_it)
                                         : stage.id.starts_with(start.run);
     if (fits) found.push_back(&stage);
   }
   if (found.size() > 1 && start.run.empty()) {
     std::vector<const Stage*> agreeing = found;
     std::erase_if(agreeing, [&](const Stage* stage) {
-      return std::ranges::none_of(stage->asks, [&](const Ask& ask) {
-        return is_it(ask) && agree(variant.swept, ask.swept);
+      return std::ranges::none_of(stage->memberships, [&](const Membership& m) {
+        return is_it(m) && agree(variant.swept, m.place.swept);
       });
     });
     if (!agreeing.empty() || start.variant.empty()) found = std::move(agreeing);
@@ -173,7 +173,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
            cycle == static_cast<double>(ask.target_cycles);
   };
-  const std::vector<Ask>& asks = found.front()->asks;
+  const std::vector<Ask> asks = asks_of(found.front()->memberships);
   if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no checkpoint of cycle {}", found.front()->id, cycle), "",

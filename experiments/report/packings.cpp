@@ -69,12 +69,14 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
   for (const Run& run : runs) {
-    if (run.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints = checkpoints_for(store, run.stage, run.stage.asks);
+    if (run.place.experiment != experiment) continue;
+    std::vector<CheckpointRecord> checkpoints =
+        checkpoints_for(store, run.stage, asks_of(run.stage.memberships));
     std::erase_if(checkpoints,
                   [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
     if (checkpoints.empty()) continue;
-    auto same = std::ranges::find(last, run.variant, &ChosenRun::variant);
+    auto same = std::ranges::find(last, run.place.variant,
+                                  [](const ChosenRun& one) { return one.place.variant; });
     if (same == last.end()) same = last.emplace(last.end());
     *same = {run, std::move(checkpoints)};
   }
@@ -86,8 +88,8 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;
   for (const std::string& id : choice.runs) {
-    const Stage run = store.find_stage(id);
-    chosen.push_back({{first_ask(run), run}, store.checkpoints(run.id)});
+    const Stage stage = store.find_stage(id);
+    chosen.push_back({{first_place(stage), {}, stage}, store.checkpoints(stage.id)});
   }
   if (!choice.runs.empty()) return chosen;
   std::set<std::string> known;
@@ -137,7 +139,8 @@ std::size_t bytes_with(const std::vector<ChosenRun>& runs, std::size_t frames) {
 void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& packings) {
   std::vector<std::string> left_out;
   while (!runs.empty() && bytes_with(runs, 1) > choice.budget) {
-    left_out.push_back(fmt::format("{:.8} of {}", runs.back().stage.id, runs.back().experiment));
+    left_out.push_back(
+        fmt::format("{:.8} of {}", runs.back().stage.id, runs.back().place.experiment));
     runs.pop_back();
   }
   if (!left_out.empty()) {
@@ -328,13 +331,14 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
     packings.frames += list.size();
     if (list.empty()) continue;
-    packings.runs.push_back({{"id", run.stage.id},
-                             {"label", fmt::format("{}, seed {}, N = {}", names.of(run.stage, run),
-                                                   run.seed, run.stage.grains)},
-                             {"experiment", run.experiment},
-                             {"grains", run.stage.grains},
-                             {"wall_grains", run.wall_grains},
-                             {"frames", std::move(list)}});
+    packings.runs.push_back(
+        {{"id", run.stage.id},
+         {"label", fmt::format("{}, seed {}, N = {}", names.of(run.stage, run.place),
+                               run.place.seed, run.stage.grains)},
+         {"experiment", run.place.experiment},
+         {"grains", run.stage.grains},
+         {"wall_grains", run.wall_grains},
+         {"frames", std::move(list)}});
   }
   return packings;
 }

@@ -255,11 +255,11 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
 json stage_json(const RunLineage& stage) {
   const Stage& run = stage.stage;
   json members = json::array(), attempts = json::array();
-  for (const Ask& member : run.asks) {
-    members.push_back(
-        {{"manifest", brief(member.manifest)},
-         {"text", fmt::format("{} at scale {}, {}, seed {}", member.experiment,
-                              scale_name(member.scale), member.variant, member.seed)}});
+  for (const Membership& m : run.memberships) {
+    const Place& place = m.place;
+    members.push_back({{"manifest", brief(place.manifest)},
+                       {"text", fmt::format("{} at scale {}, {}, seed {}", place.experiment,
+                                            scale_name(place.scale), place.variant, place.seed)}});
   }
   for (const Attempt& attempt : stage.attempts) {
     const Maker maker = maker_of(attempt.host);
@@ -314,8 +314,8 @@ json step(const char* title, std::initializer_list<Count> counts) {
 
 json stages_step(const char* title, const Experiment& experiment, bool prepare) {
   std::map<StageState, std::size_t> in;
-  for (const Stage& run : experiment.runs) {
-    if ((run.kind == name_of(StageKind::prepare)) == prepare) ++in[run.state];
+  for (const Stage& stage : experiment.runs) {
+    if ((stage.kind == name_of(StageKind::prepare)) == prepare) ++in[stage.state];
   }
   return step(title, {{"done", "✓", "done", in[StageState::completed]},
                       {"running", "▸", "running", in[StageState::running]},
@@ -328,14 +328,16 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
   std::size_t left = 0;  // checkpoints of unfinished runs if nothing ends them early
-  for (const Stage& run : experiment.runs) {
-    for (const CheckpointHistory& c : content.runs.at(run.id).checkpoints) ++in[c.record.state];
+  for (const Stage& stage : experiment.runs) {
+    for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
     // How long a packing takes to settle is not known.
-    if (run.kind == name_of(StageKind::prepare)) continue;
-    std::vector<Ask> asks = run.asks;
-    std::erase_if(asks,
-                  [&](const Ask& ask) { return ask.experiment != experiment.manifest.experiment; });
-    const Outlook look = outlook(run, asks, content.store.checkpoints(run.id, Listed::and_pruned));
+    if (stage.kind == name_of(StageKind::prepare)) continue;
+    std::vector<Ask> asks;
+    for (const Membership& m : stage.memberships) {
+      if (m.place.experiment == experiment.manifest.experiment) asks.push_back(m.ask);
+    }
+    const Outlook look =
+        outlook(stage, asks, content.store.checkpoints(stage.id, Listed::and_pruned));
     if (!look.done) left += static_cast<std::size_t>(look.checkpoints);
   }
   json figures = step("Figures", {{"done", "✓", "made", experiment.figures.size()},
@@ -529,11 +531,12 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   }
   const std::vector<Stage> runs = store.stages();
   for (Experiment& experiment : found) {
-    const auto is_member = [&](const Ask& m) {
-      return m.experiment == experiment.manifest.experiment && scales.passes(scale_name(m.scale));
+    const auto is_member = [&](const Membership& m) {
+      return m.place.experiment == experiment.manifest.experiment &&
+             scales.passes(scale_name(m.place.scale));
     };
-    for (const Stage& run : runs) {
-      if (std::ranges::any_of(run.asks, is_member)) experiment.runs.push_back(run);
+    for (const Stage& stage : runs) {
+      if (std::ranges::any_of(stage.memberships, is_member)) experiment.runs.push_back(stage);
     }
   }
   std::erase_if(found, [&](const Experiment& experiment) {
@@ -547,9 +550,11 @@ void note_other_scales(const Experiment& experiment, const std::string& shown,
                        std::set<std::string>& notes) {
   const std::string& name = experiment.manifest.experiment;
   std::set<std::string> others;
-  for (const Stage& run : experiment.runs) {
-    for (const Ask& ask : run.asks) {
-      if (ask.experiment == name && ask.scale != shown) others.insert(scale_name(ask.scale));
+  for (const Stage& stage : experiment.runs) {
+    for (const Membership& m : stage.memberships) {
+      if (m.place.experiment == name && m.place.scale != shown) {
+        others.insert(scale_name(m.place.scale));
+      }
     }
   }
   if (others.empty()) return;
@@ -598,7 +603,7 @@ void add_runs(Content& content) {
     if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
       content.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
     }
-    for (const Stage& run : experiment.runs) add_run_lineage(store, run.id, content.runs);
+    for (const Stage& stage : experiment.runs) add_run_lineage(store, stage.id, content.runs);
   }
 }
 

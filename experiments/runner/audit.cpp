@@ -35,9 +35,9 @@ void require_same(const std::string& what, const json& recorded, const json& exp
 }
 
 /// Labels of parameters that do not act on the run, or are not part of its id, are not checked.
-void check_ask(const Ask& m, const StageInputs& stage, const json& resolved) {
-  require_same("seed", m.seed, stage.seed);
-  for (const auto& [key, value] : m.swept.items()) {
+void check_place(const Place& place, const StageInputs& stage, const json& resolved) {
+  require_same("seed", place.seed, stage.seed);
+  for (const auto& [key, value] : place.swept.items()) {
     const Field* field = find_field(key);
     const json& parameters = resolved.at("parameters");
     if (field == nullptr || !field->identity.recorded_as.empty() || !parameters.contains(key)) {
@@ -45,23 +45,21 @@ void check_ask(const Ask& m, const StageInputs& stage, const json& resolved) {
     }
     require_same("label " + key, value, parameters.at(key));
     const std::string part = key + "=" + value_text(value);
-    if (("," + m.variant + ",").find("," + part + ",") == std::string::npos) {
-      throw StoreDamaged(fmt::format("its variant is '{}', without {}", m.variant, part));
+    if (("," + place.variant + ",").find("," + part + ",") == std::string::npos) {
+      throw StoreDamaged(fmt::format("its variant is '{}', without {}", place.variant, part));
     }
   }
 }
 
-void check_run(const Stage& run) {
-  if (stage_key(run.resolved) != run.id) {
+void check_stage(const Stage& stage) {
+  if (stage_key(stage.resolved) != stage.id) {
     throw StoreDamaged("its recorded parameters are not those that it is named after");
   }
-  const StageInputs stage = read_stage(run.resolved);
-  require_same("kind", run.kind, name_of(stage.stage));
-  require_same("parent", run.parent, stage.parent);
-  require_same("grains", run.grains, stage.parameters.grains);
-  for (const Ask& ask : run.asks) {
-    check_ask(ask, stage, run.resolved);
-  }
+  const StageInputs inputs = read_stage(stage.resolved);
+  require_same("kind", stage.kind, name_of(inputs.stage));
+  require_same("parent", stage.parent, inputs.parent);
+  require_same("grains", stage.grains, inputs.parameters.grains);
+  for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
 /// Steps at which the run was completed: of each completion the last of its attempt and the
@@ -85,9 +83,9 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 /// A run must start from the state at which its packing was completed, or from the recorded one
 /// that it names: from one of `steps` of the stage before it. Of a merged store, states that it
 /// lacks are not checked: a merge leaves out files that another HDF5 library wrote.
-void check_beginning(const Store& store, const Stage& run, const std::set<std::uint64_t>& steps) {
-  const std::vector<CheckpointRecord> known = store.checkpoints(run.parent, Listed::all);
-  for (const Event& event : store.events(run_stream(run.id), events::RunStarted::kType)) {
+void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
+  const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
+  for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
     const auto from = std::get<events::RunStarted>(events::decode(event)).parent_checkpoint;
     if (!from) continue;
     const auto record = std::ranges::find(known, *from, &CheckpointRecord::sha256);
@@ -98,7 +96,7 @@ void check_beginning(const Store& store, const Stage& run, const std::set<std::u
     throw StoreDamaged(fmt::format(
         "event {} started it from checkpoint {:.12}, which is not the state of run {:.12} that it "
         "begins with; do not use its states, and compute it again in a new store",
-        event.seq, *from, run.parent));
+        event.seq, *from, stage.parent));
   }
 }
 
@@ -176,8 +174,8 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
                                                    MeasureSources& sources) {
   std::vector<CheckpointRecord> found;
-  for (const Stage& run : store.stages()) {
-    for (CheckpointRecord& record : store.checkpoints(run.id)) {
+  for (const Stage& stage : store.stages()) {
+    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
       if (!cached_measures(record, cache, sources).empty()) found.push_back(std::move(record));
     }
   }
@@ -188,8 +186,8 @@ void copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  for (const Stage& run : store.stages()) {
-    for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+  for (const Stage& stage : store.stages()) {
+    for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {
         if (!into.get({&one.object.key, 1}).front()) missing.push_back(std::move(one.object));
       }
@@ -202,9 +200,9 @@ void copy_measures(const Store& store, DerivedCache& from) {
 
 std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;
-  for (const Stage& run : store.stages()) {
-    if (why_not_again(run)) continue;
-    std::ranges::move(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found));
+  for (const Stage& stage : store.stages()) {
+    if (why_not_again(stage)) continue;
+    std::ranges::move(store.checkpoints(stage.id, Listed::and_pruned), std::back_inserter(found));
   }
   return found;
 }
@@ -231,21 +229,21 @@ std::uint64_t seed_of(const Head& head) {
 std::vector<Finding> check_runs(const Store& store) {
   std::vector<Finding> findings;
   std::map<std::string, std::set<std::uint64_t>> completed;  // by parent
-  for (const Stage& run : store.stages()) {
+  for (const Stage& stage : store.stages()) {
     const auto note = [&](Finding::Severity severity, const std::exception& problem) {
-      findings.push_back({severity, fmt::format("run {:.12}", run.id), run.id, problem.what()});
+      findings.push_back({severity, fmt::format("run {:.12}", stage.id), stage.id, problem.what()});
     };
     try {
-      check_run(run);
-      if (run.parent.empty()) continue;
-      if (store.stage(run.parent).kind != name_of(StageKind::prepare)) {
-        const auto start = recorded_start(store, run, read_stage(run.resolved).parameters);
-        check_beginning(store, run, start ? std::set{start->step} : std::set<std::uint64_t>{});
+      check_stage(stage);
+      if (stage.parent.empty()) continue;
+      if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
+        const auto start = recorded_start(store, stage, read_stage(stage.resolved).parameters);
+        check_beginning(store, stage, start ? std::set{start->step} : std::set<std::uint64_t>{});
         continue;
       }
-      const auto [ends, fresh] = completed.try_emplace(run.parent);
-      if (fresh) ends->second = completed_steps(store, run.parent);
-      check_beginning(store, run, ends->second);
+      const auto [ends, fresh] = completed.try_emplace(stage.parent);
+      if (fresh) ends->second = completed_steps(store, stage.parent);
+      check_beginning(store, stage, ends->second);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
     } catch (const std::runtime_error& unknown) {  // parameters of another version

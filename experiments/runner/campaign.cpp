@@ -276,15 +276,15 @@ class Campaign {
   }
 
   JobState compute(Job& job, bool was_held) {
-    const Stage run = store_.stage(job.id);
-    if (is_done(store_, run)) {
+    const Stage stage = store_.stage(job.id);
+    if (is_done(store_, stage)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
              was_held ? "done by another program" : "", true);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(job);
-    if (was_held && run.state == StageState::failed) {
-      note(job, &CampaignResult::failed, run.error);  // it would fail here too
+    if (was_held && stage.state == StageState::failed) {
+      note(job, &CampaignResult::failed, stage.error);  // it would fail here too
       return JobState::ended;
     }
     progress_.begin(job);
@@ -364,8 +364,8 @@ std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNam
   std::map<std::string, std::size_t> count;
   for (const Stage& stage : stages) {
     std::string name = stage.kind;
-    if (!stage.asks.empty()) {
-      const Ask& place = stage.asks.front();
+    if (!stage.memberships.empty()) {
+      const Place& place = stage.memberships.front().place;
       name = fmt::format("{} {} seed={}", place.experiment, names.of(stage, place), place.seed);
     }
     ++count[name];
@@ -417,12 +417,12 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   std::vector<std::string> asked;
   for (const std::string& prefix : prefixes) asked.push_back(store.find_stage(prefix).id);
   std::vector<Stage> stages = store.stages();
-  for (const Stage& run : stages) {
-    if (prefixes.empty() && !look_at(store, run).done) asked.push_back(run.id);
+  for (const Stage& stage : stages) {
+    if (prefixes.empty() && !look_at(store, stage).done) asked.push_back(stage.id);
   }
   // The stages before are asked for as well: one of them may have lost its last checkpoint.
   const std::set<std::string> wanted = with_parents(store, asked);
-  std::erase_if(stages, [&](const Stage& run) { return !wanted.contains(run.id); });
+  std::erase_if(stages, [&](const Stage& stage) { return !wanted.contains(stage.id); });
   return jobs_of(stages, VariantNames(store));
 }
 

@@ -16,10 +16,11 @@ namespace shearcell {
 
 namespace {
 
-RunFacts facts_of(const Stage& run) {
-  RunFacts facts{.parameters = member_of(run.resolved, "parameters"), .drive = shear_drive(run)};
+RunFacts facts_of(const Stage& stage) {
+  RunFacts facts{.parameters = member_of(stage.resolved, "parameters"),
+                 .drive = shear_drive(stage)};
   if (!facts.drive) return facts;
-  const Scene scene = shear_scene(read_stage(run.resolved).parameters);
+  const Scene scene = shear_scene(read_stage(stage.resolved).parameters);
   facts.rest = [scene](const Checkpoint& from, double seconds) {
     return rested(from.cell, scene, from.state, seconds);
   };
@@ -32,8 +33,8 @@ RunFacts facts_of(const Stage& run) {
 
 }  // namespace
 
-MeasureSources::MeasureSources(const std::string& id, const Stage& run) {
-  runs_[id].facts = facts_of(run);
+MeasureSources::MeasureSources(const std::string& id, const Stage& stage) {
+  runs_[id].facts = facts_of(stage);
 }
 
 void MeasureSources::read_run(const std::string& run) {
@@ -41,7 +42,8 @@ void MeasureSources::read_run(const std::string& run) {
   if (!first) return;
   const Stage stage = store_->stage(run);
   entry->second.facts = facts_of(stage);
-  for (const Ask& ask : stage.asks) entry->second.cadences.insert(ask.checkpoint_every);
+  for (const Ask& ask : asks_of(stage.memberships))
+    entry->second.cadences.insert(ask.checkpoint_every);
   if (!entry->second.facts.drive) return;
   for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
     const std::uint64_t step = one.step;

@@ -21,7 +21,7 @@ class MeasureSources {
  public:
   explicit MeasureSources(const Store& store) : store_(&store) {}
   /// For one run, called `id`, without its earlier checkpoints.
-  MeasureSources(const std::string& id, const Stage& run);
+  MeasureSources(const std::string& id, const Stage& stage);
 
   /// Reads the log of a run, once. Call this before the other functions take a checkpoint of the
   /// run; any number of threads may then call them.

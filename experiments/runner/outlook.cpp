@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -28,11 +27,11 @@ using nlohmann::json;
 constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
 constexpr double kMostCounted = 10'000;         // one by one; more are extrapolated
 
-std::optional<Until> until_of(const Ask& ask) try {
-  if (!has_until(ask)) return std::nullopt;
+std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
+  if (ask.until.is_null()) return std::nullopt;
   return until_from_json(ask.until);
 } catch (const std::runtime_error& problem) {
-  throw StoreDamaged(fmt::format("a record of experiment {}: {}", ask.experiment, problem.what()));
+  throw StoreDamaged(fmt::format("a record of run {:.8}: {}", stage.id, problem.what()));
 }
 
 /// Outlook::ended, as a completion recorded it.
@@ -73,14 +72,13 @@ struct End {
 End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
            const KnownMeasures& measures) {
   End end{static_cast<double>(ask.target_cycles)};
-  const std::optional<Until> until = until_of(ask);
+  const std::optional<Until> until = until_of(stage, ask);
   if (!until) return end;
-  const std::string_view measure = name_of(until->measure);
   const auto every = static_cast<double>(ask.checkpoint_every);
   for (const CheckpointRecord& one : checkpoints) {
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
-    if (known == measures.end()) {
+    if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
       // A longer end is unknown until it has been asked for.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
@@ -89,7 +87,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
       break;
     }
     // Also a number that is undefined, as phi without interior grains, has not reached the value.
-    if (!(known->second.number(measure) >= until->value)) continue;
+    if (!(known->second.number(until->measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
   }
@@ -103,20 +101,20 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
 
 /// Whether what the completed stage has recorded meets the ask.
 bool is_covered(const Stage& stage, const Ask& ask) {
-  return stage.state == StageState::completed && has_until(ask) &&
-         std::ranges::any_of(stage.asks, [&](const Ask& recorded) {
+  return stage.state == StageState::completed && !ask.until.is_null() &&
+         std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
            return recorded.until == ask.until && recorded.target_cycles >= ask.target_cycles &&
                   recorded.checkpoint_every % ask.checkpoint_every == 0;
          });
 }
 
-/// Sets the outlook's `end`, `ended` and `undecided`. Returns whether the stage is long enough for
-/// every ask.
+/// Sets the outlook's `end`, `may_end_early`, `ended` and `undecided`. Returns whether the stage is
+/// long enough for every ask.
 bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1;
+  double latest = -1, known = 0, at_most = 0;  // ends that are known, and those that are not
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
@@ -125,17 +123,20 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
     reached = reached && stage.cycle >= end.cycle;
     const bool met = stage.cycle >= end.cycle || is_covered(stage, ask);
     long_enough = long_enough && met;
-    look.end = std::max(look.end, met ? std::min(end.cycle, stage.cycle) : end.cycle);
+    double& last = met || end.reached || ask.until.is_null() ? known : at_most;
+    last = std::max(last, met ? std::min(end.cycle, stage.cycle) : end.cycle);
     if (!end.reached || end.cycle <= latest) continue;
     latest = end.cycle;
-    const Until until = *until_of(ask);
+    const Until until = *until_of(stage, ask);
     look.ended = {{"by", "until"},
-                  {"measure", name_of(until.measure)},
+                  {"measure", until.measure},
                   {"value", until.value},
                   {"extra_cycles", until.extra_cycles},
                   {"reached_at_cycle", *end.reached},
                   {"memberships", asks.size()}};
   }
+  look.end = std::max(known, at_most);
+  look.may_end_early = at_most > known;
   if (!reached) look.ended = nullptr;
   return long_enough;
 }
@@ -174,7 +175,7 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
                Outlook& look) {
   const auto whole = static_cast<double>(cycle_steps(motion));
   const double length = look.end * whole, now = static_cast<double>(stage.step);
-  const std::vector<CheckpointCadence> cadences = cadences_of(asks, motion);
+  const std::vector<CheckpointCadence> cadences = cadences_of(stage, asks, motion);
   const std::uint64_t next = checkpoints.empty() ? 0 : stage.step + 1;
   const auto to_come = steps_between(cadences, motion, next, length, kMostCounted);
   look.checkpoints = static_cast<double>(to_come.size());
@@ -240,10 +241,6 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
   return look;
 }
 
-bool has_until(const Ask& ask) {
-  return !ask.until.is_null();
-}
-
 std::optional<Drive> shear_drive(const Stage& stage) {
   if (stage.kind != name_of(StageKind::shear)) return std::nullopt;
   try {
@@ -253,12 +250,13 @@ std::optional<Drive> shear_drive(const Stage& stage) {
   }
 }
 
-std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive) {
+std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
+                                           const Drive& drive) {
   std::vector<CheckpointCadence> cadences;
   for (const Ask& ask : asks) {
     if (ask.checkpoint_phases.size() > ManifestLimits::values_per_list) {
-      throw StoreDamaged(fmt::format("a record of experiment {}: checkpoint_phases: there are {}",
-                                     ask.experiment, ask.checkpoint_phases.size()));
+      throw StoreDamaged(fmt::format("a record of run {:.8}: checkpoint_phases: there are {}",
+                                     stage.id, ask.checkpoint_phases.size()));
     }
     if (ask.target_cycles == 0) continue;  // it asks for cycle 0, which each shear records
     cadences.push_back(
@@ -272,7 +270,7 @@ std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, doubl
   const std::optional<Drive> motion = shear_drive(stage);
   if (!motion || !(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return {};
   const auto whole = static_cast<double>(cycle_steps(*motion));
-  return steps_between(cadences_of({&ask, 1}, *motion), *motion,
+  return steps_between(cadences_of(stage, {&ask, 1}, *motion), *motion,
                        static_cast<std::uint64_t>(std::ceil(first * whole)), last * whole,
                        kMostListed);
 }
@@ -298,28 +296,40 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Measures the checkpoint and the next ones at whole cycles, as many as there are workers.
-void measure_from(const Store& store, const CheckpointRecord& first,
-                  std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
-                  const MeasureOptions& options) {
+/// Measures the checkpoint and the next ones at whole cycles, as many as there are workers, for
+/// the `until` of these asks.
+void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
+                  const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
+                  KnownMeasures& measures, const MeasureOptions& options) {
+  std::set<std::string> wanted;
+  std::vector<std::string> providers;
+  for (const Ask& ask : asks) {
+    const std::optional<Until> until = until_of(stage, ask);
+    if (!until || !wanted.insert(until->measure).second) continue;
+    providers.push_back(provider_of(*find_measure(until->measure)).name);
+  }
   std::vector<CheckpointMeasures> chosen;
   for (const CheckpointRecord& one : checkpoints) {
-    const bool whole = one.cycle == std::floor(one.cycle);
-    if (one.step < first.step || !whole || measures.contains(one.sha256)) continue;
+    if (one.step < first.step || one.cycle != std::floor(one.cycle)) continue;
+    const Measures& known = measures[one.sha256];
+    const auto is_known = [&](const std::string& name) { return known.numbers.contains(name); };
+    if (std::ranges::all_of(wanted, is_known)) continue;
     chosen.push_back({one});
     if (chosen.size() == options.workers) break;
   }
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
-  // The crystallites come from the same analysis, and figures need them.
-  static const std::array<std::string, 1> scalars = {"scalars"};
+  // These come from the same analysis, and figures need them.
   const MeasureOptions also = {
-      .workers = options.workers, .report = options.report, .also = {"crystallites"}};
-  measure_checkpoints(store, todo, scalars, also);
+      .workers = options.workers, .report = options.report, .also = {"scalars", "crystallites"}};
+  measure_checkpoints(store, todo, providers, also);
+  if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
-    if (one.lacking.empty()) measures[one.sha256] = std::move(one.measures);
+    if (!one.lacking.empty()) continue;
+    // A number that the checkpoint lacks has not reached the value.
+    for (const std::string& name : wanted) one.measures.numbers.try_emplace(name, std::nan(""));
+    measures[one.sha256] = std::move(one.measures);
   }
-  if (!measures.contains(chosen.front().sha256)) refuse_unread(first);
 }
 
 /// The most cycles [at most those that the stage has] for which an experiment without this `until`
@@ -328,7 +338,7 @@ double longest_length(const Stage& stage, const json& ended, const json& until) 
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
   double longest = 0;
-  for (const Ask& ask : stage.asks) {  // in the order of declaration
+  for (const Ask& ask : asks_of(stage.memberships)) {  // in the order of declaration
     if (left-- == 0) break;
     const auto cycles = static_cast<double>(ask.target_cycles);
     if (cycles <= stage.cycle && ask.until != until) longest = std::max(longest, cycles);
@@ -340,7 +350,8 @@ double longest_length(const Stage& stage, const json& ended, const json& until) 
 
 Outlook look_at(const Store& store, const Stage& stage) {
   try {
-    return outlook(stage, stage.asks, store.checkpoints(stage.id, Listed::and_pruned));
+    return outlook(stage, asks_of(stage.memberships),
+                   store.checkpoints(stage.id, Listed::and_pruned));
   } catch (const StoreDamaged& damage) {
     const bool completed = stage.state == StageState::completed;
     return {.done = completed, .unreadable = damage.what()};
@@ -361,10 +372,10 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
     if (const auto found = known.find(planned.id); fresh && found != known.end()) {
       one.stage = std::move(found->second);
       one.stage.resolved = planned.resolved;  // that of the store may be damaged
-      one.asks = one.stage.asks;
+      one.memberships = one.stage.memberships;
       one.checkpoints = store->checkpoints(one.stage.id, Listed::and_pruned);
     }
-    std::ranges::copy(planned.asks, std::back_inserter(one.asks));
+    std::ranges::copy(planned.memberships, std::back_inserter(one.memberships));
   };
   for (const Plan& plan : plans) {
     for (const PlannedRun& run : plan.runs) {
@@ -372,7 +383,9 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
       add(run, run.stage);
     }
   }
-  for (PlannedStage& one : stages) one.look = outlook(one.stage, one.asks, one.checkpoints);
+  for (PlannedStage& one : stages) {
+    one.look = outlook(one.stage, asks_of(one.memberships), one.checkpoints);
+  }
   return stages;
 }
 
@@ -382,14 +395,14 @@ Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks
   for (;;) {
     Outlook look = outlook(stage, asks, checkpoints, measures);
     if (!look.undecided) return look;
-    measure_from(store, *look.undecided, checkpoints, measures, options);
+    measure_from(store, stage, asks, *look.undecided, checkpoints, measures, options);
   }
 }
 
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
   // With one ask no other experiment can have continued it.
-  if (stage.asks.size() < 2 || !has_until(ask)) {
+  if (stage.memberships.size() < 2 || ask.until.is_null()) {
     return static_cast<double>(ask.target_cycles);
   }
   KnownMeasures measures;
@@ -500,10 +513,10 @@ double checkpoint_bytes(const Geometry& shape) {
 }
 
 Rates::Rates(const std::vector<Stage>& runs) {
-  for (const Stage& run : runs) {
-    Sum& sum = sums_[engine_of(run.resolved)];
-    sum.steps += run.particle_steps;
-    sum.seconds += run.wall_seconds;
+  for (const Stage& stage : runs) {
+    Sum& sum = sums_[engine_of(stage.resolved)];
+    sum.steps += stage.particle_steps;
+    sum.seconds += stage.wall_seconds;
   }
 }
 

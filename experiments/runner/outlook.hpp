@@ -37,6 +37,8 @@ struct Outlook {
   /// The cycle at which the stage ends: the largest number of cycles that is asked for, or an
   /// earlier one at which `until` is known to end the stage.
   double end = 0;
+  /// An `until` that is not known to be reached may end the stage before `end`.
+  bool may_end_early = false;
   /// How `until` ends the stage at its last checkpoint, as RunCompleted records it; null if it does
   /// not. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
   nlohmann::json ended = nullptr;
@@ -58,15 +60,13 @@ struct Outlook {
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
-/// Whether `until` may end the stage before the number of cycles that is asked for.
-bool has_until(const Ask& ask);
-
 /// The motion of the walls in a shear; nothing for another kind of stage and for an unreadable
 /// record, which `verify` names.
 std::optional<Drive> shear_drive(const Stage& stage);
 
 /// The cadences of a shear, one for each ask of at least one cycle. Throws as outlook().
-std::vector<CheckpointCadence> cadences_of(std::span<const Ask> asks, const Drive& drive);
+std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
+                                           const Drive& drive);
 
 /// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` wants a checkpoint;
 /// ascending, at most a million. Empty if there is no shear_drive().
@@ -86,7 +86,7 @@ Outlook look_at(const Store& store, const Stage& stage);
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Ask> asks = {};  ///< those of the store and of all plans
+  std::vector<Membership> memberships = {};  ///< those of the store and of all plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };

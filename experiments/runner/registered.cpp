@@ -37,12 +37,12 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
 
 }  // namespace
 
-std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage& run,
-                                                                    const Place& m) {
-  if (run.kind == name_of(StageKind::prepare)) {
-    return {{m.experiment, kPackings, m.scale}, effective_parameters(run.resolved)};
+std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage& stage,
+                                                                    const Place& place) {
+  if (stage.kind == name_of(StageKind::prepare)) {
+    return {{place.experiment, kPackings, place.scale}, effective_parameters(stage.resolved)};
   }
-  return {{m.experiment, m.manifest, m.scale}, m.swept};
+  return {{place.experiment, place.manifest, place.scale}, place.swept};
 }
 
 VariantNames::VariantNames(const Store& store) {
@@ -51,9 +51,9 @@ VariantNames::VariantNames(const Store& store) {
     labels[manifest.sha256] = recorded_manifest(manifest.text).labels;
   }
   std::map<Group, std::vector<nlohmann::json>> values;
-  for (const Stage& run : store.stages()) {
-    for (const Ask& m : run.asks) {
-      auto [group, vary] = key_of(run, m);
+  for (const Stage& stage : store.stages()) {
+    for (const Membership& m : stage.memberships) {
+      auto [group, vary] = key_of(stage, m.place);
       values[group].push_back(std::move(vary));
     }
   }
@@ -67,12 +67,12 @@ VariantNames::VariantNames(const Store& store) {
   }
 }
 
-std::string VariantNames::of(const Stage& run, const Place& m) const {
-  const auto [group, vary] = key_of(run, m);
+std::string VariantNames::of(const Stage& stage, const Place& place) const {
+  const auto [group, vary] = key_of(stage, place);
   const auto names = names_.find(group);
-  if (names == names_.end()) return m.variant;
+  if (names == names_.end()) return place.variant;
   const auto name = names->second.find(vary);
-  return name == names->second.end() ? m.variant : name->second;
+  return name == names->second.end() ? place.variant : name->second;
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

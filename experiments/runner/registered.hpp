@@ -29,13 +29,13 @@ class VariantNames {
  public:
   VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
-  /// The name of the run in this place; if unknown, the variant.
-  std::string of(const Stage& run, const Place& place) const;
+  /// The name of the stage in this place; if unknown, the variant.
+  std::string of(const Stage& stage, const Place& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
   /// The runs among which the run is named, and the values that tell it apart from these.
-  static std::pair<Group, nlohmann::json> key_of(const Stage& run, const Place& place);
+  static std::pair<Group, nlohmann::json> key_of(const Stage& stage, const Place& place);
 
   std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by values that vary
 };

@@ -69,22 +69,22 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
     parameters.minimize.force_tolerance = p.minimize_force_tolerance;
     return stiffen(parameters, scene);
   }
-  return cyclic_shear(drive(p), cycles, cadences_of(stage.asks, drive(p)));
+  return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
 // The limit is not part of a run's identity. Limits other than the default are recorded with the
 // manifest (campaign.cpp); for the other manifests it is `otherwise`.
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
-  double limit = stage.asks.empty() ? otherwise : 0;
-  for (const Ask& ask : stage.asks) {
-    const auto manifest = find_manifest(store, ask.manifest);
+  double limit = stage.memberships.empty() ? otherwise : 0;
+  for (const Membership& m : stage.memberships) {
+    const auto manifest = find_manifest(store, m.place.manifest);
     const nlohmann::json info = manifest ? manifest->info : nlohmann::json::object();
     try {
       const nlohmann::json stated = info.value("max_overlap_diameters", nlohmann::json::object());
-      limit = std::max(limit, stated.value(ask.scale, otherwise));
+      limit = std::max(limit, stated.value(m.place.scale, otherwise));
     } catch (const nlohmann::json::exception& problem) {
       throw StoreDamaged(fmt::format("manifest {:.12}: the facts recorded with it: {}",
-                                     ask.manifest, problem.what()));
+                                     m.place.manifest, problem.what()));
     }
   }
   return limit;
@@ -153,8 +153,8 @@ Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOp
 /// Store::newest_valid_checkpoint.
 Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions& options,
                        std::vector<std::string>* damage, std::uint64_t before_step = UINT64_MAX) {
-  const Stage& run = plan.stage;
-  if (auto newest = store.newest_valid_checkpoint(run.id, damage, before_step)) {
+  const Stage& stage = plan.stage;
+  if (auto newest = store.newest_valid_checkpoint(stage.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record)};
   }
@@ -164,23 +164,23 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions&
                                  plan.inputs.seed, give_up_if_requested);
     return {std::move(grains.cell), std::move(grains.state)};
   }
-  if (run.parent.empty()) {
+  if (stage.parent.empty()) {
     const Geometry shape = geometry(plan.inputs.parameters);
     Cell cell = make_cell(shape, plan.inputs.seed, give_up_if_requested);
     State state = fill_cell(cell, shape, plan.inputs.seed, give_up_if_requested);
     return {std::move(cell), std::move(state)};
   }
-  const Stage ended = store.stage(run.parent);
+  const Stage ended = store.stage(stage.parent);
   if (ended.kind != name_of(StageKind::prepare)) return recorded_beginning(store, plan, options);
-  const std::vector<CheckpointRecord> known = store.checkpoints(run.parent, Listed::and_pruned);
+  const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::and_pruned);
   const bool recorded = ended.state == StageState::completed && !known.empty();
   if (recorded) restore_if_pruned(store, known.back(), options);
-  auto parent = store.newest_valid_checkpoint(run.parent, damage);
+  auto parent = store.newest_valid_checkpoint(stage.parent, damage);
   // The checkpoint must be the one at which the parent was completed.
   if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
     throw StoreDamaged(fmt::format(
         "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
-        run.parent, run.id,
+        stage.parent, stage.id,
         recorded
             ? fmt::format("`shearcell regenerate {:.12}` restores its file", known.back().sha256)
             : "`shearcell resume` recomputes it first"));
@@ -310,7 +310,8 @@ class LammpsEngine final : public Engine {
   LammpsEngine(const ReadyStage& plan, Beginning&& beginning, const Parallel& parallel,
                const LammpsProgram& program)
       : plan_(plan),
-        stride_(checkpoint_cadence(plan.stage.asks) * cycle_steps(plan.protocol.drive)),
+        stride_(checkpoint_cadence(asks_of(plan.stage.memberships)) *
+                cycle_steps(plan.protocol.drive)),
         cell_(std::move(beginning.cell)),
         state_(std::move(beginning.state)),
         first_(state_.step),
@@ -386,8 +387,8 @@ class LammpsEngine final : public Engine {
 // One attempt to compute a stage.
 class StageAttempt {
  public:
-  StageAttempt(Store& store, Stage run, const StageOptions& options)
-      : store_(store), options_(options), plan_(ready_stage(store, std::move(run))) {}
+  StageAttempt(Store& store, Stage stage, const StageOptions& options)
+      : store_(store), options_(options), plan_(ready_stage(store, std::move(stage))) {}
 
   StageOutcome run() {
     std::vector<std::string> damage;
@@ -433,7 +434,7 @@ class StageAttempt {
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
     // The stage is completed for all that were declared since.
-    if (ended.contains("memberships")) ended["memberships"] = plan_.stage.asks.size();
+    if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
       first_step_ = engine.step();
@@ -524,8 +525,10 @@ class StageAttempt {
   // that declared it meanwhile.
   bool ends_early() {
     const Stage now = store_.stage(id());
-    if (seen_.empty() || std::ranges::none_of(now.asks, has_until)) return false;
-    const nlohmann::json ended = decide(store_, now, now.asks, seen_, measures_, {}).ended;
+    const std::vector<Ask> asks = asks_of(now.memberships);
+    const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
+    if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
+    const nlohmann::json ended = decide(store_, now, asks, seen_, measures_, {}).ended;
     recorded_.restart();  // measuring is not computing
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
@@ -583,8 +586,8 @@ class StageAttempt {
 
 // Whether the newest checkpoint can be read, or was pruned and can be recomputed. If not,
 // run_stage() reports the damage.
-bool newest_is_sound(const Store& store, const Stage& run) {
-  const auto found = store.checkpoints(run.id, Listed::and_pruned);
+bool newest_is_sound(const Store& store, const Stage& stage) {
+  const auto found = store.checkpoints(stage.id, Listed::and_pruned);
   return !found.empty() &&
          (found.back().state == CheckpointState::pruned || store.load_if_readable(found.back()));
 }
@@ -730,19 +733,21 @@ void restore_if_pruned(Store& store, const CheckpointRecord& record, const Stage
 
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options) {
   try {
-    Stage run = store.stage(id);
+    Stage stage = store.stage(id);
     bool computed = false;
-    if (run.state != StageState::completed || !newest_is_sound(store, run)) {
-      StageAttempt attempt(store, std::move(run), options);
+    if (stage.state != StageState::completed || !newest_is_sound(store, stage)) {
+      StageAttempt attempt(store, std::move(stage), options);
       const StageOutcome outcome = attempt.run();
-      run = store.stage(id);
-      if (outcome != StageOutcome::completed || run.state != StageState::completed) return outcome;
+      stage = store.stage(id);
+      if (outcome != StageOutcome::completed || stage.state != StageState::completed)
+        return outcome;
       computed = attempt.computed();
     }
     // A denser cadence may have been asked for.
     const std::vector<std::uint64_t> missing =
-        outlook(run, run.asks, store.checkpoints(id, Listed::and_pruned)).missing;
-    if (!missing.empty()) return StageAttempt(store, std::move(run), options).fill(missing);
+        outlook(stage, asks_of(stage.memberships), store.checkpoints(id, Listed::and_pruned))
+            .missing;
+    if (!missing.empty()) return StageAttempt(store, std::move(stage), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const Interrupted&) {
     return StageOutcome::interrupted;  // before an attempt was recorded
@@ -752,7 +757,8 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 }
 
 bool is_done(const Store& store, const Stage& stage) {
-  return outlook(stage, stage.asks, store.checkpoints(stage.id, Listed::and_pruned)).done &&
+  return outlook(stage, asks_of(stage.memberships), store.checkpoints(stage.id, Listed::and_pruned))
+             .done &&
          newest_is_sound(store, stage);
 }
 
@@ -774,8 +780,8 @@ nlohmann::json to_json(const Divergence& divergence) {
           {"why", divergence.message}};
 }
 
-std::optional<std::string> why_not_again(const Stage& run) {
-  if (engine_of(run.resolved) == EngineKind::shearcell) return std::nullopt;
+std::optional<std::string> why_not_again(const Stage& stage) {
+  if (engine_of(stage.resolved) == EngineKind::shearcell) return std::nullopt;
   return "LAMMPS made it, whose runs are not repeated bit for bit";
 }
 

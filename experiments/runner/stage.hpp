@@ -78,7 +78,7 @@ struct Replay {
 };
 
 /// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
-std::optional<std::string> why_not_again(const Stage& run);
+std::optional<std::string> why_not_again(const Stage& stage);
 
 /// Computes from the nearest earlier checkpoint that is kept, or from the beginning of the stage,
 /// up to the record's step. Compares the state and all that is recorded with it (cycle, time, tilt,

@@ -46,11 +46,11 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
                              const std::function<void(int, Measures&)>& fill) {
   FigureRun run;
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  run.variant = key + "=" + text;
-  run.stage.id = run.variant + "/" + std::to_string(seed);
-  run.swept = {{key, value}};
+  run.place.variant = key + "=" + text;
+  run.stage.id = run.place.variant + "/" + std::to_string(seed);
+  run.place.swept = {{key, value}};
   run.parameters = {{"amplitude_rad", 0.0833}, {"grains", 5200}, {"pressure_at", "top"}};
-  run.seed = seed;
+  run.place.seed = seed;
   for (int n = 0; n <= cycles; ++n) {
     CheckpointMeasures checkpoint;
     checkpoint.cycle = n;

@@ -28,10 +28,10 @@ std::vector<FigureRun> two_parameters(const std::vector<double>& drags = {0.001,
     for (const double drag : drags) {
       for (const std::uint64_t seed : {1U, 2U, 3U}) {
         FigureRun run = rising_run(fluid, seed, 3, 1000 * drag + 0.001 * static_cast<double>(seed));
-        run.swept["drag_kg_per_s"] = drag;
-        run.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
+        run.place.swept["drag_kg_per_s"] = drag;
+        run.place.variant = fmt::format("fluid={},drag_kg_per_s={}", fluid, drag);
         run.name = fmt::format("fluid={}, b={} kg/s", fluid, drag);
-        run.stage.id = fmt::format("{}/{}", run.variant, seed);
+        run.stage.id = fmt::format("{}/{}", run.place.variant, seed);
         runs.push_back(std::move(run));
       }
     }
@@ -168,8 +168,8 @@ TEST(Curves, TheKeyCountsRunsAtEachParameterAndOfEachCurve) {
   const PlotSpec profile = {.name = "own", .y = "phi_profile", .cycle = 2};
   EXPECT_EQ(std::ranges::count_if(key(profile), [](auto& t) { return has(t, "(1 of 2 runs)"); }),
             1);
-  const std::string variant = runs[0].variant;
-  std::erase_if(runs, [&](const FigureRun& run) { return run.variant != variant; });
+  const std::string variant = runs[0].place.variant;
+  std::erase_if(runs, [&](const FigureRun& run) { return run.place.variant != variant; });
   EXPECT_EQ(key(profile), Key{"1 of 2 runs"}) << "a single curve has no other title";
 }
 
@@ -179,7 +179,7 @@ TEST(Curves, HaveStylesOfTheirOwnWhereManyValuesVary) {
     for (std::size_t k = 1; k <= values; ++k) drags.push_back(0.001 * static_cast<double>(k));
     std::vector<FigureRun> runs = two_parameters(drags);
     EXPECT_EQ(looks(s2(runs)[0]), 2 * values);
-    std::erase_if(runs, [](const FigureRun& run) { return run.swept["fluid"] == "cell"; });
+    std::erase_if(runs, [](const FigureRun& run) { return run.place.swept["fluid"] == "cell"; });
     EXPECT_EQ(looks(s2(runs)[0]), values);
   }
 }
@@ -189,8 +189,8 @@ TEST(Curves, AnotherEnginesRunsChangeNoVerdict) {
   std::vector<FigureRun> runs = two_variants();
   const nlohmann::json before = to_json(find_figure("S2")->make(runs).verdicts);
   runs.push_back(runs.back());
-  runs.back().swept["engine"] = "lammps";
-  runs.back().variant += ",engine=lammps";
+  runs.back().place.swept["engine"] = "lammps";
+  runs.back().place.variant += ",engine=lammps";
   EXPECT_EQ(to_json(find_figure("S2")->make(runs).verdicts), before);
   EXPECT_EQ(s2(runs)[0].chart.series.size(), s2(two_variants())[0].chart.series.size() + 1);
 }
@@ -310,7 +310,7 @@ TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
   std::vector<FigureRun> runs;
   for (const double drag : {0.001, 0.002}) {
     runs.push_back(rising_run("still", 1, 3, drag));
-    runs.back().swept = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
+    runs.back().place.swept = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
   }
   for (const char* x : {"amplitude_rad", "drag_kg_per_s"}) {
     const auto result = plot_figure({.name = "own", .y = "phi", .x = x}).make(runs);

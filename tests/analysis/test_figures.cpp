@@ -404,8 +404,8 @@ TEST_F(Plot, SameTableSameSvgAndPdf) {
 // Names of variants may hold what is special in gnuplot, and a comma where two parameters vary.
 TEST_F(Plot, EveryFigureIsDrawnWithFewRunsAndWithoutRuns) {
   std::vector<FigureRun> few = two_variants();
-  few[0].variant = "it's_{odd}^`echo`";
-  few[1].variant = few[2].variant = "gravity_m_per_s2=0,amplitude_rad=0.04";
+  few[0].place.variant = "it's_{odd}^`echo`";
+  few[1].place.variant = few[2].place.variant = "gravity_m_per_s2=0,amplitude_rad=0.04";
   for (const Figure& figure : all_figures()) {
     if (!figure.make) continue;  // summary, which is made of others
     for (const std::vector<FigureRun>& runs : {few, std::vector<FigureRun>{}}) {

@@ -266,7 +266,7 @@ TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
   std::vector<FigureRun> seeds;
   for (const int interior : {990, 1010, 1000, 1005, 995}) {
     seeds.push_back(waiting(interior, seeds.size(), 3 + interior % 7, 30));
-    seeds.back().swept["grains"] = seeds.back().parameters["grains"] = 2000;
+    seeds.back().place.swept["grains"] = seeds.back().parameters["grains"] = 2000;
   }
   EXPECT_FALSE(size_exponent(pointers(seeds), Region::interior)) << "seeds of one size";
 }
@@ -293,7 +293,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
     }
     const auto apart = size_exponent(pointers(runs), Region::interior);
     for (FigureRun& run : runs)
-      run.packing = fmt::format("{} {}", run.parameters["grains"].dump(), run.seed);
+      run.packing = fmt::format("{} {}", run.parameters["grains"].dump(), run.place.seed);
     const auto shared = size_exponent(pointers(runs), Region::interior);
     ASSERT_TRUE(apart && shared);
     covered += shared->interval.low <= 1 && shared->interval.high >= 1 ? 1 : 0;
@@ -320,7 +320,7 @@ TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "none in the small ones";
   for (FigureRun& run : runs) {  // sizes are those of N, whatever number of grains is interior
     for (CheckpointMeasures& c : run.checkpoints)
-      c.measures.numbers["interior_grains"] += 5 * static_cast<double>(run.seed);
+      c.measures.numbers["interior_grains"] += 5 * static_cast<double>(run.place.seed);
   }
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior));
 }

@@ -29,10 +29,10 @@ std::vector<FigureRun> runs_of_sweep() {
           m.numbers["phi"] = amplitude + period / 1000 + 1e-6 * static_cast<double>(seed);
           m.numbers["mean_overlap_d"] = n;
         });
-        run.swept["period_s"] = period;
-        run.variant = fmt::format("amplitude_rad={},period_s={}", amplitude, period);
+        run.place.swept["period_s"] = period;
+        run.place.variant = fmt::format("amplitude_rad={},period_s={}", amplitude, period);
         run.name = fmt::format("A={} rad, T={} s", amplitude, period);
-        run.stage.id = fmt::format("{}/{}", run.variant, seed);
+        run.stage.id = fmt::format("{}/{}", run.place.variant, seed);
         runs.push_back(std::move(run));
       }
     }
@@ -378,9 +378,9 @@ std::vector<FigureRun> runs_of_steps() {
             m.numbers["phi"] = 0.6 + 0.01 * static_cast<double>(seed) + n * error;
             m.numbers["mean_overlap_d"] = of;
           });
-      run.swept["engine"] = engine;
-      run.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
-      run.stage.id = fmt::format("{}/{}", run.variant, seed);
+      run.place.swept["engine"] = engine;
+      run.place.variant = fmt::format("engine={},steps_per_cycle={}", engine, steps);
+      run.stage.id = fmt::format("{}/{}", run.place.variant, seed);
       run.packing = fmt::format("packing {}", seed);
       run.core_time_s =
           steps * static_cast<double>(seed) * (engine == std::string("lammps") ? 9 : 1);
@@ -472,7 +472,7 @@ TEST(OwnPlot, IsADifferenceFromTheMeanOfSeveralPartners) {
   std::vector<FigureRun> runs = runs_of_steps();
   FigureRun clone = runs[0];  // the reference of packing 1
   clone.stage.id += "/clone";
-  clone.seed = 11;
+  clone.place.seed = 11;
   for (CheckpointMeasures& checkpoint : clone.checkpoints) {
     checkpoint.measures.numbers["phi"] += 0.002;
   }

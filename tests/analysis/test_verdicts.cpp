@@ -200,11 +200,11 @@ TEST(FigureB5, PausesCompactFaster) {
   for (const auto& [speed, ruling] : {std::pair{0.0006, supported}, std::pair{0.0005, refuted}}) {
     std::vector<FigureRun> runs = two_groups("protocol", "continuous", "paused", 6, speed, 0);
     for (FigureRun& run : runs) {
-      run.seed %= 20;
-      run.packing = std::to_string(run.seed);
+      run.place.seed %= 20;
+      run.packing = std::to_string(run.place.seed);
       for (CheckpointMeasures& c : run.checkpoints)
         c.measures.numbers["phi_at_rest"] = c.measures.numbers["phi"];
-      run.parameters["protocol"] = run.swept["protocol"];
+      run.parameters["protocol"] = run.place.swept["protocol"];
     }
     EXPECT_EQ(rulings("B5", runs), (Rulings{ruling, ruling, agrees, agrees}))
         << "as drawn, and at rest";
@@ -244,8 +244,8 @@ TEST(FigureChoices, FindsAChoiceThatMatters) {
   const auto add = [&](double mass, double drag, int draw, double speed) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       FigureRun run = crystallizing("choice", runs.size() / 6, seed + 10 * runs.size(), speed, 0);
-      run.swept = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
-      run.parameters = run.swept;
+      run.place.swept = {{"wall_mass_grains_per_d2", mass}, {"wall_drag_grains_per_d2_s", drag}};
+      run.parameters = run.place.swept;
       run.parameters["wall_grain_draw"] = draw;
       runs.push_back(std::move(run));
     }
@@ -265,7 +265,7 @@ TEST(FigureChoices, FindsAChoiceThatMatters) {
 
 FigureRun of_table_1(const char* experiment, const std::string& key, const nlohmann::json& value) {
   FigureRun run = made_up_run(key, value, 1, 0, [](int, Measures&) {});
-  run.experiment = experiment;
+  run.place.experiment = experiment;
   run.parameters = {
       {"mass_kg", 2e-5},          {"diameter_m", 3e-3},      {"stiffness_N_per_m", 654.0},
       {"drag_kg_per_s", 1.28e-3}, {"pressure_Pa", 954.0},    {"period_s", 2.0},
@@ -284,7 +284,7 @@ TEST(FigureTable1, OnlySweptParametersMayDiffer) {
                                  of_table_1("gravity", "gravity_m_per_s2", 0.0),
                                  of_table_1("other", "pressure_Pa", 955.0),
                                  of_table_1("timestep", "steps_per_cycle", 57143)};
-  runs[2].swept = {{"fluid", "still"}};
+  runs[2].place.swept = {{"fluid", "still"}};
   EXPECT_EQ(rulings("table1", runs), Rulings{}) << "inputs are not claims";
   expect_rows(runs,
               {"gravity,gravity_m_per_s2,9.81,0,9.81,2,varied\n",
@@ -378,7 +378,7 @@ FigureRun nucleating(double amplitude, double gravity, std::uint64_t seed, doubl
   });
   run.parameters["gravity_m_per_s2"] = gravity;
   run.parameters["grains"] = 11400;
-  run.variant += gravity != 0 ? "" : ",gravity off";
+  run.place.variant += gravity != 0 ? "" : ",gravity off";
   return run;
 }
 
@@ -419,7 +419,7 @@ TEST(FigureS5, TheSlopeOfTheOnsetIsTakenAgainstLnOfTheInteriorGrains) {
           one.measures.numbers["interior_grains"] = interior;
         }
         run.parameters["grains"] = grains;
-        run.variant = "grains=" + std::to_string(grains);
+        run.place.variant = "grains=" + std::to_string(grains);
         runs.push_back(run);
       }
     }

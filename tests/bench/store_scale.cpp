@@ -48,8 +48,8 @@ std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
   std::vector<double> took;
   for (int r = 0; r < runs; ++r) {
     Stage run = test::sample_run(r);
-    run.asks[0].target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
-    run.asks[0].manifest = manifest;
+    run.memberships[0].ask.target_cycles = static_cast<std::uint64_t>(checkpoints) - 1;
+    run.memberships[0].place.manifest = manifest;
     store.declare_stage(run);
     store.start_stage(run.id, {{"host", "bench"}});
     for (int c = 0; c < checkpoints; ++c) {
@@ -57,7 +57,7 @@ std::vector<double> fill(const fs::path& folder, int runs, int checkpoints) {
       const Checkpoint checkpoint = test::sample_checkpoint(run.id, step);
       took.push_back(seconds([&] { store.record_checkpoint(run.id, checkpoint, {1, 1}); }));
     }
-    store.complete_stage(run.id, {}, run.asks[0].target_cycles);
+    store.complete_stage(run.id, {}, run.memberships[0].ask.target_cycles);
   }
   return took;
 }

@@ -60,7 +60,7 @@ TEST_F(CampaignTest, NamesPackingsByKeysThatAllHaveFirst) {
   const VariantNames names(store_);
   std::set<std::string> found;
   for (const Stage& packing : runs_of_kind(store_, "prepare")) {
-    found.insert(names.of(packing, packing.asks.front()));
+    found.insert(names.of(packing, packing.memberships.front().place));
   }
   EXPECT_EQ(found, (std::set<std::string>{"packing g=0 m/s^2",
                                           "packing g=9.81 m/s^2, pressure_at=moving_wall",
@@ -177,7 +177,7 @@ TEST_F(CampaignTest, ARunInTwoExperimentsRunsOnce) {
   EXPECT_EQ(result.already, 2U);
   EXPECT_EQ(result.completed, 1U);
   std::size_t shared = 0;
-  for (const Stage& run : store_.stages()) shared += run.asks.size() == 2 ? 1 : 0;
+  for (const Stage& run : store_.stages()) shared += run.memberships.size() == 2 ? 1 : 0;
   EXPECT_EQ(shared, 2U);
 }
 
@@ -253,7 +253,7 @@ TEST_F(CampaignTest, MergedFromThreeMachinesIsCompleteAndContinues) {
     const Stage other = merged.stage(run.id);
     EXPECT_EQ(other.state, run.state);
     EXPECT_EQ(other.attempts, run.attempts);
-    EXPECT_EQ(other.asks.size(), run.asks.size());
+    EXPECT_EQ(other.memberships.size(), run.memberships.size());
     EXPECT_EQ(other.particle_steps, run.particle_steps) << "an effort was counted twice";
     EXPECT_EQ(cycles_of(merged, run.id), cycles_of(whole, run.id));
   }

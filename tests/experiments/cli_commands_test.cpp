@@ -119,7 +119,7 @@ TEST_F(Commands, MergeRejectsConflicts) {
     Checkpoint wrong = other.load_checkpoint(other.checkpoints(sheared.id).at(2));
     wrong.state.position(0, 0) += 1e-9;
     Stage longer = declaration_of(sheared);
-    longer.asks[0].target_cycles = 2;
+    longer.memberships[0].ask.target_cycles = 2;
     store.declare_stage(longer);
     store.start_stage(sheared.id, {}, store.checkpoints(sheared.id).back().sha256);
     store.record_checkpoint(sheared.id, wrong);
@@ -332,7 +332,7 @@ TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
   const auto expected = hashes();
   std::string victim;
   for (const Stage& run : Store(path("shearcell-store"), Access::read).stages()) {
-    if (run.kind == "shear" && run.asks.front().seed == 1) victim = run.id;
+    if (run.kind == "shear" && run.memberships.front().place.seed == 1) victim = run.id;
   }
   const std::string file = newest_file(victim);
   truncate_file(path(file));

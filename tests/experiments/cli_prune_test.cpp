@@ -116,7 +116,7 @@ TEST_F(Prune, DeletesOnlyWhatIsSelected) {
   EXPECT_EQ(cells.at("checkpoints").size(), 2U * 5U) << "of two runs all but the last";
   const Store store(path("shearcell-store"), Access::read);
   for (const auto& one : cells.at("checkpoints")) {
-    EXPECT_EQ(store.stage(one.at("run")).asks.front().variant, "fluid=cell");
+    EXPECT_EQ(store.stage(one.at("run")).memberships.front().place.variant, "fluid=cell");
   }
 }
 

@@ -34,11 +34,11 @@ Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) 
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
     seen.emplace_back();
-    for (const std::uint64_t step : asked_steps(stage, run, 0, cycle)) {
+    for (const std::uint64_t step : asked_steps(stage, run.ask, 0, cycle)) {
       seen.emplace_back().step = step;
     }
   }
-  return outlook(stage, run.stage.asks, seen);
+  return outlook(stage, asks_of(run.stage.memberships), seen);
 }
 
 double bytes_of(const Store& store, const std::string& run) {
@@ -112,8 +112,9 @@ void expect_bounded(const std::string& text) {
       const Geometry shape = geometry(p);
       EXPECT_FALSE(too_large(shape));
       EXPECT_LE(p.settle_time_limit_s / p.settle_time_step_s, kMostSteps);
-      EXPECT_LE(static_cast<double>(run.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
-                2 * kMostSteps);
+      EXPECT_LE(
+          static_cast<double>(run.ask.target_cycles) * static_cast<double>(cycle_steps(drive(p))),
+          2 * kMostSteps);
       EXPECT_TRUE(std::isfinite(expected_overlap(p)));
       for (const TimeStep& step :
            {time_step(p, shear_time_step_s(p)), time_step(p, p.settle_time_step_s)}) {

@@ -56,7 +56,8 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
 std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRuns& collected) {
   std::set<std::pair<std::string, std::uint64_t>> found;
   for (const FigureRun& run : collected.runs) {
-    EXPECT_TRUE(found.emplace(run.variant, run.seed).second) << run.variant << " seed " << run.seed;
+    EXPECT_TRUE(found.emplace(run.place.variant, run.place.seed).second)
+        << run.place.variant << " seed " << run.place.seed;
   }
   return found;
 }
@@ -89,7 +90,7 @@ TEST_F(DrawFigure, TheOrderOfRunsDoesNotDependOnTheirDeclaration) {
   compute(store_, text, {.cycles = 1});
   std::string order;
   for (const shearcell::Run& run : newest_runs(select_runs(store_, {})).runs)
-    order += run.variant + std::to_string(run.seed) + " ";
+    order += run.place.variant + std::to_string(run.place.seed) + " ";
   EXPECT_EQ(order, "fluid=cell1 fluid=cell2 fluid=still1 fluid=still2 ");
 }
 
@@ -229,8 +230,8 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   Stage other = declaration_of(ours);
   other.id = std::string(64, 'b');
   other.resolved["parameters"]["engine"] = "lammps";
-  other.asks = {ours.asks.back()};
-  other.asks[0].variant = "engine=lammps";
+  other.memberships = {ours.memberships.back()};
+  other.memberships[0].place.variant = "engine=lammps";
   store_.declare_stage(other);
   store_.start_stage(other.id, {});
   for (const CheckpointRecord& record : store_.checkpoints(ours.id)) {

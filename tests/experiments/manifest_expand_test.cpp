@@ -31,7 +31,7 @@ Plan at(const Manifest& manifest, const std::string& scale) {
 
 Strings variants(const Plan& plan) {
   Strings names;
-  for (const PlannedRun& run : plan.runs) names.push_back(run.variant);
+  for (const PlannedRun& run : plan.runs) names.push_back(run.place.variant);
   return names;
 }
 
@@ -43,12 +43,12 @@ TEST(Drag, ComparesTheFluidsOnTheSamePackings) {
   const std::vector<PlannedRun> runs = at(drag(), "smoke").runs;
   ASSERT_EQ(runs.size(), 4U);
   EXPECT_EQ(expand(drag()).scale, "desk") << "by default";
-  EXPECT_EQ(runs[0].checkpoint_every, 1U) << "by default";
+  EXPECT_EQ(runs[0].ask.checkpoint_every, 1U) << "by default";
   EXPECT_EQ(variants({{}, "", {}, runs, {}}),
             (Strings{"fluid=still", "fluid=still", "fluid=cell", "fluid=cell"}));
-  EXPECT_EQ(runs[0].seed, 1U);
-  EXPECT_EQ(runs[1].seed, 2U);
-  EXPECT_EQ(runs[2].swept, (nlohmann::json{{"fluid", "cell"}}));
+  EXPECT_EQ(runs[0].place.seed, 1U);
+  EXPECT_EQ(runs[1].place.seed, 2U);
+  EXPECT_EQ(runs[2].place.swept, (nlohmann::json{{"fluid", "cell"}}));
   EXPECT_EQ(runs[2].parameters.fluid, Fluid::cell);
   EXPECT_EQ(runs[0].prepare->id, runs[2].prepare->id);
   EXPECT_EQ(runs[1].prepare->id, runs[3].prepare->id);
@@ -65,8 +65,8 @@ TEST(Expand, WithoutSweepThereIsOneVariant) {
   const Plan plan = expand(parse("experiment: one\nbase: {}\n"));
   ASSERT_EQ(plan.runs.size(), 1U);
   EXPECT_EQ(plan.scale, "");
-  EXPECT_EQ(plan.runs[0].variant, "base");
-  EXPECT_EQ(plan.runs[0].swept, nlohmann::json::object());
+  EXPECT_EQ(plan.runs[0].place.variant, "base");
+  EXPECT_EQ(plan.runs[0].place.swept, nlohmann::json::object());
   EXPECT_EQ(plan.runs[0].parameters, Parameters{});
 }
 
@@ -106,25 +106,25 @@ scales:
 )");
   const Plan smoke = at(manifest, "smoke");
   EXPECT_EQ(variants(smoke), (Strings{"grains=300", "grains=600"}));
-  EXPECT_EQ(smoke.runs[0].target_cycles, 3U);
-  EXPECT_EQ(smoke.runs[0].seed, 1U);
-  EXPECT_EQ(smoke.runs[0].checkpoint_every, 1U);
+  EXPECT_EQ(smoke.runs[0].ask.target_cycles, 3U);
+  EXPECT_EQ(smoke.runs[0].place.seed, 1U);
+  EXPECT_EQ(smoke.runs[0].ask.checkpoint_every, 1U);
   EXPECT_EQ(smoke.runs[0].parameters.amplitude_rad, 0.05);
   const Plan paper = at(manifest, "paper");
   ASSERT_EQ(paper.runs.size(), 6U);
-  EXPECT_EQ(paper.runs[0].seed, 11U);
-  EXPECT_EQ(paper.runs[1].seed, 7U);
-  EXPECT_EQ(paper.runs[0].checkpoint_every, 5U);
+  EXPECT_EQ(paper.runs[0].place.seed, 11U);
+  EXPECT_EQ(paper.runs[1].place.seed, 7U);
+  EXPECT_EQ(paper.runs[0].ask.checkpoint_every, 5U);
 }
 
 TEST(Expand, OptionsOverrideTheManifest) {
   ExpandOptions options{.scale = "smoke", .cycles = 9, .seeds = 3};
   const Plan plan = expand(drag(), options);
   ASSERT_EQ(plan.runs.size(), 6U);
-  EXPECT_EQ(plan.runs[0].target_cycles, 9U);
-  EXPECT_EQ(plan.runs[2].seed, 3U);
+  EXPECT_EQ(plan.runs[0].ask.target_cycles, 9U);
+  EXPECT_EQ(plan.runs[2].place.seed, 3U);
   const Manifest listed = parse("experiment: a\nbase: {}\nseeds: [11, 7, 5]\n");
-  EXPECT_EQ(expand(listed, {.seeds = 2}).runs[1].seed, 7U);
+  EXPECT_EQ(expand(listed, {.seeds = 2}).runs[1].place.seed, 7U);
 }
 
 // Small amplitudes take more cycles: a zip gives each variant its own length, which names no
@@ -134,13 +134,13 @@ TEST(Expand, AZipHasALengthForEachVariant) {
       parse("experiment: a\nsweep: {zip: {amplitude_rad: [0.05, 0.1], cycles: [300, 20]}}\n");
   const Plan plan = expand(manifest);
   EXPECT_EQ(variants(plan), (Strings{"amplitude_rad=0.05", "amplitude_rad=0.1"}));
-  EXPECT_EQ(plan.runs[0].target_cycles, 300U);
-  EXPECT_EQ(plan.runs[1].target_cycles, 20U);
-  EXPECT_EQ(plan.runs[1].swept, (nlohmann::json{{"amplitude_rad", 0.1}}));
+  EXPECT_EQ(plan.runs[0].ask.target_cycles, 300U);
+  EXPECT_EQ(plan.runs[1].ask.target_cycles, 20U);
+  EXPECT_EQ(plan.runs[1].place.swept, (nlohmann::json{{"amplitude_rad", 0.1}}));
   EXPECT_EQ(plan.runs[1].stage.id,
             expand(parse("experiment: a\nbase: {amplitude_rad: 0.1}\n")).runs[0].stage.id);
   for (const PlannedRun& run : expand(manifest, {.cycles = 7}).runs)
-    EXPECT_EQ(run.target_cycles, 7U);
+    EXPECT_EQ(run.ask.target_cycles, 7U);
 }
 
 // Runs that take longer may be fewer, in the same figure.
@@ -151,9 +151,9 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   const Manifest manifest = parse(text);
   const Plan plan = expand(manifest);
   std::vector<std::uint64_t> seeds;
-  for (const PlannedRun& run : plan.runs) seeds.push_back(run.seed);
+  for (const PlannedRun& run : plan.runs) seeds.push_back(run.place.seed);
   EXPECT_EQ(seeds, (std::vector<std::uint64_t>{7, 7, 8, 9}));
-  EXPECT_EQ(plan.runs[0].swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
+  EXPECT_EQ(plan.runs[0].place.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
   EXPECT_EQ(
@@ -243,7 +243,7 @@ TEST(Expand, SelectsVariantsByValueNotBySpelling) {
        {"drag_kg_per_s=1.28e-2", "drag_kg_per_s=0.01280", " drag_kg_per_s = .0128 "}) {
     const Plan plan = expand(manifest, {.variants = {wanted}});
     ASSERT_FALSE(plan.runs.empty());
-    for (const PlannedRun& run : plan.runs) EXPECT_EQ(run.variant, "drag_kg_per_s=0.0128");
+    for (const PlannedRun& run : plan.runs) EXPECT_EQ(run.place.variant, "drag_kg_per_s=0.0128");
   }
   EXPECT_THROW(expand(manifest, {.variants = {"drag_kg_per_s=0.0129"}}), ManifestError);
 }
@@ -429,13 +429,14 @@ TEST(Expand, UntilIsReadAndOverriddenAndDoesNotChangeIds) {
       "  none: {until: none}\n";
   const Manifest manifest = parse(text + "until: {crystalline_percent: 10, extra_cycles: 15}\n");
   const PlannedRun one = at(manifest, "one").runs[0];
-  EXPECT_EQ(until_from_json(one.until), (Until{StopMeasure::crystalline_percent, 10, 15}));
-  EXPECT_EQ(until_from_json(at(manifest, "two").runs[0].until), (Until{StopMeasure::phi, 0.65, 0}));
-  EXPECT_TRUE(at(manifest, "none").runs[0].until.is_null());
+  EXPECT_EQ(until_from_json(one.ask.until), (Until{"crystalline_percent", 10, 15}));
+  EXPECT_EQ(until_from_json(at(manifest, "two").runs[0].ask.until), (Until{"phi", 0.65, 0}));
+  EXPECT_TRUE(at(manifest, "none").runs[0].ask.until.is_null());
   EXPECT_EQ(one.stage.id, at(parse(text), "one").runs[0].stage.id);
-  EXPECT_EQ(to_json(until_from_json(one.until)), one.until);
-  for (const char* bad : {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
-                          "{\"phi\":1,\"extra_cycles\":-1}"}) {
+  EXPECT_EQ(to_json(until_from_json(one.ask.until)), one.ask.until);
+  for (const char* bad :
+       {"{}", "[]", "{\"phi\":1}", "{\"phi\":\"1\",\"extra_cycles\":1}",
+        "{\"phi\":1,\"extra_cycles\":-1}", "{\"core_time_s\":1,\"extra_cycles\":1}"}) {
     EXPECT_THROW(until_from_json(nlohmann::json::parse(bad)), std::runtime_error) << bad;
   }
 }

@@ -96,13 +96,12 @@ TEST(FigureWarnings, TakeTheLengthThatTheStoreHas) {
   EXPECT_EQ(warned({}), 1U);
   std::vector<Stage> known;
   for (const char* variant : {"fluid=still", "fluid=cell"}) {
-    Ask& ask = known.emplace_back().asks.emplace_back();
-    static_cast<Place&>(ask) = {
-        .experiment = "a", .variant = variant, .seed = 1, .manifest = sha256_hex(text)};
-    ask.target_cycles = 5;
+    Membership& m = known.emplace_back().memberships.emplace_back();
+    m.place = {.experiment = "a", .variant = variant, .seed = 1, .manifest = sha256_hex(text)};
+    m.ask.target_cycles = 5;
   }
   EXPECT_EQ(warned(known), 0U);
-  known[0].asks[0].manifest = sha256_hex("another text");
+  known[0].memberships[0].place.manifest = sha256_hex("another text");
   EXPECT_EQ(warned(known), 1U) << "figures take what their own manifest asks for";
 }
 

@@ -182,7 +182,7 @@ TEST(TimeStep, FollowsTheStiffnessIfAuto) {
     EXPECT_EQ(p.steps_per_cycle, steps[i]);
     EXPECT_EQ(p.settle_time_step_s, 2.0 / static_cast<double>(steps[i / 2 * 2]));
     EXPECT_NEAR(time_step(p, shear_time_step_s(p)).over_stability_limit, 0.3547, 1e-4);
-    EXPECT_FALSE(has(swept[i].variant, "steps_per_cycle"));
+    EXPECT_FALSE(has(swept[i].place.variant, "steps_per_cycle"));
   }
   // A swept key and a scale's number override it.
   EXPECT_EQ(runs_of(autos, "sweep: {grid: {steps_per_cycle: [91200, 45600]}}")

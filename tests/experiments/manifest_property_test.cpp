@@ -130,8 +130,8 @@ std::vector<std::string> combinations(const Written& written) {
 
 // The same of what it expands to, from the parameters that will be computed.
 std::string described(const PlannedRun& run) {
-  Strings parts = {fmt::format("seed={}", run.seed)};
-  for (const auto& [key, label] : run.swept.items()) {
+  Strings parts = {fmt::format("seed={}", run.place.seed)};
+  for (const auto& [key, label] : run.place.swept.items()) {
     const json value = find_field(key)->get(run.parameters);
     RC_ASSERT(value == label);
     parts.push_back(key + "=" + value_text(value.is_string() ? std::string(value) : value.dump()));
@@ -159,7 +159,7 @@ PROPERTY(Expand, DoesNotDependOnTheOrderOfWriting, 300) {
   const auto ids = [](const Written& written) {
     std::multiset<std::string> found;
     for (const PlannedRun& run : expand(parse_manifest(written.text(), "any.yaml")).runs) {
-      found.insert(fmt::format("{} {} {}", run.seed, run.prepare->id, run.stage.id));
+      found.insert(fmt::format("{} {} {}", run.place.seed, run.prepare->id, run.stage.id));
     }
     return found;
   };

@@ -41,7 +41,7 @@ std::set<std::string> last_stages(const Plan& plan) {
 
 std::map<std::string, std::size_t> runs_of_variants(const Plan& plan) {
   std::map<std::string, std::size_t> count;
-  for (const PlannedRun& run : plan.runs) ++count[run.variant];
+  for (const PlannedRun& run : plan.runs) ++count[run.place.variant];
   return count;
 }
 
@@ -138,7 +138,7 @@ TEST(Manifests, PublishRunsOfFreshSeeds) {
     }
     std::map<std::string, std::uint64_t> next;
     for (const PlannedRun& run : plan(experiment, "paper").runs) {
-      EXPECT_EQ(run.seed, 1001 + next[run.variant]++) << experiment;
+      EXPECT_EQ(run.place.seed, 1001 + next[run.place.variant]++) << experiment;
     }
   }
 }
@@ -204,7 +204,8 @@ TEST(Manifests, TimeStepsOfFigureS3GiveWholeCycles) {
 TEST(Manifests, PausedShearRestsAsLongAsACycle) {
   for (const PlannedRun& run : plan("relaxation", "paper").runs) {
     const Drive walls = drive(run.parameters);
-    EXPECT_EQ(walls.pause_steps, run.variant == "protocol=paused" ? 45600U : 0U) << run.variant;
+    EXPECT_EQ(walls.pause_steps, run.place.variant == "protocol=paused" ? 45600U : 0U)
+        << run.place.variant;
   }
 }
 

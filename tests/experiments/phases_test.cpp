@@ -99,7 +99,9 @@ TEST_F(Phases, AreRecordedWithTheMembershipThatAsksForThem) {
       EXPECT_EQ(place.contains("checkpoint_phases"), store == &store_);
     }
   }
-  const auto phases = [](const Stage& stage) { return stage.asks.at(0).checkpoint_phases; };
+  const auto phases = [](const Stage& stage) {
+    return stage.memberships.at(0).ask.checkpoint_phases;
+  };
   EXPECT_TRUE(phases(sheared(plain_)).empty());
   EXPECT_EQ(phases(sheared(store_)), (std::vector<double>{0.25, 0.7}));
   EXPECT_TRUE(phases(store_.stage(sheared(store_).parent)).empty());
@@ -182,8 +184,8 @@ TEST_F(Phases, OfAForgedRecordAreRejected) {
   compute(plain_, manifest(""));
   const Stage run = sheared(plain_);
   Stage forged = declaration_of(run);
-  forged.asks[0].experiment = "forged";
-  forged.asks[0].checkpoint_phases.assign(1001, 0.5);
+  forged.memberships[0].place.experiment = "forged";
+  forged.memberships[0].ask.checkpoint_phases.assign(1001, 0.5);
   plain_.declare_stage(forged);
   EXPECT_THROW(is_done(plain_, plain_.stage(run.id)), StoreDamaged);
   EXPECT_THROW(verify_by_replay(plain_, plain_.checkpoints(run.id).back()), StoreDamaged);

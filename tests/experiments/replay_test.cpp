@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <set>
 
+#include "core/simulation.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"

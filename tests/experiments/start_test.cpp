@@ -39,8 +39,9 @@ class Started : public StoreTest {
 
   std::vector<Stage> runs_of(const std::string& experiment) {
     std::vector<Stage> found = runs_of_kind(store_, "shear");
-    std::erase_if(found,
-                  [&](const Stage& run) { return run.asks.front().experiment != experiment; });
+    std::erase_if(found, [&](const Stage& run) {
+      return run.memberships.front().place.experiment != experiment;
+    });
     return found;
   }
 
@@ -185,7 +186,8 @@ TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
   std::set<std::string> parents;
   for (const Stage& run : runs_of("clones")) {
     const Stage parent = store_.stage(run.parent);
-    EXPECT_EQ(parent.asks.front().seed, run.asks.front().swept.at("start_seed"));
+    EXPECT_EQ(parent.memberships.front().place.seed,
+              run.memberships.front().place.swept.at("start_seed"));
     parents.insert(run.parent);
   }
   EXPECT_EQ(parents.size(), 2U);

@@ -104,8 +104,8 @@ inline Stage sheared(const Store& store) {
 
 /// Declares the run again for its first experiment.
 inline Stage declaration_of(Stage run) {
-  run.asks.resize(1);
-  run.asks[0].target_cycles = run.target_cycles;
+  run.memberships.resize(1);
+  run.memberships[0].ask.target_cycles = run.target_cycles;
   return run;
 }
 

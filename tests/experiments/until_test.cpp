@@ -9,6 +9,7 @@
 #include "core/drive.hpp"
 #include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/stage.hpp"
@@ -54,9 +55,9 @@ nlohmann::json ended(std::span<const Ask> asks, const Seen& seen) {
 }
 
 TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
-  const Until ten{StopMeasure::crystalline_percent, 10, 0};
-  const Until later{StopMeasure::crystalline_percent, 10, 3};
-  const Until twenty{StopMeasure::crystalline_percent, 20, 0};
+  const Until ten{"crystalline_percent", 10, 0};
+  const Until later{"crystalline_percent", 10, 3};
+  const Until twenty{"crystalline_percent", 20, 0};
   struct Case {
     std::vector<Ask> asks;
     Seen measured;
@@ -90,8 +91,8 @@ TEST(OutlookOfUntil, IsTheLongestThatAnyExperimentAsksFor) {
 }
 
 TEST(OutlookOfUntil, IsDescribed) {
-  const nlohmann::json why = ended(
-      std::vector{ask(9, Until{StopMeasure::crystalline_percent, 10, 2})}, measured({1, 10, 20}));
+  const nlohmann::json why =
+      ended(std::vector{ask(9, Until{"crystalline_percent", 10, 2})}, measured({1, 10, 20}));
   ASSERT_FALSE(why.is_null());
   EXPECT_EQ(describe_end(why), "crystalline_percent >= 10 at cycle 2 and 2 more cycles");
   EXPECT_EQ(describe_end(nullptr), "");
@@ -145,7 +146,7 @@ class UntilTest : public StoreTest {
   }
 
   std::optional<double> expected(std::uint64_t extra_cycles) const {
-    return expected_end(store_.stages(), to_json(Until{StopMeasure::phi, value_, extra_cycles}));
+    return expected_end(store_.stages(), to_json(Until{"phi", value_, extra_cycles}));
   }
 
   static inline TemporaryFolder* whole_folder_ = nullptr;
@@ -193,6 +194,17 @@ TEST_F(UntilTest, RunsAreExtendedWithoutUntilOrWithALaterOne) {
   EXPECT_EQ(compute(store_, manifest("")).completed, 1U);
   expect_end(store_, 6);
   EXPECT_TRUE(end_of(sheared(store_)).is_null());
+}
+
+// A number of another analysis, then one of the log, which another experiment waits for.
+TEST_F(UntilTest, AnyNumberOfACheckpointEndsRuns) {
+  compute(store_, manifest("until: {contact_pressure_Pa: 1e-9, extra_cycles: 1}\n"));
+  expect_end(store_, 1);
+  EXPECT_EQ(end_of(sheared(store_)).at("reached_at_cycle"), 0);
+  const std::string time = fmt::format("until: {{time_s: {}}}\n", whole_->at(3).time_s);
+  EXPECT_EQ(compute(store_, renamed(manifest(time), "twin")).completed, 1U);
+  expect_end(store_, 3);
+  EXPECT_EQ(end_of(sheared(store_)).at("measure"), "time_s");
 }
 
 TEST_F(UntilTest, RunsAreExtendedFromCycleZero) {
@@ -306,7 +318,7 @@ TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
   compute(store_, renamed(manifest(""), "twin"));
   const Stage run = sheared(store_);
   const auto end = [&](std::size_t extra) {
-    return end_for(store_, run, ask(6, Until{StopMeasure::phi, value_, extra}), {});
+    return end_for(store_, run, ask(6, Until{"phi", value_, extra}), {});
   };
   EXPECT_EQ(end(1), static_cast<double>(end_));
   prune_and_forget();

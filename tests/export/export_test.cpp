@@ -71,10 +71,10 @@ Run about() {
                           {"gravity_m_per_s2", 9.81},
                           {"fluid", "still"},
                           {"steps_per_cycle", 45600}}}};
-  run.experiment = "drag";
-  run.scale = "smoke";
-  run.variant = "fluid=still,amplitude_rad=0.0833";
-  run.seed = 7;
+  run.place.experiment = "drag";
+  run.place.scale = "smoke";
+  run.place.variant = "fluid=still,amplitude_rad=0.0833";
+  run.place.seed = 7;
   return run;
 }
 
@@ -455,7 +455,7 @@ TEST(Export, CloseCheckpointsHaveSeparateFiles) {
 TEST(Export, CallsTheScaleOfAManifestWithoutScalesBase) {
   const TemporaryFolder folder;
   shearcell::Run run = about();
-  run.scale.clear();  // a manifest without scales
+  run.place.scale.clear();  // a manifest without scales
   extxyz_writer(folder.path() / "run.xyz", LengthUnit::d)(frame_of(checkpoints().back(), {}, run));
   const std::string text = read_bytes(folder.path() / "run.xyz");
   EXPECT_TRUE(has(text, " experiment=\"drag\" scale=\"base\" variant="));

@@ -48,7 +48,7 @@ fs::path make_store(const fs::path& folder) {
   const std::string manifest =
       store.register_manifest(kManifest, "a.yaml", {{"experiment", "a"}, {"figures", {"S2"}}});
   Stage prepare = test::sample_run(0), shear = test::sample_run(1);
-  prepare.asks[0].manifest = shear.asks[0].manifest = manifest;
+  prepare.memberships[0].place.manifest = shear.memberships[0].place.manifest = manifest;
   prepare.kind = "prepare";
   shear.parent = prepare.id;
   store.declare_stage(prepare);

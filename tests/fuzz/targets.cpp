@@ -50,8 +50,9 @@ void attempt(Work&& work) {
 void check_plan(const Plan& plan) {
   std::set<std::pair<std::string, std::uint64_t>> places;
   for (const PlannedRun& run : plan.runs) {
-    require(places.emplace(run.variant, run.seed).second, "no run is planned twice");
-    require(read_stage(run.stage.resolved).seed == run.seed, "a record reads back as its run");
+    require(places.emplace(run.place.variant, run.place.seed).second, "no run is planned twice");
+    require(read_stage(run.stage.resolved).seed == run.place.seed,
+            "a record reads back as its run");
     require(stage_key(run.stage.resolved) == run.stage.id, "a run is named after its record");
   }
 }
@@ -68,7 +69,8 @@ void take_manifest(Input input) {
       const Plan plan = expand(manifest, {.scale = scale, .cycles = {}, .seeds = 1});
       if (plan.runs.size() > kExpanded) continue;
       check_plan(plan);
-      for (const PlannedRun& run : plan.runs) manifest_lines(text, run.scale, run.swept, "");
+      for (const PlannedRun& run : plan.runs)
+        manifest_lines(text, run.place.scale, run.place.swept, "");
     }
   } catch (const ManifestError& error) {
     require(!std::string_view(error.what()).empty(), "an error says what is wrong");

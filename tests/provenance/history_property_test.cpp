@@ -36,8 +36,8 @@ void declare(Store& store, const Act& act) {
   Stage d = test::sample_run(act.run, act.amount);
   d.grains = 4;  // as sample() has
   if (act.run > 0) d.parent = run_id(0);
-  if (act.amount % 3 == 0) d.asks[0].experiment = "another";
-  d.asks[0].checkpoint_every = 1 + act.amount % 2;
+  if (act.amount % 3 == 0) d.memberships[0].place.experiment = "another";
+  d.memberships[0].ask.checkpoint_every = 1 + act.amount % 2;
   store.declare_stage(d);
 }
 

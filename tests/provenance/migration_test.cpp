@@ -100,12 +100,12 @@ TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
       for (std::size_t k = 0; k < ends.size(); ++k) {
         EXPECT_EQ(run.ends[k], member_of(ends[k].body().at("summary"), "ended"));
       }
-      ASSERT_EQ(run.asks.size(), 1u);
-      const Ask& ask = run.asks[0];
+      ASSERT_EQ(run.memberships.size(), 1u);
+      const auto& [place, ask, newest] = run.memberships[0];
       EXPECT_TRUE(ask.until.is_null());
       EXPECT_TRUE(ask.checkpoint_phases.empty());
-      EXPECT_TRUE(ask.newest);
-      EXPECT_EQ(store.events("manifest/" + ask.manifest).size(), 1u);
+      EXPECT_TRUE(newest);
+      EXPECT_EQ(store.events("manifest/" + place.manifest).size(), 1u);
     }
   }
 }
@@ -113,7 +113,7 @@ TEST_F(MigrationTest, TheColumnsOfSchema3AreThoseOfTheOldEvents) {
 TEST_F(MigrationTest, AMigratedStoreCanBeContinued) {
   Store store(path_, Access::write);
   Stage run = store.stage(kSheared);
-  run.asks.at(0).target_cycles = 3;
+  run.memberships.at(0).ask.target_cycles = 3;
   store.declare_stage(run);
   store.start_stage(run.id, {}, store.checkpoints(run.id).back().sha256);
   EXPECT_EQ(store.events("run/" + run.id).back().schema, 2u);

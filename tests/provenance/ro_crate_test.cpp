@@ -100,7 +100,7 @@ TEST_F(Crate, AnActionHasNoLaterManifest) {
   const Stage run = store_.stage(history_.sheared);
   Stage again = sample_run(2, 3);
   again.parent = run.parent, again.resolved = run.resolved;
-  again.asks[0].manifest = sha256_hex("later");
+  again.memberships[0].place.manifest = sha256_hex("later");
   store_.declare_stage(again);
   const CrateFacts facts = crate_facts(store_, history_.sheared);
   EXPECT_EQ(facts.manifests.size(), 2U);

@@ -59,14 +59,14 @@ inline Stage sample_run(int number, std::uint64_t target = 5) {
   d.kind = "shear";
   d.resolved = {{"amplitude_rad", 0.0833}, {"drag", "still"}, {"number", number}};
   d.grains = 20;
-  Ask& ask = d.asks.emplace_back();
-  static_cast<Place&>(ask) = {.experiment = "drag",
-                              .scale = "smoke",
-                              .variant = "drag=still",
-                              .swept = {{"drag", "still"}},
-                              .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
-                              .manifest = sha256_hex("manifest")};
-  ask.target_cycles = target;
+  Membership& m = d.memberships.emplace_back();
+  m.place = {.experiment = "drag",
+             .scale = "smoke",
+             .variant = "drag=still",
+             .swept = {{"drag", "still"}},
+             .seed = 0xffffffffffffffff - static_cast<std::uint64_t>(number),
+             .manifest = sha256_hex("manifest")};
+  m.ask.target_cycles = target;
   return d;
 }
 

@@ -68,9 +68,9 @@ TEST_F(StoreTest, FollowsARunFromItsDeclarationToItsEnd) {
   EXPECT_EQ(run.particle_steps, 912000);
   EXPECT_EQ(run.attempts, 1u);
   EXPECT_EQ(run.resolved, sample_run(1).resolved);
-  ASSERT_EQ(run.asks.size(), 1u);
-  EXPECT_EQ(run.asks[0].seed, sample_run(1).asks[0].seed);
-  EXPECT_EQ(run.asks[0].target_cycles, 5u);
+  ASSERT_EQ(run.memberships.size(), 1u);
+  EXPECT_EQ(run.memberships[0].place.seed, sample_run(1).memberships[0].place.seed);
+  EXPECT_EQ(run.memberships[0].ask.target_cycles, 5u);
   EXPECT_EQ(types("run/" + id_), (std::vector<std::string>{"RunDeclared", "RunStarted",
                                                            "CheckpointRecorded", "RunCompleted"}));
   EXPECT_TRUE(store_.verify().ok());
@@ -105,13 +105,13 @@ TEST_F(StoreTest, RecordsADeclarationOnlyIfItIsNew) {
   Stage d = sample_run(1);
   store_.declare_stage(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.asks[0].target_cycles = 3;  // less than what is declared
+  d.memberships[0].ask.target_cycles = 3;  // less than what is declared
   store_.declare_stage(d);
   EXPECT_EQ(store_.events().size(), 1u);
-  d.asks[0].experiment = "other";
+  d.memberships[0].place.experiment = "other";
   store_.declare_stage(d);
-  EXPECT_EQ(store_.stage(id_).asks.size(), 2u);
-  EXPECT_EQ(store_.stage(id_).asks[1].target_cycles, 3u);
+  EXPECT_EQ(store_.stage(id_).memberships.size(), 2u);
+  EXPECT_EQ(store_.stage(id_).memberships[1].ask.target_cycles, 3u);
   EXPECT_EQ(store_.stage(id_).target_cycles, 5u);
   d.resolved["drag"] = "cell";
   EXPECT_THROW(store_.declare_stage(d), std::invalid_argument);
@@ -129,8 +129,8 @@ TEST_F(StoreTest, ALongerTargetReopensACompletedRun) {
   store_.declare_stage(sample_run(1, 8));
   EXPECT_EQ(store_.stage(id_).state, StageState::declared);
   EXPECT_EQ(store_.stage(id_).target_cycles, 8u);
-  EXPECT_EQ(store_.stage(id_).asks.size(), 1u);
-  EXPECT_EQ(store_.stage(id_).asks[0].target_cycles, 8u);
+  EXPECT_EQ(store_.stage(id_).memberships.size(), 1u);
+  EXPECT_EQ(store_.stage(id_).memberships[0].ask.target_cycles, 8u);
   EXPECT_EQ(store_.start_stage(id_, {}), 2u);
 }
 
@@ -149,7 +149,7 @@ TEST_F(StoreTest, ReportsWhyARunStopped) {
 TEST_F(StoreTest, ANewMembershipDoesNotStopARunner) {
   store_.start_stage(id_, {});
   Stage shared = sample_run(1);
-  shared.asks[0].experiment = "other";
+  shared.memberships[0].place.experiment = "other";
   open().declare_stage(shared);
   store_.record_checkpoint(id_, sample_checkpoint(id_));
   store_.complete_stage(id_);

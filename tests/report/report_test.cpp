@@ -213,18 +213,18 @@ TEST_F(ReportOf, NeedsAnExperiment) {
 TEST_F(ReportOf, ShowsMarkupAsText) {
   const std::string evil = "</script><script>alert(1)</script><img src=x onerror='a()'>\"&<!--";
   Stage run;
-  run.asks.emplace_back().target_cycles = 1;
-  run.asks[0].manifest = store_.register_manifest(
+  run.memberships.emplace_back().ask.target_cycles = 1;
+  run.memberships[0].place.manifest = store_.register_manifest(
       "# " + evil + "\n", evil + ".yaml",
       {{"experiment", evil}, {"question", evil}, {"figures", {evil, "S2"}}});
   run.id = std::string(64, 'a');
   run.kind = evil;
   run.resolved = {{evil, evil}};
   run.grains = 10;
-  run.asks[0].experiment = evil;
-  run.asks[0].scale = evil;
-  run.asks[0].variant = evil;
-  run.asks[0].swept = {{evil, evil}};
+  run.memberships[0].place.experiment = evil;
+  run.memberships[0].place.scale = evil;
+  run.memberships[0].place.variant = evil;
+  run.memberships[0].place.swept = {{evil, evil}};
   store_.declare_stage(run);
   store_.start_stage(run.id, {{"host", evil}, {"build", {{"version", evil}, {"flags", evil}}}});
   store_.fail_stage(run.id, evil);
