@@ -226,9 +226,8 @@ TEST_F(EngineRun, TheEndOfAnExportedScriptStartsARun) {
     for (const std::string moving : {"bottom", "top"}) {
       const std::string name = walls + "_" + moving;
       SCOPED_TRACE(name);
-      const std::string manifest =
-          tiny_manifest("  cycles: 1\n  grains: 100\n  steps_per_cycle: 5000\n  walls: " + walls +
-                        "\n  moving_wall: " + moving + "\n");
+      const std::string manifest = tiny_manifest("  cycles: 1\n  grains: 100\n  walls: " + walls +
+                                                 "\n  moving_wall: " + moving + "\n");
       const std::string start = "start: {file: " + name + "/frame_0_end.dump}\n";
       write(name + ".yaml", renamed(manifest, name));
       write("again.yaml", renamed(manifest, "again_" + name) + start);
