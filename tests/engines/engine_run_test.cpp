@@ -9,11 +9,12 @@
 
 #include "core/contact.hpp"
 #include "core/simulation.hpp"
+#include "experiments/figures/select_runs.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
-#include "experiments/manifest/packing_file.hpp"
 #include "provenance/io/child_process.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/support/lammps_script.hpp"
 #include "tests/support/text.hpp"
 #include "tests/support/variable.hpp"
 
@@ -34,6 +35,15 @@ class EngineRun : public ProgramTest {
     }
     ADD_FAILURE() << "no variant " << variant;
     return {};
+  }
+
+  /// The shear of that experiment.
+  Stage shear_of(const std::string& experiment) {
+    const Store store(path("shearcell-store"), Access::read);
+    for (const Stage& stage : store.stages()) {
+      if (stage.kind == "shear" && first_ask(stage).experiment == experiment) return stage;
+    }
+    throw std::runtime_error("no shear of " + experiment);
   }
 
   std::vector<double> cycles(const std::string& id) {
@@ -163,18 +173,14 @@ void expect_the_same_future(const Store& store, const std::string& id, double cy
   const std::string name =
       shears ? fmt::format("frame_{}", cycle) : fmt::format("frame_step{}", from.state.step);
   SCOPED_TRACE(name);
-  const auto ran = run_program(
-      {"lmp", "-in", "in." + name, "-var", "steps", std::to_string(steps), "-screen", "none"},
-      folder);
-  ASSERT_TRUE(ran && ran->code == 0) << read_bytes(folder / "log.lammps");
-  const PackingFile theirs =
-      read_packing(read_bytes(folder / (name + "_end.dump")), name,
-                   {.unit = LengthUnit::m, .diameter_m = p.diameter_m, .largest_overlap = 0.5});
+  run_script(folder, "in." + name, {"-var", "steps", std::to_string(steps)});
+  const Eigen::Matrix3Xd theirs =
+      three(last_frame(folder / (name + "_end.dump")), "x", "y", "z") / p.diameter_m;
   Simulation ours(from.cell, shears ? shear_scene(p) : settle_scene(p), from.state);
   ours.advance(shears ? drive(p) : Drive{}, steps);
   const State state = ours.state();
-  ASSERT_EQ(theirs.position.cols(), state.position.cols());
-  Eigen::Matrix3Xd apart = theirs.position - state.position;
+  ASSERT_EQ(theirs.cols(), state.position.cols());
+  Eigen::Matrix3Xd apart = theirs - state.position;
   const double depth = from.cell.depth;
   apart.row(2) =
       apart.row(2).unaryExpr([&](double z) { return nearest_image(z, depth, 1 / depth); });
@@ -210,6 +216,48 @@ TEST_F(EngineRun, AnExportedScriptContinuesTheRun) {
     expect_the_same_future(store, packing, store.checkpoints(packing).back().cycle,
                            path(out + "_packing"));
   }
+}
+
+// The dump that the unmodified script ends with is the start of a run: the same grains between the
+// same walls. What a start cannot be is refused for what it is.
+TEST_F(EngineRun, TheEndOfAnExportedScriptStartsARun) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  for (const std::string walls : {"rough", "smooth"}) {
+    for (const std::string moving : {"bottom", "top"}) {
+      const std::string name = walls + "_" + moving;
+      SCOPED_TRACE(name);
+      const std::string manifest = tiny_manifest("  cycles: 1\n  grains: 100\n  walls: " + walls +
+                                                 "\n  moving_wall: " + moving + "\n");
+      const std::string start = "start: {file: " + name + "/frame_0_end.dump}\n";
+      write(name + ".yaml", renamed(manifest, name));
+      write("again.yaml", renamed(manifest, "again_" + name) + start);
+      expect(0, {"run", name + ".yaml", "--cycles", "0", "-q"});
+      const std::string id = shear_of(name).id;
+      expect(0, {"export", id, "--to", "lammps", "--out", name});
+      run_script(path(name), "in.frame_0", {});
+      expect(0, {"run", "again.yaml", "--cycles", "0", "-q"});
+      const DumpFrame end = last_frame(path(name) / "frame_0_end.dump");
+      const DumpFrame all = last_frame(path(name) / "frame_0.lammpstrj");
+      const Store store(path("shearcell-store"), Access::read);
+      const Checkpoint first =
+          store.load_checkpoint(store.checkpoints(shear_of("again_" + name).id).front());
+      const double d = first.units.diameter_m;
+      Eigen::Matrix3Xd apart = first.state.position - three(end, "x", "y", "z") / d;
+      apart.row(2) = apart.row(2).unaryExpr(
+          [&](double z) { return nearest_image(z, first.cell.depth, 1 / first.cell.depth); });
+      EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-9);
+      EXPECT_LT((first.state.velocity - three(end, "vx", "vy", "vz") / d).norm(), 1e-9);
+      EXPECT_NEAR(first.state.wall_height, all.at("y").tail(1)[0] / d, 1e-9);
+
+      run_script(path(name), "in.frame_0", {"-var", "steps", "300"});
+      expect(2, {"run", "again.yaml", "--cycles", "0", "-q"}, {"the box is not orthogonal"});
+    }
+  }
+  std::string script = read_bytes(path("smooth_top/in.frame_0"));
+  script.replace(script.find("# set atom"), 2, "");
+  write_bytes(path("smooth_top/in.frame_0"), script);
+  run_script(path("smooth_top"), "in.frame_0", {});
+  expect(2, {"run", "again.yaml", "--cycles", "0", "-q"}, {"the grains have diameters from"});
 }
 
 TEST_F(EngineRun, ReportsThatLammpsIsMissing) {

@@ -20,6 +20,7 @@ namespace {
 
 // Atom types: those of Particles and one more, and the atom of the moving wall.
 enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
+constexpr const char* kSides[] = {"left", "right", "bottom", "top"};
 
 template <typename... Arguments>
 void add(std::string& text, fmt::format_string<Arguments...> line, Arguments&&... arguments) {
@@ -51,6 +52,7 @@ class Deck {
   }
 
   std::string for_users(std::string_view data, std::string_view name) {
+    for_users_ = true;
     scene("si", data);
     watching(name);
     begin();
@@ -71,8 +73,10 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // What an explicit drag of rate b must add to a mass to be taken implicitly.
-  double added(double drag) const { return task_.added_mass ? 0.5 * drag * scene_.time_step : 0; }
+  // What an explicit drag of rate b must add to the mass of a grain to be taken implicitly.
+  double added(double drag) const {
+    return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
+  }
 
   void atoms(std::string_view units, std::string_view data) {
     add(text_, "units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
@@ -86,7 +90,9 @@ class Deck {
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
-    add(text_, "reset_timestep {}", task_.state.step);
+    add(text_, "# -var finer 2 halves the time step, which is stable below 0.7*sqrt(m/k).");
+    add(text_, "variable finer index 1\ntimestep $({:.17g}/v_finer:%.17g)", scene_.time_step);
+    add(text_, "reset_timestep $({}*v_finer:%.0f)", task_.state.step);
     add(text_, "group grains type {}\ngroup wall type {}\ngroup free type {} {}", +kGrain, +kWall,
         +kGrain, +kWall);
     add(text_, "group planted type {} {} {} {}\ngroup sides type {} {}", +kLeft, +kRight, +kBottom,
@@ -94,22 +100,33 @@ class Deck {
     add(text_, "group bottom type {}\ngroup top type {}", +kBottom, +kTop);
     add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
     add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
-    add(text_,
-        "# Masses are raised by drag*dt/2: LAMMPS's explicit drag then equals an implicit one.");
-    add(text_, "# Give grains of another size their diameter and, so raised, their mass.");
-    add(text_, "set group grains mass {:.17g}", (1 + added(scene_.drag_rate)) * m_);
-    add(text_, "set group wall mass {:.17g}",
-        area_ * (scene_.wall_mass + added(scene_.wall_drag)) * m_);
+    const double drag = task_.added_mass ? area_ * scene_.wall_drag * m_ : 0;
+    add(text_, R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal an implicit one.
+set group wall mass $({:.17g}+{:.17g}*dt/2:%.17g)
+set group grains mass {:.17g}
+# Contact laws with damping take wall grains for immovable if these are heavy.
+set group planted mass {:.17g}
+
+# Change diameters and masses of grains here, for example:
+# set atom 1*50 diameter {:.3g} density {:.6g})",
+        area_ * scene_.wall_mass * m_, drag, (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
+        m_ / (std::numbers::pi / 6 * d_ * d_ * d_));
   }
 
   void contacts() {
-    add(text_, "\n# The contact law of grains and wall grains: change it here, for example to");
-    add(text_,
-        "# gran/hooke/history (friction, damping) or granular (Hertz, rolling, cohesion). The");
-    add(text_,
-        "# four planes further below have the same spring and no friction; fix wall/gran/region");
-    add(text_, "# knows other laws.");
-    add(text_, "pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", scene_.stiffness * m_);
+    const double k = scene_.stiffness * m_;
+    if (for_users_) {
+      add(text_, R"(
+# The contact law of grains, wall grains and planes, in the words of pair_style granular. With
+# damping of 50/s, and friction of 0.5 with a tangential spring:
+# hooke {0:.6g} 50 tangential linear_history {1:.6g} 1 0.5 damping mass_velocity
+variable law index "hooke {0:.17g} 0 tangential linear_nohistory 0 0 damping mass_velocity"
+pair_style granular
+pair_coeff * * ${{law}})",
+          k, k * 2 / 7);
+    } else {
+      add(text_, "pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", k);
+    }
     add(text_, "neighbor {:.17g} bin\nneigh_modify delay 0 every 1 check yes", 0.15 * d_);
     add(text_, "neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
   }
@@ -128,11 +145,12 @@ class Deck {
         bottom_moves_ ? fmt::format("{:.17g}", cell_.top * d_) : height);
     add(text_, "variable rise equal {}-({:.17g})", height, task_.state.wall_height * d_);
     add(text_, "variable rising equal vy[{}]", wall_);
-    if (shears_ || holds_) add(text_, "variable phase equal step%{}", cycle);
+    if (shears_ || holds_) add(text_, "variable phase equal (step/v_finer)%{}", cycle);
     if (!shears_) return;
     add(text_, "variable theta equal {:.17g}*sin(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn, turn);
-    add(text_, "variable turn equal -v_theta\nvariable shear equal tan(v_theta)");
+    add(text_, "variable turn equal {:.17g}-v_theta\nvariable shear equal tan(v_theta)",
+        tilt(task_.drive, task_.state.step).theta);
     add(text_, "variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn * scene_.time_step, turn, turn);
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
@@ -149,7 +167,7 @@ class Deck {
   void motion() {
     add(text_,
         "\n# Grains and the moving wall by velocity Verlet; wall grains follow their walls.");
-    add(text_, "fix step free nve\nvariable zero equal 0");
+    add(text_, "fix step free nve/sphere\nvariable zero equal 0");
     const double top = pose_.top * d_, shear = pose_.tan_theta;
     // If the top wall rises, the points of the tilted sides move against it.
     const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
@@ -158,7 +176,7 @@ class Deck {
       add(text_, "variable side_vx atom (y-v_top)*v_shear_rate{}", against);
       carry("sides", "side_x", "side_vx", false);
     }
-    if (has(WallSide::bottom) && shears_) {
+    if (shears_) {
       add(text_, "variable bottom_x equal (v_bottom-v_top)*v_shear-({:.17g})",
           (pose_.bottom - pose_.top) * d_ * shear);
       add(text_, "variable bottom_vx equal (v_bottom-v_top)*v_shear_rate{}",
@@ -170,58 +188,83 @@ class Deck {
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
-  // A side plane turns about its end at the top wall.
-  void side_plane(const char* name, double x, int normal) {
-    const double top = pose_.top * d_;
-    add(text_, "region {} plane {:.17g} {:.17g} 0 {} 0 0 side in units box{}{}", name, x * d_, top,
-        normal, shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x * d_, top) : "",
-        shears_ && !bottom_moves_ ? " move NULL v_rise NULL" : "");
-    add(text_, "fix {} grains wall/region {} harmonic {:.17g} 1 {:.17g}", name, name,
-        scene_.stiffness / 2 * m_, 0.5 * d_);
-  }
-
-  // `wall/region` would work for these too, but reports the force on the wall for the first step
-  // only.
-  void flat_plane(const char* name, const char* face) {
-    add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 {3:.17g} units box", name,
-        face, scene_.stiffness / 2 * m_, 0.5 * d_);
+  // A side plane turns about its end at the top wall. Regions begin in their present pose: LAMMPS
+  // computes their velocities from displacements. `wall/region` reports its force only once.
+  void plane(std::size_t side) {
+    const auto& [point, normal] = wall_planes(cell_, pose_)[side];
+    const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
+    const bool upright = side < 2, moves = side == (bottom_moves_ ? 2 : 3);
+    if (upright || for_users_) {
+      add(text_,
+          "region {0}_plane plane {1:.17g} {2:.17g} 0 {3:.17g} {4:.17g} 0 side in units box "
+          "move {5} {6} NULL{7}",
+          kSides[side], x, y, normal[0], normal[1], side == 2 && shears_ ? "v_bottom_x" : "NULL",
+          moves || (upright && !bottom_moves_) ? "v_rise" : "NULL",
+          upright && shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x, y) : "");
+    }
+    if (for_users_) {
+      add(text_, "fix {0}_plane grains wall/gran/region granular ${{law}} region {0}_plane{1}",
+          kSides[side], moves ? " contacts" : "");
+      if (moves) add(text_, "compute plane grains reduce sum f_{}_plane[3]", kSides[side]);
+    } else if (upright) {
+      add(text_, "fix {0}_plane grains wall/region {0}_plane harmonic {1:.17g} 1 {2:.17g}",
+          kSides[side], k / 2, d_ / 2);
+    } else {
+      add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 {3:.17g} units box",
+          kSides[side], side == 2 ? "ylo" : "yhi", k / 2, d_ / 2);
+    }
   }
 
   void forces() {
-    add(text_, "\n# The planes of the four walls: springs of k, given as the energy k/2.");
-    side_plane("left_plane", 0, 1);
-    side_plane("right_plane", cell_.width, -1);
-    flat_plane("bottom", "ylo");
-    flat_plane("top", "yhi");
+    add(text_, "\n# The planes of the four walls.");
+    for (std::size_t side = 0; side < 4; ++side) plane(side);
+    if (for_users_) {
+      add(text_, R"(# A grain that passes a plane ends the run.
+region cell intersect 4 left_plane right_plane bottom_plane top_plane
+variable outside equal count(grains)-count(grains,cell)
+fix outside all halt 100 v_outside > 0)");
+    }
     if (scene_.gravity != 0) {
-      add(text_, "\n# The weight m g, whatever the mass is raised to.");
+      add(text_, "\n# The weight m g.");
       add(text_, "fix weight grains gravity {:.17g} vector 0 -1 0",
           scene_.gravity * d_ / (1 + added(scene_.drag_rate)));
     }
-    if (scene_.drag_rate != 0) {
-      add(text_, "\n# The drag of the fluid.");
+    if (scene_.drag_rate != 0 && for_users_) {
+      add(text_, R"(
+# The drag b of the fluid, proportional to the diameter (Stokes). It is implicit: the forces so far
+# are divided by 1 + b dt/2m. Add other forces before it.
+compute radius grains property/atom radius
+variable b atom {:.17g}*c_radius/{:.17g}
+variable part atom 1/(1+v_b*dt/(2*mass))
+variable flow atom {}
+variable drag_x atom v_part*(fx-v_b*(vx-v_flow))-fx
+variable drag_y atom v_part*(fy-v_b*vy)-fy
+variable drag_z atom v_part*(fz-v_b*vz)-fz
+fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
+          scene_.drag_rate * m_, 0.5 * d_,
+          fluid_moves() ? fmt::format("{:.17g}*(y-v_top)*v_shear_rate", fluid_share(scene_.fluid))
+                        : "0");
+    } else if (scene_.drag_rate != 0) {
       add(text_, "fix drag grains viscous {:.17g}", scene_.drag_rate * m_);
       if (fluid_moves()) {
-        add(text_, "variable flow atom {:.17g}*(y-v_top)*v_shear_rate",
+        add(text_,
+            "variable flow atom {:.17g}*(y-v_top)*v_shear_rate\nfix flow grains addforce v_flow 0 "
+            "0",
             scene_.drag_rate * fluid_share(scene_.fluid) * m_);
-        add(text_, "fix flow grains addforce v_flow 0 0");
       }
     }
+    const double load = inwards(cell_) * scene_.pressure * area_ * m_ * d_;
+    const double carried = carried_weight(scene_, cell_, 1) * d_;  // of a unit of mass
+    const auto grains = static_cast<double>(task_.state.position.cols());
     const char* moving = bottom_moves_ ? "bottom" : "top";
-    const auto grains = static_cast<std::size_t>(task_.state.position.cols());
-    const double load = scene_.pressure * area_ + carried_weight(scene_, cell_, grains);
     std::string force =
-        fmt::format("{:.17g}+f_{}_plane[1]", (bottom_moves_ ? 1 : -1) * load * m_ * d_, moving);
-    if (has(bottom_moves_ ? WallSide::bottom : WallSide::top)) {
-      force += fmt::format("+fcm({},y)", moving);
-    }
+        for_users_ ? fmt::format("{:.17g}+{:.17g}*mass(grains)-c_plane", load, carried)
+                   : fmt::format("{:.17g}+f_{}_plane[1]", load + grains * carried * m_, moving);
+    if (has(moving_side(cell_))) force += fmt::format("+fcm({},y)", moving);
     if (holds_) {
       // The force that, with the drag, stops the wall within one step.
-      const double mass = area_ * (scene_.wall_mass + added(scene_.wall_drag));
-      const double stop = area_ * scene_.wall_drag - mass / scene_.time_step;
-      const auto turn = task_.drive.steps_per_cycle;
-      force = fmt::format("({0})*(v_phase<{1})+{2:.17g}*vy[{3}]*(v_phase>={1})", force, turn,
-                          stop * m_, wall_);
+      force = fmt::format("({0})*(v_phase<{1})+({2:.17g}-mass(wall)/dt)*vy[{3}]*(v_phase>={1})",
+                          force, task_.drive.steps_per_cycle, scene_.wall_drag * area_ * m_, wall_);
     }
     add(text_, "\n# The moving wall: its load, the forces of its plane and wall grains, its drag.");
     add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
@@ -238,7 +281,7 @@ class Deck {
       add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
     }
     add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
-    add(text_, "timestep {:.17g}\nrun 0 post no", scene_.time_step);
+    add(text_, "run 0 post no");
     add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
   }
 
@@ -276,23 +319,29 @@ class Deck {
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
-    add(text_, "\n# How long, and how often positions are written: lmp -in in.{} -var steps 1000",
-        name);
-    add(text_, "variable steps index {}\nvariable every index {}", steps,
-        std::max<std::uint64_t>(1, steps / 20));
-    add(text_, "thermo ${{every}}\nthermo_style custom step time ke v_bottom v_top{}",
-        shears_ ? " v_theta" : "");
-    add(text_, "dump frames all custom ${{every}} {}.lammpstrj id type diameter x y z vx vy vz",
-        name);
-    add(text_, "dump_modify frames sort id format float %.12g");
+    add(text_, R"(
+# How long, and how often positions are written: lmp -in in.{0} -var steps 1000
+variable steps index $({1}*v_finer:%.0f)
+variable every index $({2}*v_finer:%.0f)
+compute ke grains ke
+thermo ${{every}}
+thermo_style custom step time c_ke v_bottom v_top{3}
+dump frames all custom ${{every}} {0}.lammpstrj id type diameter x y z vx vy vz omegax omegay omegaz
+dump_modify frames sort id format float %.12g)",
+        name, steps, std::max<std::uint64_t>(1, steps / 20), shears_ ? " v_theta" : "");
   }
 
   void to_the_end(std::string_view name) {
-    add(text_, "run ${{steps}} pre no");
-    add(text_, "\n# The grains at the end, which a manifest can start from.");
-    add(text_,
-        "write_dump grains custom {}_end.dump id x y z vx vy vz modify sort id format float %.17g",
-        name);
+    add(text_, R"(run ${{steps}} pre no
+
+# The grains at the end, in the box of the planes, which cuts off the wall grains: add runs before
+# it. A manifest can start from equal grains, in an upright cell.
+undump frames
+change_box all triclinic boundary f f p x final $({0}:%.17g) $({0}+{1:.17g}:%.17g) &
+ y final $(v_bottom:%.17g) $(v_top:%.17g) xy final $(-({0}):%.17g) units box
+write_dump grains custom {2}_end.dump id diameter x y z vx vy vz modify units yes sort id &
+ format float %.17g)",
+        shears_ ? "(v_bottom-v_top)*v_shear" : "0", cell_.width * d_, name);
   }
 
   const LammpsTask& task_;
@@ -302,6 +351,7 @@ class Deck {
   double area_;        // of the moving wall [d^2]
   WallPose pose_;      // at the beginning
   Eigen::Index wall_;  // id of the moving wall's atom
+  bool for_users_ = false;
   bool bottom_moves_;
   bool shears_;
   bool holds_;  // the moving wall, during a pause
