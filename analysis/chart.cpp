@@ -15,16 +15,14 @@
 namespace shearcell {
 namespace {
 
-constexpr int significant = 9;  // digits
-
 using nlohmann::json;
 
-struct FieldText {
-  std::string operator()(std::monostate) const { return {}; }
-  std::string operator()(double value) const { return std::isfinite(value) ? digits(value) : ""; }
-  std::string operator()(std::int64_t value) const { return std::to_string(value); }
-  std::string operator()(const std::string& value) const { return csv_field(value); }
-};
+std::string field_text(const TableValue& value, int significant) {
+  if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  const auto* real = std::get_if<double>(&value);
+  return real != nullptr && std::isfinite(*real) ? digits(*real, significant) : "";
+}
 
 /// Place of a column, counted from 1.
 std::size_t column_number(const FigureTable& table, const std::string& name) {
@@ -47,6 +45,7 @@ std::optional<double> number_in(const TableRow& row, std::size_t column) {
 
 /// Null if it is missing or not finite; never "-0".
 json number(const std::optional<double>& value) {
+  constexpr int significant = 13;  // digits; readers of the page enlarge parts of a plot
   return value ? rounded(*value == 0 ? 0 : *value, significant) : json();
 }
 
@@ -132,7 +131,13 @@ Text formula(std::string_view text) {
   return result;
 }
 
-std::string digits(double value) {
+int digits_between(double low, double high) {
+  const double spread = (high - low) / std::max(std::abs(low), std::abs(high));
+  if (!(spread > 1e-13)) return 9;
+  return std::clamp(5 - static_cast<int>(std::floor(std::log10(spread))), 9, 17);
+}
+
+std::string digits(double value, int significant) {
   return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
 }
 
@@ -143,13 +148,24 @@ std::string csv_field(const std::string& text) {
 
 std::string to_csv(const FigureTable& table) {
   std::string text;
-  const auto add_line = [&](const auto& cells, const auto& field) {
+  const auto add_line = [&](const auto& cells, auto field) {
     for (const auto& cell : cells) text += field(cell) + ',';
     if (!cells.empty()) text.back() = '\n';
   };
   add_line(table.columns, csv_field);
+  std::vector<int> significant;  // digits, of each column
+  for (std::size_t column = 1; column <= table.columns.size(); ++column) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const TableRow& row : table.rows) {
+      const std::optional<double> value = number_in(row, column);
+      low = std::min(low, value.value_or(low)), high = std::max(high, value.value_or(high));
+    }
+    significant.push_back(digits_between(low, high));
+  }
   for (const TableRow& row : table.rows) {
-    add_line(row, [](const TableValue& value) { return std::visit(FieldText{}, value); });
+    add_line(row, [&, k = std::size_t{0}](const TableValue& value) mutable {
+      return field_text(value, significant[k++]);
+    });
   }
   return text;
 }

@@ -146,8 +146,8 @@ struct FigureTable {
 /// A text as a field of RFC 4180: in quotes where it needs them.
 std::string csv_field(const std::string& text);
 
-/// RFC 4180 with a header row and "\n" line ends. Numbers carry nine significant digits; a number
-/// that is not finite leaves its field empty.
+/// RFC 4180 with a header row and "\n" line ends. Numbers of a column carry digits_between() its
+/// least and its largest; a number that is not finite leaves its field empty.
 std::string to_csv(const FigureTable& table);
 
 /// The points of one series, without its shift. Points of which x or y is not a finite number are
@@ -160,8 +160,10 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
 /// once.
 void name_run_counts(FigureTable& table);
 
-/// Nine significant digits, as in the CSV.
-std::string digits(double value);
+/// Significant digits of values from `low` to `high`: nine, or more where nine would not show the
+/// spread in five digits. A spread as small as rounding errors does not count.
+int digits_between(double low, double high);
+std::string digits(double value, int significant = 9);
 
 /// Without styles; "v_fluid" of a subscript.
 std::string plain_text(const Text& text);

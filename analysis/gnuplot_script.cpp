@@ -223,7 +223,7 @@ class Script {
       const double power = std::pow(10, std::floor(std::log10(length / steps)));
       const double ratio = length / steps / power;
       step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
-      decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 9);
+      decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 15);
       const double letters =
           static_cast<double>(std::max(fmt::formatted_size("{:.{}f}", low, decimals),
                                        fmt::formatted_size("{:.{}f}", high, decimals)));
@@ -240,7 +240,7 @@ class Script {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {
       const double room = share * (y.log ? std::log(y_.high / y_.low) : y_.high - y_.low);
-      return digits(y.log ? at * std::exp(room) : at + room);
+      return digits(y.log ? at * std::exp(room) : at + room, digits_between(y_.low, y_.high));
     };
     const std::string above = outside(y_.high, 0.05), below = outside(y_.low, -0.05);
     const bool stated = lines_ && above != below;
@@ -278,7 +278,8 @@ class Script {
       return value ? digits(*value) : std::string();
     };
     for (const ChartPoint& p : points_[k]) {
-      add("{},{},{},{}\n", digits(p.x), digits(p.y), field(p.x_error), field(p.y_error));
+      add("{},{},{},{}\n", digits(p.x, digits_between(x_.low, x_.high)),
+          digits(p.y, digits_between(y_.low, y_.high)), field(p.x_error), field(p.y_error));
     }
     add("EOD\n");
   }

@@ -106,6 +106,7 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
 }
 
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
+  const Store::Snapshot snapshot(store);
   std::vector<Stage> chain = {store.stage(id)};
   std::set<std::string> seen = {id};
   while (!chain.back().parent.empty() && seen.insert(chain.back().parent).second) {

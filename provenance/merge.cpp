@@ -110,10 +110,13 @@ std::vector<CheckpointRecord> needed_objects(const Database& into, const Source&
   return needed;
 }
 
+/// Throws FilePruned if a program pruned the checkpoint after the source was read.
 std::vector<std::byte> read_object(const Source& source, const CheckpointRecord& record) {
   try {
     return source.objects.get(record.sha256, record.size);
   } catch (const StoreDamaged& damage) {
+    const Database now = open_database(source.folder / "store.sqlite", Access::read);
+    if (is_pruned_now(now, record)) throw FilePruned(damage.what());
     throw StoreDamaged(
         fmt::format("{}. Nothing was merged from {}", damage.what(), source.folder.string()));
   }
@@ -327,42 +330,49 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
                                       const std::set<std::string>& runs) {
   must_write();
   const std::scoped_lock guard(mutex_);
-  std::vector<Source> sources;
-  for (const std::filesystem::path& folder : folders) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(folder, folder_, ignored)) {
-      throw NotFound(folder.string() + ": a store cannot be merged into itself; name another one");
-    }
-    sources.push_back(read_source(folder, runs));
-  }
-  // All checks are made before the first byte is written.
-  require_idle(*this);
-  require_agreement(database_, folder_.string(), sources);
-  for (const Source& source : sources) {
-    for (const CheckpointRecord& record : needed_objects(database_, source))
-      read_object(source, record);
-  }
   std::vector<MergeReport> reports;
-  for (const Source& source : sources) {
-    MergeReport& report = reports.emplace_back();
-    report.source = source.folder.string();
-    report.head = source.head;
-    const std::vector<CheckpointRecord> needed = needed_objects(database_, source);
-    for (const CheckpointRecord& record : needed) {
-      objects_.put(read_object(source, record));
-      ++report.checkpoints;
-      report.bytes += record.size;
+  while (reports.size() < folders.size()) {
+    try {
+      std::vector<Source> sources;
+      for (const std::filesystem::path& folder : std::span(folders).subspan(reports.size())) {
+        std::error_code ignored;
+        if (std::filesystem::equivalent(folder, folder_, ignored)) {
+          throw NotFound(folder.string() +
+                         ": a store cannot be merged into itself; name another one");
+        }
+        sources.push_back(read_source(folder, runs));
+      }
+      // All checks are made before the first byte is written.
+      require_idle(*this);
+      require_agreement(database_, folder_.string(), sources);
+      for (const Source& source : sources) {
+        for (const CheckpointRecord& record : needed_objects(database_, source))
+          read_object(source, record);
+      }
+      for (const Source& source : sources) {
+        MergeReport report{.source = source.folder.string(), .head = source.head};
+        const std::vector<CheckpointRecord> needed = needed_objects(database_, source);
+        for (const CheckpointRecord& record : needed) {
+          objects_.put(read_object(source, record));
+          ++report.checkpoints;
+          report.bytes += record.size;
+        }
+        sqlite::WriteTransaction lock(database_);
+        require_idle(*this);
+        merge_events(database_, log_, lock, source, report);
+        // Events that both stores have were skipped, and so a rejection by this store may still
+        // count.
+        for (const CheckpointRecord& record : needed) {
+          const auto now = query_checkpoint(database_, record.run, record.sha256);
+          if (!now || now->state != CheckpointState::rejected) continue;
+          append(run_stream(now->run), events::encode(events::CheckpointRegenerated{{*now}}), lock);
+        }
+        lock.commit();
+        reports.push_back(std::move(report));
+      }
+    } catch (const FilePruned&) {
+      // A program pruned a checkpoint of a source after the source was read: it is read again.
     }
-    sqlite::WriteTransaction lock(database_);
-    require_idle(*this);
-    merge_events(database_, log_, lock, source, report);
-    // Events that both stores have were skipped, and so a rejection by this store may still count.
-    for (const CheckpointRecord& record : needed) {
-      const auto now = query_checkpoint(database_, record.run, record.sha256);
-      if (!now || now->state != CheckpointState::rejected) continue;
-      append(run_stream(now->run), events::encode(events::CheckpointRegenerated{{*now}}), lock);
-    }
-    lock.commit();
   }
   return reports;
 }

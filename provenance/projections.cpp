@@ -469,6 +469,13 @@ std::optional<CheckpointRecord> query_checkpoint(const Database& database, std::
   return only(select_checkpoints(database, "WHERE run = ? AND sha256 = ?", run, sha256));
 }
 
+bool is_pruned_now(const Database& database, const CheckpointRecord& record) try {
+  const auto now = query_checkpoint(database, record.run, record.sha256);
+  return now && now->state == CheckpointState::pruned;
+} catch (const StoreDamaged&) {
+  return false;
+}
+
 std::vector<FigureRecord> query_figures(const Database& database) {
   Statement query(database, "SELECT name, seq, recorded_at, provenance FROM figures ORDER BY name");
   return query.all([&](const Statement& row) {

@@ -66,6 +66,9 @@ std::vector<CheckpointRecord> query_all_checkpoints(const sqlite::Database& data
 /// In ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
                                                 std::string_view run);
+/// Whether the checkpoint is pruned, maybe by another program since the record was read. False if
+/// the tables cannot be read.
+bool is_pruned_now(const sqlite::Database& database, const CheckpointRecord& record);
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);
 std::vector<FigureRecord> query_figures(const sqlite::Database& database);

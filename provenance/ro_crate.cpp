@@ -313,7 +313,6 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
     throw std::invalid_argument(folder.string() +
                                 ": the folder is not an export of this run; name another one");
   }
-  const ObjectStore objects(store.folder());
   std::vector<std::string> written;
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
   for (const RunLineage& stage : facts.stages) {
@@ -327,7 +326,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
     for (const CheckpointHistory& c : stage.checkpoints) {
       if (!c.kept() || !done.insert(c.sha256()).second) continue;
       const std::string path = crate_path_of_checkpoint(c.sha256());
-      const std::vector<std::byte> bytes = objects.get(c.sha256(), c.record.size);
+      const std::vector<std::byte> bytes = store.read_file(c.record);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
     }

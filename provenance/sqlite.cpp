@@ -274,8 +274,9 @@ std::vector<std::string> Statement::cells() const {
   return row;
 }
 
-Transaction::Transaction(Database& database, const std::string& begin) : database_(database) {
-  database_.execute(begin);
+Transaction::Transaction(Database& database, const std::string& begin, bool nested)
+    : database_(database), open_(!nested || sqlite3_get_autocommit(database.handle()) != 0) {
+  if (open_) database_.execute(begin);
 }
 
 Transaction::~Transaction() {

@@ -142,11 +142,12 @@ class Transaction {
   void commit();
 
  protected:
-  Transaction(Database& database, const std::string& begin);
+  /// Begins nothing if it is `nested` and within another transaction.
+  Transaction(Database& database, const std::string& begin, bool nested = false);
 
  private:
   Database& database_;
-  bool open_ = true;
+  bool open_;
 };
 
 /// Takes the write lock when it is constructed.
@@ -154,9 +155,10 @@ struct WriteTransaction : Transaction {
   explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
 };
 
-/// All reads within the transaction see the same state of the database.
+/// All reads within the transaction see the same state of the database. Within another transaction
+/// it does nothing.
 struct ReadTransaction : Transaction {
-  explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED") {}
+  explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED", true) {}
 };
 
 }  // namespace shearcell::sqlite

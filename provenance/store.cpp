@@ -159,6 +159,9 @@ Store::~Store() {
   }
 }
 
+Store::Snapshot::Snapshot(const Store& store)
+    : scoped_lock(store.mutex_), ReadTransaction(store.database_) {}
+
 Store::Writing::Writing(Store& store)
     : scoped_lock(store.mutex_), WriteTransaction(store.must_write()) {}
 
@@ -415,14 +418,12 @@ std::optional<LoadedCheckpoint> Store::newest_valid_checkpoint(const std::string
 }
 
 std::vector<Stage> Store::stages() const {
-  const std::scoped_lock guard(mutex_);
-  const sqlite::ReadTransaction snapshot(database_);
+  const Snapshot snapshot(*this);
   return query_stages(database_);
 }
 
 Stage Store::stage(const std::string& id) const {
-  const std::scoped_lock guard(mutex_);
-  const sqlite::ReadTransaction snapshot(database_);
+  const Snapshot snapshot(*this);
   auto found = query_stage(database_, id);
   if (!found) throw unknown_stage(id);
   return std::move(*found);
@@ -437,7 +438,7 @@ std::vector<Lease> Store::leases() const {
 }
 
 Stage Store::find_stage(std::string_view prefix) const {
-  const std::scoped_lock guard(mutex_);
+  const Snapshot snapshot(*this);
   std::vector<Stage> found = query_stages(database_, prefix);
   if (found.empty()) throw unknown_stage(prefix);
   require_one("runs", prefix, found, &Stage::id);
@@ -453,7 +454,7 @@ std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) 
 }
 
 std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed listed) const {
-  const std::scoped_lock guard(mutex_);
+  const Snapshot snapshot(*this);
   auto found = query_checkpoints(database_, id);
   if (found.empty() && !query_stage(database_, id)) throw unknown_stage(id);
   std::erase_if(found, [listed](const CheckpointRecord& record) {
@@ -463,30 +464,31 @@ std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed l
   return found;
 }
 
-Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
-  const std::string file = (folder_ / record.file).string();
+std::vector<std::byte> Store::read_file(const CheckpointRecord& record) const {
   const auto require_kept = [&] {
     const std::scoped_lock guard(mutex_);
-    const auto now = query_checkpoint(database_, record.run, record.sha256);
-    if (!now || now->state != CheckpointState::pruned) return;
+    if (!is_pruned_now(database_, record)) return;
     throw FilePruned(fmt::format(
         "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
         "regenerate {:.12}`",
-        file, record.sha256, record.run, record.cycle, record.sha256));
+        (folder_ / record.file).string(), record.sha256, record.run, record.cycle, record.sha256));
   };
   if (record.state == CheckpointState::pruned) require_kept();
-  std::vector<std::byte> bytes;
   try {
-    bytes = objects_.get(record.sha256, record.size);
+    return objects_.get(record.sha256, record.size);
   } catch (const StoreDamaged&) {
-    require_kept();  // it may have been pruned since the record was read
-    throw;
+    require_kept();
   }
+  return objects_.get(record.sha256, record.size);  // it may have been regenerated meanwhile
+}
+
+Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
+  const std::vector<std::byte> bytes = read_file(record);
   const Stage of = stage(record.run);
   try {
     return read_checkpoint(bytes, record, of);
   } catch (const StoreDamaged& damage) {
-    throw StoreDamaged(fmt::format("{}: {}", file, damage.what()));
+    throw StoreDamaged(fmt::format("{}: {}", (folder_ / record.file).string(), damage.what()));
   }
 }
 

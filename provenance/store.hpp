@@ -155,6 +155,12 @@ class Store {
 
   // --- Reading ---
 
+  /// While it exists, all reads through this object see one state of the log, and no other program
+  /// can write to it. Hold it only to read rows: not while files are read or anything is computed.
+  struct Snapshot : private std::scoped_lock<std::recursive_mutex>, sqlite::ReadTransaction {
+    explicit Snapshot(const Store& store);
+  };
+
   std::vector<Stage> stages() const;  ///< in the order of their declaration
   Stage stage(const std::string& id) const;
   std::vector<Lease> leases() const;  ///< leases that have not lapsed
@@ -166,7 +172,10 @@ class Store {
   /// The checkpoint with this prefix of the SHA-256, in any state, if there is one. Throws
   /// NotFound, with the candidates, if it is ambiguous.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// Reads, verifies and decodes. Throws StoreDamaged, which names the file, or FilePruned.
+  /// The bytes of the file, whose SHA-256 is the recorded one. Throws StoreDamaged, which names the
+  /// file, or FilePruned, also if another program pruned it after the record was read.
+  std::vector<std::byte> read_file(const CheckpointRecord& record) const;
+  /// read_file(), decoded and compared with the record. Throws StoreDamaged, which names the file.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// load_checkpoint(); nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;

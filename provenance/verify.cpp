@@ -147,17 +147,6 @@ void compare_tables(const sqlite::Database& database, const Rows& stored, const 
   }
 }
 
-/// Whether another program has pruned the checkpoint since the records were read. A forged table
-/// does not hide damage: it differs from the events, which is an error.
-bool pruned_meanwhile(const sqlite::Database& database, const CheckpointRecord& record) {
-  try {
-    const auto now = query_checkpoint(database, record.run, record.sha256);
-    return now && now->state == CheckpointState::pruned;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
-
 void check_objects(const std::vector<CheckpointRecord>& records,
                    const std::map<std::string, Stage>& runs, const sqlite::Database& database,
                    const ObjectStore& objects, VerifyReport& report) {
@@ -180,7 +169,8 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      if (!pruned && pruned_meanwhile(database, record)) continue;
+      // A forged table does not hide damage: it differs from the events, which is an error.
+      if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       report.findings.push_back({rejected ? Severity::note : Severity::error, record.file,
                                  record.run, message + (rejected ? " (rejected already)" : "")});

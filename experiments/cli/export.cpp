@@ -177,11 +177,12 @@ Place shown_place(const PlacedRun& run) {
   return run.places.empty() ? first_place(run.stage) : run.places.front().place;
 }
 
-/// Writes the run to `out`, which does not exist, and returns the names of the files. Throws
-/// std::invalid_argument if the run cannot be exported.
+/// Writes the run to `out`, which does not exist or holds an earlier crate of the run, and returns
+/// the names of the files. Measures that are NaN because an earlier checkpoint cannot be read have
+/// a line in `unread`. Throws std::invalid_argument if the run cannot be exported.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
-                                   const fs::path& out) {
+                                   const fs::path& out, MeasureOutcome& unread) try {
   if (format.writer == nullptr) {
     return write_ro_crate(store, crate_of(store, run.stage.id, options.licence), out);
   }
@@ -198,10 +199,14 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   for (const CheckpointRecord& record : records) {
     const Frame frame = frame_of(store.load_checkpoint(record), record,
                                  {shown_place(run), {}, run.stage}, &sources, every);
+    unread += frame.unread;
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files
   return files_of(out);
+} catch (const FilePruned&) {  // by another program, meanwhile: what is left is written
+  if (!fs::exists(out / "ro-crate-metadata.json")) fs::remove_all(out);
+  return write_run(store, run, format, options, out, unread);
 }
 
 // Readers of an RO-Crate take a text that is no web address for the name of a file in the crate.
@@ -267,14 +272,14 @@ struct Exported {
 /// disk leaves no `out`.
 std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
-                                bool single) {
+                                bool single, MeasureOutcome& unread) {
   // "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
   // A crate may replace an earlier one of the run.
   if (single && format.writer == nullptr && fs::exists(out) && !fs::is_empty(out)) {
-    return {
-        {runs.front().stage.id, options.out, write_run(store, runs.front(), format, options, out)}};
+    return {{runs.front().stage.id, options.out,
+             write_run(store, runs.front(), format, options, out, unread)}};
   }
   const bool folder = !single || *format.ending == '\0';
   require_new(out, folder);
@@ -286,7 +291,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
   for (const PlacedRun& run : runs) {
     const std::string name = single ? "" : entry_name(run, format);
     try {
-      auto files = write_run(store, run, format, options, single ? staged : staged / name);
+      auto files = write_run(store, run, format, options, single ? staged : staged / name, unread);
       done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
     } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
@@ -304,13 +309,15 @@ void export_runs(const ExportOptions& options, Context& context) {
   require_effect(options, format);
   std::vector<Exported> done;
   bool single = false;
+  MeasureOutcome unread;
   try {
     const std::vector<PlacedRun> runs = wanted_runs(store, options);
     single = !options.runs.empty() && runs.size() == 1;
-    done = write_all(store, runs, format, options, single);
+    done = write_all(store, runs, format, options, single, unread);
   } catch (const std::invalid_argument& problem) {
     throw UsageError(problem.what());
   }
+  print_problems(unread, "not measured", context);
   if (context.json) {
     const nlohmann::json list = list_of(done, [&](const Exported& one) -> nlohmann::json {
       return {{"run", one.run},

@@ -35,6 +35,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
   for (const Finding& finding : refused) {
     print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
+    fail(context, finding.severity == Finding::Severity::error ? kStoreDamaged : kOtherError);
   }
   for (const std::string& note : left_out(store)) {
     if (!known.contains(note)) warn(context, note);

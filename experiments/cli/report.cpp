@@ -36,9 +36,8 @@ void report(ReportCommand& command, Context& context) {
   options.encoded = terminal_counter("reading checkpoint");
   const Report made = make_report(store, options);
   write_output(command.out, made.html);
-  if (!made.damage.empty()) fail(context, kStoreDamaged);
+  print_problems(made, "left out", context);
   if (!made.undrawn.empty()) fail(context, kOtherError);
-  for (const std::string& line : made.damage) print_stderr("left out: {}\n", line);
   for (const std::string& line : made.undrawn) print_stderr("no drawing: {}\n", line);
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
@@ -56,6 +55,7 @@ void report(ReportCommand& command, Context& context) {
                        {"packings", made.packings},
                        {"checkpoints", made.checkpoints},
                        {"damage", made.damage},
+                       {"pruned", made.pruned},
                        {"undrawn", made.undrawn},
                        {"notes", made.notes}});
   }

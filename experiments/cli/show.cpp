@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
@@ -19,7 +18,6 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/shipped.hpp"
-#include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
@@ -62,16 +60,9 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
 /// The values of `table`; measured now if they are not cached.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
   CheckpointMeasures one{record};
-  try {
-    const ToMeasure todo{&one};
-    print_problems(measure_checkpoints(store, {&todo, 1}, table_providers(), {}), "not measured",
-                   context);
-  } catch (const AnalysisError& problem) {  // a failed run may leave such a state
-    print_stderr("not measured: {}\n", problem.what());
-    MeasureSources sources(store);
-    sources.read_run(record.run);
-    sources.add_recorded(record, one.measures);
-  }
+  const ToMeasure todo{&one};
+  print_problems(measure_checkpoints(store, {&todo, 1}, table_providers(), {}), "not measured",
+                 context);
   Facts facts;
   for (const auto& [column, value] : facts_of(record, one.measures)) {
     Fact& fact = facts.emplace_back(Fact{column.name, value});

@@ -81,11 +81,12 @@ std::string frame_name(const Frame& frame) {
 Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
                const MeasureSources* sources, std::uint64_t every) {
   const MeasureSources alone(record.run, run.stage);
-  const Measures measures = (sources == nullptr ? alone : *sources)
-                                .measures_of(record, every, checkpoint,
-                                             analyse_stored(record, checkpoint), enters_frames);
-  const double rate = measures.number("shear_rate_per_s");  // only of a shear
   Frame frame;
+  const Measures measures =
+      (sources == nullptr ? alone : *sources)
+          .measures_of(record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames,
+                       frame.unread);
+  const double rate = measures.number("shear_rate_per_s");  // only of a shear
   static_cast<Particles&>(frame) =
       particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,
                    std::isnan(rate) ? 0 : rate, checkpoint.units);

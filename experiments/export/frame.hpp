@@ -39,6 +39,7 @@ struct Frame : Particles {
   /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
   std::vector<FrameColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
+  UnreadCheckpoints unread;                 ///< earlier ones, whose measures are NaN
 
   /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
   std::optional<LammpsTask> continued;

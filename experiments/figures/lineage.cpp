@@ -323,7 +323,6 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
 
 std::vector<Finding> check_inputs(const Store& store, const FigureLineage& lineage) {
   using enum Finding::Severity;
-  const ObjectStore objects(store.folder());
   std::vector<Finding> faults;
   for (const FigureInput& input : lineage.inputs) {
     const RunLineage& run = lineage.runs.at(input.run);
@@ -335,11 +334,11 @@ std::vector<Finding> check_inputs(const Store& store, const FigureLineage& linea
         continue;
       }
       try {
-        objects.get(sha256, known->record.size);
+        store.read_file(known->record);
+      } catch (const FilePruned&) {
+        faults.push_back({note, sha256, input.run, "pruned"});
       } catch (const StoreDamaged& damage) {
-        const bool pruned = known->record.state == CheckpointState::pruned;
-        faults.push_back(
-            {pruned ? note : error, sha256, input.run, pruned ? "pruned" : damage.what()});
+        faults.push_back({error, sha256, input.run, damage.what()});
       }
     }
   }

@@ -234,6 +234,12 @@ struct VariantCheck {
   }
 };
 
+/// Whether a spreadsheet that opens a table takes the text for a formula.
+bool is_formula(const string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
+}
+
 /// Each label must name a variant of some scale and show something; names of variants of one scale
 /// must look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
@@ -243,9 +249,13 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
     problems.add(label.at, "labels", problem, got, remedy);
   };
   for (const VariantLabel& label : manifest.labels) {
-    if (!as_seen(label.name).empty()) continue;
-    reject(label, "gives a variant a name with nothing to see",
-           format("\"{}\"", printable(label.name)), "Write a name.");
+    const bool empty = as_seen(label.name).empty();
+    if (!empty && !is_formula(label.name)) continue;
+    reject(label,
+           format("gives a variant a name {}",
+                  empty ? "with nothing to see" : "that spreadsheets take for a formula"),
+           format("\"{}\"", printable(label.name)),
+           empty ? "Write a name." : "Begin it with a letter or a digit.");
   }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
@@ -741,6 +751,11 @@ void check_variants(const Manifest& manifest) {
     runs += variants * seeds;
   }
   if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
+  for (const Placed<ClaimSpec>& claim : manifest.claims) {
+    if (!is_formula(claim.statement)) continue;
+    problems.add(claim.at, "claims.statement", "is a text that spreadsheets take for a formula",
+                 printable(claim.statement), "Begin it with a letter or a digit.");
+  }
   for (const Scale& scale : scales) {
     for (const Variant& variant : variants_of(scale)) {
       VariantCheck{manifest, scale, variant, problems}.run();

@@ -120,7 +120,7 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
         run.wall_grains = last.cell.wall_grains.size();
         run.bytes = frame_size_in_page(run.stage.grains, run.wall_grains, fields) + kFactsInPage;
       } catch (const StoreDamaged& damage) {
-        packings.notes.emplace_back(damage.what());
+        packings.damage.insert(damage.what());
         run.checkpoints.pop_back();
       } catch (const FilePruned&) {
         run.checkpoints.pop_back();
@@ -210,11 +210,13 @@ bool enters_page(const Provider& one) {
   return one.has(MeasureKind::grains) || one.name == "profiles";
 }
 
-json make_frame(const CheckpointRecord& record, const MeasureSources& sources) {
+json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
+                UnreadCheckpoints& unread) {
   const Checkpoint checkpoint = sources.load(record);
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
-  const Measures measures = sources.measures_of(record, 1, checkpoint, analysis, enters_page);
+  const Measures measures =
+      sources.measures_of(record, 1, checkpoint, analysis, enters_page, unread);
   const std::vector<GrainField> fields =
       make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
@@ -312,13 +314,10 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
   }
   std::vector<json> frames(records.size());  // null if a checkpoint cannot be read
-  const UnreadCheckpoints unread = read_in_parallel(
-      records.size(), workers, [&](std::size_t k) { frames[k] = make_frame(records[k], sources); },
-      report);
-  for (const auto* list : {&unread.damage, &unread.pruned}) {
-    packings.notes.insert(packings.notes.end(), list->begin(), list->end());
-  }
-  std::ranges::sort(packings.notes);
+  std::vector<UnreadCheckpoints> unread(records.size());
+  const auto make = [&](std::size_t k) { frames[k] = make_frame(records[k], sources, unread[k]); };
+  packings += read_in_parallel(records.size(), workers, make, report);
+  for (const UnreadCheckpoints& earlier : unread) packings += earlier;
   auto next = frames.begin();
   for (const ChosenRun& run : runs) {
     json list = json::array();

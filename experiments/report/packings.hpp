@@ -12,6 +12,7 @@
 
 #include "analysis/measures.hpp"
 #include "experiments/figures/select_runs.hpp"
+#include "experiments/runner/measure.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/store.hpp"
 
@@ -24,13 +25,13 @@ struct PackingChoice {
   std::size_t budget = 9'000'000;       ///< bytes of all packings in the page
 };
 
-struct Packings {
+struct Packings : UnreadCheckpoints {
   /// [{id, label, experiment, grains, wall_grains, frames: [{name, sha256, facts, cell, fields,
   /// profiles, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
   double largest_step = 0;         ///< coordinates are rounded to multiples of this [d]
-  std::vector<std::string> notes;  ///< what was left out, one line each
+  std::vector<std::string> notes;  ///< runs that were left out, one line each
 };
 
 /// Packs checkpoints of the experiments, in their order. If the chosen checkpoints exceed the

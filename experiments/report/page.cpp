@@ -11,7 +11,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <tuple>
 
 #include "analysis/error.hpp"
@@ -211,7 +210,7 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
           {"inputs", inputs}};
 }
 
-/// The figure as JSON. Also adds its damage, its notes and its manifests to `content`.
+/// The figure as JSON. Also adds what it lacks, its notes and its manifests to `content`.
 json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Content& content) {
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
@@ -233,12 +232,8 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
     for (const std::string& line : *list) warnings.push_back("Left out: " + line);
   }
   for (const std::string& line : figure.notes) warnings.push_back(line);
-  content.report.damage.insert(figure.damage.begin(), figure.damage.end());
-  content.report.notes.insert(figure.pruned.begin(), figure.pruned.end());
+  content.report += figure;
   content.report.notes.insert(figure.notes.begin(), figure.notes.end());
-  if (!figure.cache_trouble.empty()) {
-    content.report.notes.insert("measures cannot be cached: " + figure.cache_trouble);
-  }
   return {{"id", prefix + wanted.figure.name},
           {"name", figure.name},
           {"heading",
@@ -620,11 +615,12 @@ void add_run_tables(Content& content) {
       // Another program may have declared runs since they were listed.
       for (const FigureRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
-      content.report.damage.insert(experiment.table.damage.begin(), experiment.table.damage.end());
-    } catch (const std::runtime_error& problem) {
-      // No run at this scale, or a record that this version of the program cannot read.
-      content.report.notes.insert(
-          fmt::format("table of runs of {}: {}", experiment.manifest.experiment, problem.what()));
+      content.report += experiment.table;
+    } catch (const StoreDamaged& damage) {
+      content.report.damage.insert(damage.what());
+    } catch (const NotFound& none_selected) {
+      content.report.notes.insert(fmt::format(
+          "table of runs of {}: {}", experiment.manifest.experiment, none_selected.what()));
     }
   }
 }
@@ -701,6 +697,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
                                         options.workers, options.encoded);
     const std::vector<std::string>& notes = content.packings.notes;
     report.notes.insert(notes.begin(), notes.end());
+    report += content.packings;
   }
   report.experiments = content.experiments.size();
   report.stages = content.runs.size();

@@ -26,7 +26,8 @@ struct ReportOptions {
 /// Whether this build holds the front end. Building that needs Node.
 bool has_front_end();
 
-struct Report {
+/// What was left out of its figures, tables and packings is in MeasureOutcome.
+struct Report : MeasureOutcome {
   /// The whole page: markup, style, data and, if it is interactive, the front end. Texts from a
   /// store or a file are escaped.
   std::string html;
@@ -34,7 +35,6 @@ struct Report {
   std::size_t experiments = 0, figures = 0, stages = 0;  ///< that it shows
   std::size_t packings = 0, checkpoints = 0;             ///< runs in 3D, and their checkpoints
   std::set<std::string> undrawn;  ///< which drawings failed and why, one line each
-  std::set<std::string> damage;   ///< checkpoints that could not be read, one line each
   std::set<std::string> notes;    ///< about runs, figures and tables, one line each
 };
 

@@ -182,7 +182,8 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   return found;
 }
 
-void copy_measures(const Store& store, DerivedCache& from) {
+/// Returns why measures cannot be copied; "" if they can.
+std::string copy_measures(const Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
@@ -194,6 +195,7 @@ void copy_measures(const Store& store, DerivedCache& from) {
     }
   }
   if (!missing.empty()) into.put(missing);
+  return into.trouble().empty() ? from.trouble() : into.trouble();
 }
 
 }  // namespace
@@ -227,6 +229,7 @@ std::uint64_t seed_of(const Head& head) {
 }
 
 std::vector<Finding> check_runs(const Store& store) {
+  const Store::Snapshot snapshot(store);
   std::vector<Finding> findings;
   std::map<std::string, std::set<std::uint64_t>> completed;  // by parent
   for (const Stage& stage : store.stages()) {
@@ -246,8 +249,10 @@ std::vector<Finding> check_runs(const Store& store) {
       check_beginning(store, stage, ends->second);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
-    } catch (const std::runtime_error& unknown) {  // parameters of another version
+    } catch (const UnreadableRecord& unknown) {  // parameters of another version
       note(Finding::Severity::note, unknown);
+    } catch (const NotFound& parent) {
+      note(Finding::Severity::note, parent);
     }
   }
   return findings;
@@ -280,11 +285,13 @@ std::vector<MergeReport> merge_stores(Store& store,
   std::vector<MergeReport> reports = store.merge(sources, runs);
   const std::uint64_t seed = seed_of(store.head());  // not predictable for the author of a source
   for (const std::filesystem::path& source : sources) {
-    const MeasureCheck check = check_measures(store, source, kSampled, seed);
+    MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {
       DerivedCache from(source, Access::read);
-      copy_measures(store, from);
-    } else if (refused != nullptr) {
+      const std::string why = copy_measures(store, from);
+      if (!why.empty()) check.findings.push_back({Finding::Severity::note, source, "", why});
+    }
+    if (refused != nullptr) {
       refused->insert(refused->end(), check.findings.begin(), check.findings.end());
     }
   }

@@ -21,11 +21,6 @@
 namespace shearcell {
 namespace {
 
-void add_lines(const UnreadCheckpoints& more, UnreadCheckpoints& all) {
-  all.damage.insert(more.damage.begin(), more.damage.end());
-  all.pruned.insert(more.pruned.begin(), more.pruned.end());
-}
-
 using nlohmann::json;
 using Results = std::vector<json>;
 
@@ -80,7 +75,7 @@ class Measuring {
       throw;
     }
     flush();
-    add_lines(unread_earlier_, outcome_);
+    unread += unread_earlier_;
     for (std::size_t k = 0; k < place_.size(); ++k) {
       read(*checkpoints_[k].checkpoint, results_[place_[k]]);
     }
@@ -132,7 +127,7 @@ class Measuring {
     }
     const std::lock_guard lock(mutex_);
     outcome_.measured.insert(record.sha256);
-    add_lines(unread, unread_earlier_);
+    unread_earlier_ += unread;
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
   }
@@ -154,8 +149,8 @@ class Measuring {
     }
     sources_.add_recorded(one, one.measures);
   } catch (const AnalysisError& problem) {
-    throw AnalysisError(std::string(DerivedCache::kFile) + " holds something else (" +
-                        problem.what() + "); delete it, and the measures are computed again");
+    throw StoreDamaged(std::string(DerivedCache::kFile) + " holds something else (" +
+                       problem.what() + "); delete it, and the measures are computed again");
   }
 
   const std::span<const ToMeasure> checkpoints_;
@@ -177,9 +172,15 @@ class Measuring {
 
 }  // namespace
 
+UnreadCheckpoints& UnreadCheckpoints::operator+=(const UnreadCheckpoints& more) {
+  damage.insert(more.damage.begin(), more.damage.end());
+  pruned.insert(more.pruned.begin(), more.pruned.end());
+  return *this;
+}
+
 MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
+  *this += static_cast<const UnreadCheckpoints&>(more);
   measured.insert(more.measured.begin(), more.measured.end());
-  add_lines(more, *this);
   earlier.insert(more.earlier.begin(), more.earlier.end());
   if (!more.cache_trouble.empty()) cache_trouble = more.cache_trouble;
   return *this;

@@ -37,6 +37,8 @@ struct MeasureOptions {
 struct UnreadCheckpoints {
   std::set<std::string> damage;
   std::set<std::string> pruned;  ///< whose files were pruned
+
+  UnreadCheckpoints& operator+=(const UnreadCheckpoints& more);
 };
 
 struct MeasureOutcome : UnreadCheckpoints {
@@ -44,6 +46,7 @@ struct MeasureOutcome : UnreadCheckpoints {
   std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that entered measures
   std::string cache_trouble;       ///< why results cannot be cached; "" if they can
 
+  using UnreadCheckpoints::operator+=;
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
@@ -57,7 +60,7 @@ struct ToMeasure {
 /// Sets the measures of these providers, and the measures that follow from the log
 /// (ComputedFrom::record), and what is lacking. Results are cached under the checkpoint's recorded
 /// SHA-256: for a cached result the file is not read and may be missing. Cached and computed
-/// results are the same bytes. Throws AnalysisError, with a remedy, for a cached result that does
+/// results are the same bytes. Throws StoreDamaged, with a remedy, for a cached result that does
 /// not match its key.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,

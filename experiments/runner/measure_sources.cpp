@@ -108,8 +108,8 @@ void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& meas
 
 Measures MeasureSources::measures_of(const CheckpointRecord& record, std::uint64_t every,
                                      const Checkpoint& checkpoint, const Analysis& analysis,
-                                     bool (*wanted)(const Provider&)) const {
-  UnreadCheckpoints unread;
+                                     bool (*wanted)(const Provider&),
+                                     UnreadCheckpoints& unread) const {
   Measures measures;
   for (const Provider& one : all_providers()) {
     if (!wanted(one)) continue;

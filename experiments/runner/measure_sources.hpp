@@ -54,10 +54,10 @@ class MeasureSources {
   void add_recorded(const CheckpointRecord& record, Measures& measures) const;
 
   /// The measures of a loaded checkpoint by these providers, and the measures that follow from the
-  /// log. Measures whose earlier checkpoint cannot be read are left out.
+  /// log. Measures whose earlier checkpoint cannot be read are left out, with a line in `unread`.
   Measures measures_of(const CheckpointRecord& record, std::uint64_t every,
                        const Checkpoint& checkpoint, const Analysis& analysis,
-                       bool (*wanted)(const Provider&)) const;
+                       bool (*wanted)(const Provider&), UnreadCheckpoints& unread) const;
 
  private:
   struct Run {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <limits>
+#include <sstream>
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
@@ -50,20 +51,62 @@ TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
   EXPECT_EQ(points_of(table, {.points = {{1, none}, {none, 2}, {3, 4}}}).size(), 1U);
 }
 
-TEST(Chart, HasTheDigitsOfTheCsv) {
+TEST(Chart, HasThirteenDigits) {
   const FigureTable table = table_with(
       {}, {.x = {.name = "x", .symbol = formula("$n$"), .unit = "s", .low = 0},
            .y = {.name = "y", .log = true},
            .series = {{.title = "t", .colour = "#123456", .points = {{1.0 / 3, 2, {}, 0.25}}}},
            .lines = {{0.646}}});
-  EXPECT_EQ(chart_json(table).dump(),
-            R"({"lines":[{"at":0.646,"colour":"#888888","stub":false,"vertical":false}],)"
-            R"("series":[{"band":false,"colour":"#123456","dashed":false,"line":false,"point":7,)"
-            R"("points":[[0.333333333,2.0,null,0.25]],"shift":0.0,"title":[["t",""]]}],"title":[],)"
-            R"("x":{"clip":false,"high":null,"label":[["x",""],["  ",""],["n","i"]],"log":false,)"
-            R"("low":0.0,"unit":[["s",""]],"whole":false},)"
-            R"("y":{"clip":false,"high":null,"label":[["y",""]],"log":true,"low":null,"unit":[],)"
-            R"("whole":false}})");
+  EXPECT_EQ(
+      chart_json(table).dump(),
+      R"({"lines":[{"at":0.646,"colour":"#888888","stub":false,"vertical":false}],)"
+      R"("series":[{"band":false,"colour":"#123456","dashed":false,"line":false,"point":7,)"
+      R"("points":[[0.3333333333333,2.0,null,0.25]],"shift":0.0,"title":[["t",""]]}],"title":[],)"
+      R"("x":{"clip":false,"high":null,"label":[["x",""],["  ",""],["n","i"]],"log":false,)"
+      R"("low":0.0,"unit":[["s",""]],"whole":false},)"
+      R"("y":{"clip":false,"high":null,"label":[["y",""]],"log":true,"low":null,"unit":[],)"
+      R"("whole":false}})");
+}
+
+// Values that differ by little beside their size are no steps: each is printed so that its
+// difference from the least has at least four digits. Rounding errors are not printed.
+TEST(Chart, PrintsDigitsThatShowTheSpread) {
+  constexpr int rows = 50;
+  const auto field = [](const std::string& line, std::size_t number) {
+    std::istringstream fields(line);
+    std::string text;
+    for (std::size_t k = 0; k <= number; ++k) std::getline(fields, text, ',');
+    return text;
+  };
+  for (const auto& [offset, scale] :
+       {std::pair{1.0, 1e-7}, {-1.0, 1e-11}, {1e6, 1e-3}, {0.64, 1.0}, {0.0, 1e-20}}) {
+    const auto value = [&, offset = offset, scale = scale](int k) {
+      return offset + scale * std::sin(k);
+    };
+    std::vector<TableRow> table;
+    for (int k = 0; k < rows; ++k) {
+      table.push_back({std::string("a"), std::int64_t{k}, value(k),
+                       0.1 + (k % 2) * std::numeric_limits<double>::epsilon() / 8});
+    }
+    const FigureTable figure =
+        table_with(table, {.series = {{.columns = {.x = "cycle", .y = "phi"}}}});
+    const nlohmann::json points = chart_json(figure)["series"][0]["points"];
+    const std::string script = gnuplot_script(figure);
+    std::istringstream csv(to_csv(figure)), data(script.substr(script.find("EOD\n") + 4));
+    std::string line, drawn;
+    std::getline(csv, line);
+    for (int k = 0; k < rows; ++k) {
+      std::getline(csv, line);
+      std::getline(data, drawn);
+      const double spread = 2 * scale;
+      EXPECT_NEAR(std::stod(field(line, 2)), value(k), 1e-4 * spread) << line;
+      EXPECT_NEAR(std::stod(field(drawn, 1)), value(k), 1e-4 * spread) << drawn;
+      if (scale > 1e-9) {
+        EXPECT_NEAR(points[static_cast<std::size_t>(k)][1].get<double>(), value(k), 1e-4 * spread);
+      }
+      EXPECT_EQ(field(line, 3), "0.1");
+    }
+  }
 }
 
 // The script and the chart come from one description: what one shows, the other shows too.

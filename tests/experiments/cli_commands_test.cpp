@@ -65,6 +65,17 @@ TEST_F(Commands, TheMostSevereFaultDecidesTheExitCode) {
   expect(4, {"show", last_run(), "--json"}, {"not measured: "});
 }
 
+// Displacements of cycle 2 need the checkpoint of cycle 1.
+TEST_F(Commands, ExportSaysWhichMeasuresItLacks) {
+  campaign(manifest_, {"--cycles", "2"});
+  const std::string run = last_run();
+  truncate_file(path("shearcell-store") /
+                Store(path("shearcell-store"), Access::read).checkpoints(run).at(1).file);
+  expect(4, {"export", run, "--to", "extxyz", "--cycles", "2", "--out", "a.xyz"},
+         {"not measured: ", "1 file in a.xyz"});
+  expect(0, {"export", run, "--to", "extxyz", "--cycles", "0", "--out", "b.xyz"});
+}
+
 TEST_F(Commands, ShowRejectsAPrefixOfARunAndACheckpoint) {
   campaign(manifest_, {"--cycles", "0"});
   const std::string run = last_run(), brief = run.substr(0, 8);

@@ -21,6 +21,12 @@ bool is_write(const std::string& operation) {
          operation.find(" pwrite") != std::string::npos;
 }
 
+bool is_read(const std::string& operation) {
+  return operation.find(" read ") != std::string::npos ||
+         operation.find(" pread") != std::string::npos ||
+         operation.find(" openat ") != std::string::npos;
+}
+
 }  // namespace
 
 std::string small_manifest(const std::string& more, std::size_t cycles) {
@@ -41,18 +47,19 @@ std::string small_manifest(const std::string& more, std::size_t cycles) {
          more;
 }
 
-pid_t start_program(const fs::path& folder, const Words& words, const Fault& fault) {
+pid_t start_program(const fs::path& folder, const Words& words, const Fault& fault, bool reads) {
   Words all = {"-u", "SHEARCELL_STORE"};
   if (!fault.kind.empty()) {
     all.insert(all.end(),
                {"LD_PRELOAD=" SHEARCELL_FAULT_LAYER, "FAULT_FOLDER=" + (folder / "store").string(),
                 "FAULT_KIND=" + fault.kind, "FAULT_AT=" + std::to_string(fault.at)});
     if (fault.at == 0) all.push_back("FAULT_COUNT=" + (folder / "operations").string());
+    if (reads) all.emplace_back("FAULT_READS=1");
   }
   all.emplace_back(SHEARCELL_PROGRAM);
   all.insert(all.end(), words.begin(), words.end());
   all.insert(all.end(), {"--store", (folder / "store").string()});
-  return spawn(std::move(all), ".", folder / "said", folder / "said");
+  return spawn(std::move(all), folder, folder / "printed", folder / "said");
 }
 
 int wait_for_exit(pid_t program) {
@@ -65,8 +72,8 @@ pid_t start_campaign(const fs::path& folder, const Fault& fault) {
   return start_program(folder, {"run", (folder / "small.yaml").string(), "-q", "-j", "1"}, fault);
 }
 
-std::vector<std::string> list_operations(const fs::path& folder, const Words& words) {
-  if (wait_for_exit(start_program(folder, words, {0, "none"})) != 0) {
+std::vector<std::string> list_operations(const fs::path& folder, const Words& words, bool reads) {
+  if (wait_for_exit(start_program(folder, words, {0, "none"}, reads)) != 0) {
     throw std::runtime_error("it fails without a fault: " + read_bytes(folder / "said"));
   }
   std::vector<std::string> lines;
@@ -80,7 +87,11 @@ std::vector<Fault> fault_points(const std::vector<std::string>& operations) {
   for (std::size_t i = 0; i < operations.size(); ++i) {
     for (const char* kind : {"kill", "enospc", "eio", "torn", "lost"}) {
       const bool of_writes = std::string(kind) == "torn" || std::string(kind) == "lost";
-      if (!of_writes || is_write(operations[i])) all.push_back({static_cast<long>(i + 1), kind});
+      if (of_writes ? !is_write(operations[i])
+                    : is_read(operations[i]) && std::string(kind) != "eio") {
+        continue;
+      }
+      all.push_back({static_cast<long>(i + 1), kind});
     }
   }
   return all;

@@ -20,8 +20,11 @@ struct Fault {
 
 using Words = std::vector<std::string>;
 
-/// Starts `shearcell WORDS --store FOLDER/store`, with the fault layer if `fault` has a kind.
-pid_t start_program(const std::filesystem::path& folder, const Words& words, const Fault& fault);
+/// Starts `shearcell WORDS --store FOLDER/store` in the folder, with the fault layer if `fault` has a kind. With
+/// `reads` the layer also counts operations that read. Standard output is appended to
+/// FOLDER/printed, standard error to FOLDER/said.
+pid_t start_program(const std::filesystem::path& folder, const Words& words, const Fault& fault,
+                    bool reads = false);
 
 /// `run` of the manifest in the folder.
 pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault);
@@ -30,9 +33,10 @@ pid_t start_campaign(const std::filesystem::path& folder, const Fault& fault);
 int wait_for_exit(pid_t program);
 
 /// Runs the command under the fault layer without a fault; its operations on the store.
-std::vector<std::string> list_operations(const std::filesystem::path& folder, const Words& words);
+std::vector<std::string> list_operations(const std::filesystem::path& folder, const Words& words,
+                                         bool reads = false);
 
-/// Every kind of fault at each of the operations.
+/// Every kind of fault at each of the operations; of those that read, errors alone.
 std::vector<Fault> fault_points(const std::vector<std::string>& operations);
 
 /// Checks a store after a fault: it opens, `verify` finds no error, every recorded checkpoint can

@@ -10,6 +10,7 @@
 //                 torn    a write puts down its first half, then the process dies
 //                 lost    a write says it succeeded and does nothing; the process dies at the next
 //                         sync of that file, as after a power cut before the bytes had reached it
+//   FAULT_READS   calls that read count too
 //   FAULT_COUNT   file that gets one line for each counted call: its name and the file's
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -21,6 +22,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
@@ -39,6 +41,7 @@ enum class Kind { none, kill, enospc, eio, torn, lost };
 struct Settings {
   const char* folder = std::getenv("FAULT_FOLDER");
   const char* count = std::getenv("FAULT_COUNT");
+  bool reads = std::getenv("FAULT_READS") != nullptr;
   long at = std::getenv("FAULT_AT") ? std::atol(std::getenv("FAULT_AT")) : 0;
   Kind kind = Kind::none;
   int log = -1;
@@ -154,6 +157,15 @@ ssize_t faulty_pwrite(const char* call, int fd, const void* bytes, size_t size, 
   });
 }
 
+ssize_t faulty_read(const char* call, int fd, void* bytes, size_t size, off_t at = -1) {
+  if (settings().reads) {
+    const OpenFile file(fd);
+    if (file && goes_wrong(call, file.path)) return -1;
+  }
+  return at < 0 ? real<ssize_t, int, void*, size_t>(call, fd, bytes, size)
+                : real<ssize_t, int, void*, size_t, off_t>(call, fd, bytes, size, at);
+}
+
 int faulty_sync(const char* call, int fd) {
   const OpenFile file(fd);
   if (file) {
@@ -201,6 +213,28 @@ ssize_t pwrite(int fd, const void* bytes, size_t size, off_t at) {
 
 ssize_t pwrite64(int fd, const void* bytes, size_t size, off64_t at) {
   return faulty_pwrite("pwrite64", fd, bytes, size, at);
+}
+
+ssize_t read(int fd, void* bytes, size_t size) {
+  return faulty_read("read", fd, bytes, size);
+}
+
+ssize_t pread(int fd, void* bytes, size_t size, off_t at) {
+  return faulty_read("pread", fd, bytes, size, at);
+}
+
+ssize_t pread64(int fd, void* bytes, size_t size, off64_t at) {
+  return faulty_read("pread64", fd, bytes, size, at);
+}
+
+int openat(int folder, const char* name, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
+  va_end(more);
+  return settings().reads
+             ? faulty_at("openat", folder, name, flags, mode)
+             : real<int, int, const char*, int, mode_t>("openat", folder, name, flags, mode);
 }
 
 int fsync(int fd) {

@@ -89,7 +89,7 @@ TEST_F(PackingsOf, LeaveOutAndReportDamagedCheckpoints) {
   const std::string run = runs_of_kind(store_, "shear").back().id;
   truncate_file(store_.folder() / store_.checkpoints(run).back().file);
   const Packings packings = collect({});
-  ASSERT_EQ(packings.notes.size(), 1U);
+  ASSERT_EQ(packings.damage.size(), 1U);
   EXPECT_EQ(packings.frames, 5U);
 }
 

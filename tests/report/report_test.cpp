@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <set>
 
+#include "analysis/measures.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
 #include "tests/support/files.hpp"
@@ -203,6 +205,34 @@ TEST_F(ReportOfRuns, NamesDamagedCheckpoints) {
   const Report made = report();
   ASSERT_EQ(made.damage.size(), 1U);
   EXPECT_TRUE(has(made.html, "Left out: "));
+}
+
+// Its measures are cached, so that figures and tables do not read it.
+TEST_F(ReportOfRuns, NamesDamagedCheckpointsThatAreMeasured) {
+  make();
+  const std::string run = runs_of_kind(store_, "shear").back().id;
+  truncate_file(store_.folder() / store_.checkpoints(run).front().file);
+  const Report made = report();
+  EXPECT_EQ(made.damage.size(), has_front_end() ? 1U : 0U);
+  EXPECT_EQ(made.figures, report(drawings()).figures);
+}
+
+// A record of the table of runs that cannot be read is damage, not a remark.
+TEST_F(ReportOfRuns, NamesDamagedMeasures) {
+  make();
+  DerivedCache cache(store_.folder());
+  std::vector<DerivedObject> forged;
+  {
+    const sqlite::Database kept(store_.folder() / DerivedCache::kFile, Access::write);
+    sqlite::Statement row(kept, "SELECT checkpoint, measure, version FROM derived");
+    while (row.step()) {
+      DerivedObject& object = forged.emplace_back();
+      row.get(object.key.checkpoint, object.key.measure, object.key.version);
+      object.content = encode_result("none");
+    }
+  }
+  cache.put(forged);
+  EXPECT_FALSE(report().damage.empty());
 }
 
 TEST_F(ReportOf, NeedsAnExperiment) {
