@@ -45,7 +45,7 @@ std::optional<double> number_in(const TableRow& row, std::size_t column) {
 
 /// Null if it is missing or not finite; never "-0".
 json number(const std::optional<double>& value) {
-  constexpr int significant = 13;  // digits; readers of the page enlarge parts of a plot
+  constexpr int significant = 15;  // digits; readers of the page enlarge parts of a plot
   return value ? rounded(*value == 0 ? 0 : *value, significant) : json();
 }
 

@@ -236,7 +236,7 @@ struct VariantCheck {
 
 /// Whether a spreadsheet that opens a table takes the text for a formula.
 bool is_formula(const string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
+  const std::size_t first = text.find_first_not_of(' ');
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 

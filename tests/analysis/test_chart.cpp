@@ -51,7 +51,7 @@ TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
   EXPECT_EQ(points_of(table, {.points = {{1, none}, {none, 2}, {3, 4}}}).size(), 1U);
 }
 
-TEST(Chart, HasThirteenDigits) {
+TEST(Chart, HasFifteenDigits) {
   const FigureTable table = table_with(
       {}, {.x = {.name = "x", .symbol = formula("$n$"), .unit = "s", .low = 0},
            .y = {.name = "y", .log = true},
@@ -61,7 +61,7 @@ TEST(Chart, HasThirteenDigits) {
       chart_json(table).dump(),
       R"({"lines":[{"at":0.646,"colour":"#888888","stub":false,"vertical":false}],)"
       R"("series":[{"band":false,"colour":"#123456","dashed":false,"line":false,"point":7,)"
-      R"("points":[[0.3333333333333,2.0,null,0.25]],"shift":0.0,"title":[["t",""]]}],"title":[],)"
+      R"("points":[[0.333333333333333,2.0,null,0.25]],"shift":0.0,"title":[["t",""]]}],"title":[],)"
       R"("x":{"clip":false,"high":null,"label":[["x",""],["  ",""],["n","i"]],"log":false,)"
       R"("low":0.0,"unit":[["s",""]],"whole":false},)"
       R"("y":{"clip":false,"high":null,"label":[["y",""]],"log":true,"low":null,"unit":[],)"
