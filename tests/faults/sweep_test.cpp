@@ -74,6 +74,9 @@ class Faults : public testing::Test {
     const Store store(folder / "store", Access::read);
     EXPECT_TRUE(store.verify().ok());
     EXPECT_TRUE(store.leases().empty());
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      EXPECT_EQ(entry.path().filename().string().find(".tmp-"), std::string::npos) << entry.path();
+    }
   }
 
   /// The command on copies of a folder, with every `every`-th of its fault points.
