@@ -228,8 +228,9 @@ void read_restart(const Object& restart, Checkpoint& checkpoint) {
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
   require_sound(checkpoint);
   std::vector<std::byte> image;
-  {
-    const hdf5::Library library;
+  try {
+    constexpr std::size_t about = 3 * 256;  // bytes of each grain in three copies
+    const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
     // The oldest superblock has no checksum; HDF5 1.10 writes wrong checksums into file images.
@@ -246,6 +247,9 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     put_observables(file, checkpoint);
     put_restart(file, checkpoint);
     image = framed_image(file);
+  } catch (const std::runtime_error&) {
+    if (const auto no_memory = std::get_new_handler()) no_memory();
+    throw std::bad_alloc();  // the file is in memory
   }
   const std::string frame =
       hdf5::frame_text(sha256_hex(std::span(image).subspan(hdf5::kFrameSize)));

@@ -38,9 +38,9 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
       .hex();
 }
 
-/// Renames the file, which may hold the only measures of pruned checkpoints. A journal left behind
-/// would be played back into the new database.
-void set_aside(const fs::path& file) {
+/// Renames the file, which may hold the only measures of pruned checkpoints, and says how. A
+/// journal left behind would be played back into the new database.
+std::string set_aside(const fs::path& file) {
   std::error_code ignored;
   fs::path kept;
   for (int n = 1; kept.empty() || fs::exists(kept, ignored); ++n) {
@@ -48,9 +48,19 @@ void set_aside(const fs::path& file) {
   }
   fs::rename(file.string() + "-journal", kept.string() + "-journal", ignored);
   fs::rename(file, kept, ignored);
+  return fmt::format("{}: it was damaged, and is kept as {}", file.string(),
+                     kept.filename().string());
 }
 
 }  // namespace
+
+Digests::value_type digest_entry(const DerivedObject& object) {
+  const auto& [checkpoint, measure, version] = object.key;
+  constexpr std::size_t name_digits = 12, digits = 32;
+  return {fmt::format("{}-{:.{}}", measure.substr(0, measure.find(' ')),
+                      Sha256().add_fields(measure, version).hex(), name_digits),
+          digest(object.key, object.content).substr(0, digits)};
+}
 
 DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
     : file_(store_folder / kFile), read_only_(access == Access::read) {
@@ -64,7 +74,8 @@ void DerivedCache::open() {
         file_.string() +
         ": measures are cached in this file, but it is a folder, link or device; remove it");
   }
-  if (read_only_ && type == fs::file_type::not_found) return;
+  const bool empty = type == fs::file_type::not_found || fs::is_empty(file_);
+  if (read_only_ && empty) return;
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
   // No syncs: damage by a power cut is found by the hash, and the object is computed again.
@@ -107,7 +118,7 @@ void DerivedCache::attempt(Work&& work) {
       if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
       if (!first) return give_up(damage.what());
       database_.reset();
-      set_aside(file_);
+      replaced_ = set_aside(file_);
     } catch (const std::exception& problem) {
       return give_up(problem.what());
     }
@@ -131,6 +142,18 @@ std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
     }
   });
   found.resize(keys.size());
+  return found;
+}
+
+Digests DerivedCache::digests(const std::string& checkpoint) {
+  Digests found;
+  attempt([&](sqlite::Database& database) {
+    sqlite::Statement query(
+        database, "SELECT measure, version, content FROM derived WHERE checkpoint = ?", checkpoint);
+    while (query.step()) {
+      found.insert(digest_entry({{checkpoint, query.text(0), query.u64(1)}, query.blob(2)}));
+    }
+  });
   return found;
 }
 

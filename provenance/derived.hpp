@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,13 @@ struct DerivedObject {
   std::vector<std::byte> content;
 };
 
+/// Short digests of objects of one checkpoint, by the first word of the measure and a short hash of
+/// measure and version. The log holds those of pruned checkpoints, whose measures cannot be
+/// computed again.
+using Digests = std::map<std::string, std::string>;
+/// The entry of one object.
+Digests::value_type digest_entry(const DerivedObject& object);
+
 /// Derived objects of one store. For one thread at a time; several processes may use one store.
 ///
 /// The content of the file never causes an exception: an object that is missing, damaged or stored
@@ -41,11 +49,16 @@ class DerivedCache {
   /// Contents in the order of `keys`; nothing for objects that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
+  /// Of all objects of a checkpoint, as they are; empty if the file cannot be read.
+  Digests digests(const std::string& checkpoint);
+
   /// Stores all or none; replaces objects with the same key.
   void put(std::span<const DerivedObject> objects);
 
   /// Why nothing can be stored; "" without trouble.
   const std::string& trouble() const { return trouble_; }
+  /// What was wrong with a file that was renamed and replaced; "" without one.
+  const std::string& replaced() const { return replaced_; }
 
   static constexpr const char* kFile = "derived.sqlite";
 
@@ -59,7 +72,7 @@ class DerivedCache {
   std::filesystem::path file_;
   bool read_only_;
   std::optional<sqlite::Database> database_;
-  std::string trouble_;
+  std::string trouble_, replaced_;
 };
 
 }  // namespace shearcell

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <map>
 #include <set>
 #include <string>
@@ -57,6 +58,22 @@ void create_tables(sqlite::Database& database) {
                                  kStoreApplicationId, kSchemaVersion));
   }
   lock.commit();
+}
+
+/// Makes the log under another name, so that a kill leaves no part of it. Does nothing if another
+/// program was faster; the caller makes the log in place if the file system cannot do this.
+void create_whole(const std::filesystem::path& file) {
+  const std::filesystem::path whole =
+      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
+  {
+    sqlite::Database database(whole, Access::create);
+    database.execute("PRAGMA journal_mode=MEMORY");
+    create_tables(database);
+  }
+  // The first event syncs the folder.
+  if (renameat2(AT_FDCWD, whole.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) != 0) {
+    unlink(whole.c_str());
+  }
 }
 
 /// A forged schema could run its own statements whenever a table is read or written, so all schema
@@ -161,6 +178,7 @@ std::string change_of(const Event& event, const std::string& prev_hash, std::uin
 
 sqlite::Database open_database(const std::filesystem::path& file, Access access) {
   if (access != Access::read) require_writable(file);
+  if (access == Access::create && !std::filesystem::exists(file)) create_whole(file);
   sqlite::Database database(file, access);
   // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
   // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is

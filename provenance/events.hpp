@@ -10,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "provenance/derived.hpp"
 #include "provenance/event_log.hpp"
 #include "provenance/records.hpp"
 
@@ -54,10 +55,11 @@ struct RunStarted {
   static constexpr std::string_view kType = "RunStarted";
   std::uint64_t attempt = 0;
   nlohmann::json host, process;
-  std::optional<std::string> parent_checkpoint;  ///< SHA-256
+  std::optional<std::string> parent_checkpoint;    ///< SHA-256
+  std::optional<std::uint64_t> bits_version = {};  ///< none in records of earlier versions
   static void fields(auto& e, auto field) {
     field("attempt", e.attempt), field("host", e.host), field("process", e.process);
-    field("parent_checkpoint", e.parent_checkpoint);
+    field("parent_checkpoint", e.parent_checkpoint), field("bits_version", e.bits_version, true);
   }
 };
 
@@ -75,9 +77,10 @@ struct RunResumed {
   std::uint64_t attempt = 0;
   nlohmann::json host, process;
   StateReached from;
+  std::optional<std::uint64_t> bits_version = {};  ///< none in records of earlier versions
   static void fields(auto& e, auto field) {
     field("attempt", e.attempt), field("host", e.host), field("process", e.process);
-    field("from", e.from);
+    field("from", e.from), field("bits_version", e.bits_version, true);
   }
 };
 
@@ -93,6 +96,11 @@ struct CheckpointFile {
 
 struct CheckpointPruned : CheckpointFile {
   static constexpr std::string_view kType = "CheckpointPruned";
+  Digests measures = {};  ///< of the cached measures; empty in records of earlier versions
+  static void fields(auto& e, auto field) {
+    CheckpointFile::fields(e, field);
+    field("measures", e.measures, true);
+  }
 };
 
 struct CheckpointRegenerated : CheckpointFile {

@@ -15,10 +15,14 @@
 namespace shearcell::hdf5 {
 
 /// Hold one around all calls of the library, which may be built without thread safety. The library
-/// then prints no errors; they are reported as exceptions.
+/// then prints no errors; they are reported as exceptions. The library may crash where memory runs
+/// out, so this throws std::bad_alloc if `room` bytes cannot be allocated.
 class Library {
  public:
-  Library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+  explicit Library(std::size_t room = 0) {
+    ::operator delete(::operator new(room + (std::size_t{16} << 20)));
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
 
  private:
   static inline std::mutex mutex_;

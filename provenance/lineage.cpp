@@ -22,9 +22,11 @@ class LineageBuilder {
   LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
 
   void operator()(const events::RunStarted& e) {
-    begin(e.host, lineage_.stage.parent, e.parent_checkpoint.value_or(""));
+    begin(e.host, lineage_.stage.parent, e.parent_checkpoint.value_or(""), e.bits_version);
   }
-  void operator()(const events::RunResumed& e) { begin(e.host, lineage_.stage.id, e.from.sha256); }
+  void operator()(const events::RunResumed& e) {
+    begin(e.host, lineage_.stage.id, e.from.sha256, e.bits_version);
+  }
   void operator()(const events::RunCompleted&) { end(AttemptOutcome::completed, ""); }
   void operator()(const events::RunInterrupted& e) { end(AttemptOutcome::interrupted, e.why); }
   void operator()(const events::RunFailed& e) { end(AttemptOutcome::failed, e.why); }
@@ -46,7 +48,8 @@ class LineageBuilder {
   void operator()(const auto&) {}
 
  private:
-  void begin(const json& host, const std::string& from_run, const std::string& from_checkpoint) {
+  void begin(const json& host, const std::string& from_run, const std::string& from_checkpoint,
+             std::optional<std::uint64_t> bits_version) {
     if (!lineage_.attempts.empty() && lineage_.attempts.back().outcome == AttemptOutcome::running) {
       lineage_.attempts.back().outcome = AttemptOutcome::lost;
     }
@@ -54,6 +57,8 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (host.is_object()) attempt.host = host;
+    // The only change of bits before the version was recorded came with layout 2 of these events.
+    attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;
     attempt.from_checkpoint = from_checkpoint;

@@ -47,6 +47,7 @@ struct Attempt {
   nlohmann::json host = nlohmann::json::object();
   std::string from_run;  ///< run of the initial state; "" if it began from loose grains or a file
   std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
+  std::uint64_t bits_version = 0;        ///< of the program; for old records, what they imply
   std::vector<std::string> checkpoints;  ///< SHA-256 of its checkpoints, in order
 };
 

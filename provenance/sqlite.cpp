@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "provenance/errors.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/limits.hpp"
 
 namespace shearcell::sqlite {
@@ -59,6 +61,10 @@ Database::Database(const std::filesystem::path& file, Access access)
   if (name_ != kInMemory) {
     full_name_ = sqlite::full_name(file);
     require_plain_files(full_name_);
+  }
+  // With the permissions that the umask gives, for folders that a group shares. SQLite's are 0644.
+  if (access == Access::create && !full_name_.empty()) {
+    Descriptor(open(full_name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   }
   sqlite3* handle = nullptr;
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
@@ -123,6 +129,10 @@ void Database::require_journal_can_be_played_back(int code) const {
 }
 
 void Database::fail(int code, std::string_view doing) const {
+  if ((code & 0xff) == SQLITE_NOMEM || code == SQLITE_IOERR_NOMEM) {
+    if (const auto no_memory = std::get_new_handler()) no_memory();
+    throw std::bad_alloc();
+  }
   require_same_file();  // SQLite would call it an I/O error
   require_journal_can_be_played_back(code);
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);

@@ -8,8 +8,10 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/bits_version.hpp"
 #include "provenance/events.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/sha256.hpp"
@@ -145,7 +147,9 @@ Store::Store(std::filesystem::path folder, Access access, double lease_seconds)
       self_(this_process()),
       lease_ms_(std::min(kLongestLeaseMs,
                          static_cast<std::uint64_t>(std::max(0.0, lease_seconds) * 1000))) {
-  if (access_ != Access::read) require_objects(folder_, database_);
+  if (access_ == Access::read) return;
+  require_objects(folder_, database_);
+  remove_leftovers(folder_, true);
 }
 
 Store::~Store() {
@@ -302,7 +306,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   const std::uint64_t attempt = known->attempts + 1;
   const json process = {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}};
-  events::RunStarted started{attempt, host, process, std::nullopt};
+  events::RunStarted started{attempt, host, process, std::nullopt, bits_version};
   if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
   events::Any begun = std::move(started);
   std::uint64_t from_step = 0;
@@ -310,7 +314,8 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
     const auto from = query_checkpoint(database_, id, *from_sha256);
     if (!from) throw unknown_checkpoint(id, *from_sha256);
     from_step = from->step;
-    begun = events::RunResumed{attempt, host, process, {from->sha256, from->step, from->cycle}};
+    begun = events::RunResumed{
+        attempt, host, process, {from->sha256, from->step, from->cycle}, bits_version};
   }
   if (known->step > from_step && !fill) {
     throw ConcurrencyConflict(fmt::format(
@@ -565,13 +570,15 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool la
   {
     // One transaction: all checkpoints are recorded as pruned, or none.
     Writing lock(*this);
+    DerivedCache measures(folder_, Access::read);
     for (const CheckpointRecord& record : records) {
       const auto now = query_checkpoint(database_, record.run, record.sha256);
       const auto run = query_stage(database_, record.run);
       const bool last = run && now && now->step >= run->step;
       if (!now || !run || now->state != CheckpointState::recorded) continue;
       if (last && !(last_too && run->state == StageState::completed)) continue;
-      append(run_stream(record.run), encode(events::CheckpointPruned{{*now}}), lock);
+      append(run_stream(record.run),
+             encode(events::CheckpointPruned{{*now}, measures.digests(now->sha256)}), lock);
     }
     lock.commit();
   }

@@ -8,8 +8,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <new>
 
 #include "core/filling.hpp"
 #include "core/watchdog.hpp"
@@ -48,6 +50,18 @@ std::string version_text() {
                      text_at(facts, "simd"), maker.flags, fmt::join(maker.libraries, ", "));
 }
 
+constexpr const char* kNoMemory =
+    "memory ran out; close other programs, raise the limit (ulimit -v), or use fewer threads, runs "
+    "at a time or grains";
+
+// Ends as by a kill, which loses nothing: an exception would need memory, and in a thread abort.
+[[noreturn]] void end_without_memory() {
+  for (const char* text : {"shearcell: ", kNoMemory, "\n"}) {
+    (void)!write(STDERR_FILENO, text, std::strlen(text));
+  }
+  std::_Exit(kOtherError);
+}
+
 template <class... Errors>
 bool is_any(const std::exception& error) {
   return ((dynamic_cast<const Errors*>(&error) != nullptr) || ...);
@@ -63,6 +77,11 @@ ExitCode exit_code_of(const std::exception& error) {
 }
 
 std::string message_of(const std::exception& error) {
+  if (is_any<std::bad_alloc>(error)) return kNoMemory;
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {
+    return "no thread can be started; raise the limits of memory (ulimit -v) or processes (-u)";
+  }
   const auto* of_path = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_path == nullptr) return error.what();
   return fmt::format("{}: {}", of_path->path1().string(), of_path->code().message());
@@ -158,6 +177,7 @@ int run(int argc, char** argv) {
 }  // namespace shearcell::cli
 
 int main(int argc, char** argv) {
+  std::set_new_handler(shearcell::cli::end_without_memory);
   shearcell::cli::make_surroundings_usual();
   return shearcell::cli::after_output(shearcell::cli::run(argc, argv));
 }

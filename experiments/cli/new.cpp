@@ -108,7 +108,8 @@ scales:
 
 /// Links a complete temporary file, so the file is complete and replaces no other.
 void write_new(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path whole = fmt::format("{}.tmp-{}", file.string(), getpid());
+  const std::filesystem::path whole =
+      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
   std::error_code failed, ignored;
   try {
     write_output(whole, text);

@@ -92,10 +92,12 @@ bool agreed() {
 void prune(const PruneOptions& options, Context& context) {
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records = prunable(options, store);
+  RunLineages known;
   const std::size_t kept = std::erase_if(
-      records, [&](const CheckpointRecord& c) { return why_not_again(store.stage(c.run)); });
+      records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} checkpoints of LAMMPS are kept: they cannot be recomputed\n", kept);
+    fmt::print("{} kept: LAMMPS or a program with another bits version made them\n",
+               counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();
   const std::vector<CheckpointRecord> leftovers = store.prune_leftovers();
@@ -152,7 +154,7 @@ struct RegenerateOptions {
 };
 
 nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std::size_t threads,
-                              Context& context) {
+                              RunLineages& known, Context& context) {
   nlohmann::json facts = {{"sha256", record.sha256},
                           {"run", record.run},
                           {"cycle", record.cycle},
@@ -169,7 +171,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   if (record.state == CheckpointState::recorded && store.load_if_readable(record)) {
     return say("kept", "the file is intact");
   }
-  if (const auto why = why_not_again(store.stage(record.run))) {
+  if (const auto why = why_not_again(store, record, known)) {
     fail(context, kOtherError);
     facts["why"] = *why;
     return say("refused", *why + "; keep a copy of its file elsewhere");
@@ -235,12 +237,13 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
+  RunLineages known;
   for (const CheckpointRecord& record : records) {
     if (stop_requested()) {
       fail(context, kInterrupted);
       break;
     }
-    list.push_back(regenerate_one(store, record, options.threads, context));
+    list.push_back(regenerate_one(store, record, options.threads, known, context));
   }
   if (context.json) print_json({{"checkpoints", list}});
 }
@@ -282,7 +285,8 @@ void add_prune(CLI::App& app, Context& context) {
 deletes nothing unless --yes is given. Keeps the newest checkpoint of a run and those that other
 stages start from. --last-too keeps those of unfinished stages only: if all are finished, events and
 measures alone remain, small enough to publish, and figures, tables and merges still work. Never
-deletes checkpoints of LAMMPS.
+deletes checkpoints that this program cannot recompute: those of LAMMPS and of programs with another
+bits version.
 Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
 plots need, and what the figures of the store's manifests simulate. The results are in
 derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its

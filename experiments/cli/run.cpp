@@ -80,7 +80,9 @@ CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const Ru
   std::atomic<std::size_t> deleted = 0;
   const auto prune = [&](const std::string& stage) {  // as soon as the stage is done
     std::vector<CheckpointRecord> records = store.prunable({{stage}, options.keep_every});
-    if (records.empty() || why_not_again(store.stage(stage))) return;
+    RunLineages known;
+    std::erase_if(records, [&](const auto& c) { return why_not_again(store, c, known); });
+    if (records.empty()) return;
     free_files(store, records, {}, false, context);
     deleted += records.size();
   };

@@ -71,19 +71,21 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::uint64_t seed = options.seed.value_or(seed_of(store.head()));
   std::vector<CheckpointRecord> all = replayable(store);
+  std::size_t left_out = 0, skipped = 0;
+  for (const Stage& run : store.stages()) {
+    left_out += store.checkpoints(run.id, Listed::and_pruned).size();
+  }
+  left_out -= all.size();
   // The first checkpoint of a stage takes no steps, so others are preferred.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
   if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
   const std::size_t count = std::min(options.replay, all.size());
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
-  std::size_t left_out = 0, skipped = 0;
-  for (const Stage& stage : store.stages()) {
-    if (why_not_again(stage)) left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
-  }
   if (!context.json) {
     if (left_out > 0) {
-      print_text("{} checkpoints of LAMMPS are left out: it does not repeat bits\n", left_out);
+      print_text("{} are left out: LAMMPS or a program with another bits version made them\n",
+                 counted(left_out, "checkpoint"));
     }
     print_text("replaying up to {} of {} checkpoints, --seed {}\n", count, all.size(), seed);
   }
@@ -157,6 +159,10 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
     print_text("recomputed the measures of {} of {} checkpoints\n", measures.computed,
                measures.cached);
   }
+  if (measures.absent + measures.not_covered > 0) {
+    print_text("measures of pruned checkpoints: {} absent; those of {} not covered by the log\n",
+               measures.absent, counted(measures.not_covered, "checkpoint"));
+  }
   if (report.ok()) {
     print_text(
         "Keep the head elsewhere; `verify --against SEQ HASH` proves later that the log only "
@@ -169,7 +175,10 @@ void verify(const VerifyOptions& options, Context& context) {
   VerifyReport report = Store(context.store, Access::read).verify(against);
   const MeasureCheck measures = audit(options, context, report);
   nlohmann::json all = facts(report);
-  all["measures"] = {{"kept", measures.cached}, {"computed_again", measures.computed}};
+  all["measures"] = {{"kept", measures.cached},
+                     {"computed_again", measures.computed},
+                     {"not_covered_checkpoints", measures.not_covered},
+                     {"absent", measures.absent}};
   if (!context.json) print(report, measures);
   if (!report.ok()) {
     fail(context, kStoreDamaged);
@@ -214,7 +223,7 @@ void add_verify(CLI::App& app, Context& context) {
       R"(Proves that no event or file was changed or lost; that each file is the one that its event
 describes (step, cycle, time, units, grains, observables, state); that each run has the
 parameters and swept values of its id and began from a completed packing; that the tables follow
-from the events.
+from the events; that cached measures of pruned checkpoints are those that the log names.
 --replay K recomputes K sampled checkpoints from the ones before, compares every bit of the
 state and of all that is recorded with it, and records the outcome. It skips a checkpoint if all
 files before it were pruned. --measures K recomputes

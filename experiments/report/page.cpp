@@ -117,7 +117,7 @@ json text_table(const TextTable& table) {
 }
 
 std::string draw(const FigureTable& table) {
-  const TemporaryFolder folder("shearcell-report-");
+  const TemporaryFolder folder;
   constexpr std::size_t most = 64'000'000;
   std::optional<std::string> svg = read_plain(draw_svg(table, folder.path()), most);
   if (!svg) throw AnalysisError(fmt::format("{}.svg is larger than {} bytes", table.name, most));

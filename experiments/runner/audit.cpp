@@ -182,19 +182,47 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   return found;
 }
 
+/// Compares the measures of pruned checkpoints with the log.
+void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
+  MeasureSources sources(store);
+  const auto note = [&](const std::string& run, const std::string& what) {
+    check.findings.push_back({Finding::Severity::error, "measures", run, what});
+  };
+  for (const Stage& run : store.stages()) {
+    sources.read_run(run.id);
+    for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+      if (record.state != CheckpointState::pruned) continue;
+      const auto found = sources.compare_pruned(record, cache);
+      if (found.named == 0) ++check.not_covered;
+      if (!found.altered.empty()) note(run.id, found.altered);
+      check.absent += found.absent;
+    }
+  }
+  if (check.absent > 0 && !cache.trouble().empty()) note("", cache.trouble());
+}
+
 /// Returns why measures cannot be copied; "" if they can.
-std::string copy_measures(const Store& store, DerivedCache& from) {
+std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
+  std::map<std::string, CheckpointRecord> unnamed;  // pruned, with measures that the log lacks
   for (const Stage& stage : store.stages()) {
     for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {
-        if (!into.get({&one.object.key, 1}).front()) missing.push_back(std::move(one.object));
+        const auto same = sources.is_as_pruned(record, one.object);
+        if (!same.value_or(true) || into.get({&one.object.key, 1}).front()) continue;
+        if (!same && record.state == CheckpointState::pruned)
+          unnamed.emplace(record.sha256, record);
+        missing.push_back(std::move(one.object));
       }
     }
   }
   if (!missing.empty()) into.put(missing);
+  for (const auto& [sha256, record] : unnamed) {
+    const events::CheckpointPruned again{{record}, into.digests(sha256)};
+    store.record(run_stream(record.run), events::encode(again));
+  }
   return into.trouble().empty() ? from.trouble() : into.trouble();
 }
 
@@ -202,9 +230,10 @@ std::string copy_measures(const Store& store, DerivedCache& from) {
 
 std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;
-  for (const Stage& stage : store.stages()) {
-    if (why_not_again(stage)) continue;
-    std::ranges::move(store.checkpoints(stage.id, Listed::and_pruned), std::back_inserter(found));
+  RunLineages known;
+  for (const Stage& run : store.stages()) {
+    std::ranges::copy_if(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found),
+                         [&](const auto& c) { return !why_not_again(store, c, known); });
   }
   return found;
 }
@@ -264,7 +293,7 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
   MeasureSources sources(store);
   const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
   const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
-  MeasureCheck check{.cached = cached.size(), .computed = chosen.size(), .findings = {}};
+  MeasureCheck check{.cached = cached.size(), .computed = chosen.size()};
   for (const CheckpointRecord& record : chosen) {
     const std::string wrong =
         wrong_measure(store, record, cached_measures(record, cache, sources), sources);
@@ -274,6 +303,7 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
          fmt::format("checkpoint {:.12}, {}; delete this file and draw the figures again",
                      record.sha256, wrong)});
   }
+  check_pruned(Store(folder, Access::read), cache, check);
   return check;
 }
 

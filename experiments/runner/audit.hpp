@@ -20,7 +20,7 @@ namespace shearcell {
 std::vector<Finding> check_runs(const Store& store);
 
 /// Every checkpoint that can be replayed, pruned ones included, in the order of runs and steps.
-/// Checkpoints of LAMMPS cannot be replayed.
+/// Checkpoints of LAMMPS and of programs with another bits version cannot be replayed.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// A random sample of `count` records without repetition, or all records; the same for the same
@@ -32,20 +32,22 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
-  std::size_t cached = 0;    ///< checkpoints of the store with cached measures
-  std::size_t computed = 0;  ///< of these, computed again
-  std::vector<Finding> findings;
+  std::size_t cached = 0;       ///< checkpoints of the store with cached measures
+  std::size_t computed = 0;     ///< of these, computed again
+  std::size_t not_covered = 0;  ///< checkpoints that an earlier version pruned, without digests
+  std::size_t absent = 0;       ///< measures that digests cover and the cache lacks
+  std::vector<Finding> findings = {};  ///< errors
 };
 
 /// Recomputes the measures that derived.sqlite in `folder` keeps, for `count` sampled checkpoints
 /// of the store, and compares them to a relative 1e-9 (mathematical libraries differ in the last
-/// bits).
+/// bits). Compares those of checkpoints that the store in `folder` has pruned with their digests.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 
 /// Store::merge(); then copies the cached measures of the sources. If one of three sampled
-/// checkpoints of a source has a wrong measure, none is copied from this source, and the error is
-/// added to `refused`.
+/// checkpoints of a source has a wrong measure, or a pruned one has an altered measure, none is
+/// copied from this source, and the error is added to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

@@ -292,6 +292,7 @@ class Campaign {
     options.damaged = [&](const std::string& what) {
       note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
     };
+    options.continuing = [&](const std::string& what) { say(job, what); };
     options.restoring = [&](const std::string& what) {
       progress_.say(fmt::format("{}: {}", job.name, what), true);
     };
@@ -336,11 +337,16 @@ class Campaign {
   }
 
   void note(const StageJob& job, std::size_t CampaignResult::*count, const std::string& why) {
-    const std::string line = fmt::format("{} ({:.12}): {}", job.name, job.id, why);
-    progress_.say(line);
+    say(job, why);
     const std::lock_guard lock(mutex_);
     const bool again = count == &CampaignResult::damaged && !damaged_.insert(job.id).second;
     if (!again) ++(result_.*count);
+  }
+
+  void say(const StageJob& job, const std::string& what) {
+    const std::string line = fmt::format("{} ({:.12}): {}", job.name, job.id, what);
+    progress_.say(line);
+    const std::lock_guard lock(mutex_);
     result_.messages.push_back(line);
   }
 

@@ -31,7 +31,7 @@ struct CampaignResult {
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< met a damaged file of the store
   std::size_t files_deleted = 0;      ///< of checkpoints, by --keep-every
-  std::vector<std::string> messages;  ///< one for each failure or damage
+  std::vector<std::string> messages;  ///< one for each failure, damage or change of bits
 };
 
 /// Records the manifest and the runs of the plan. Returns their stages, each once, parents

@@ -98,9 +98,20 @@ class Measuring {
 
   void look_up() {
     const auto found = cache_.get(keys_);
+    for (const ToMeasure& one : distinct_) {
+      const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
+      for (const std::string& damage :
+           {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
+        if (!damage.empty()) unread_earlier_.damage.insert(damage);
+      }
+    }
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       json& result = results_[k / providers_.size()][k % providers_.size()];
       if (!found[k] || !result.is_null()) continue;
+      const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
+      // What the log does not name can be computed again, unless the file is gone.
+      const bool kept = record.state != CheckpointState::pruned;
+      if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
       try {
         result = decode_result(*found[k]);
       } catch (const AnalysisError&) {

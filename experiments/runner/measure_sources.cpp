@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/measure_sources.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "core/drive.hpp"
@@ -10,6 +12,7 @@
 #include "protocols/ledger.hpp"
 #include "protocols/rest.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -44,11 +47,48 @@ void MeasureSources::read_run(const std::string& run) {
   entry->second.facts = facts_of(stage);
   for (const Ask& ask : asks_of(stage.memberships))
     entry->second.cadences.insert(ask.checkpoint_every);
+  for (const Event& event : store_->events(run_stream(run), events::CheckpointPruned::kType)) {
+    auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
+    if (pruned.measures.empty()) continue;
+    Digests& all = entry->second.digests[pruned.checkpoint.sha256];
+    pruned.measures.merge(all);  // later ones count
+    all = std::move(pruned.measures);
+  }
   if (!entry->second.facts.drive) return;
   for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
     const std::uint64_t step = one.step;
     entry->second.checkpoints.insert_or_assign(step, std::move(one));
   }
+}
+
+std::optional<bool> MeasureSources::is_as_pruned(const CheckpointRecord& record,
+                                                 const DerivedObject& object) const {
+  const auto& all = runs_.at(record.run).digests;
+  const auto log = all.find(record.sha256);
+  if (log == all.end()) return true;
+  const auto [name, digest] = digest_entry(object);
+  const auto found = log->second.find(name);
+  return found == log->second.end() ? std::nullopt : std::optional(found->second == digest);
+}
+
+MeasureSources::PrunedMeasures MeasureSources::compare_pruned(const CheckpointRecord& record,
+                                                              DerivedCache& cache) const {
+  const auto& all = runs_.at(record.run).digests;
+  const auto log = all.find(record.sha256);
+  PrunedMeasures result;
+  if (record.state != CheckpointState::pruned || log == all.end()) return result;
+  const Digests cached = cache.digests(record.sha256);
+  for (const auto& [name, digest] : log->second) {
+    const auto now = cached.find(name);
+    ++result.named;
+    if (now == cached.end()) ++result.absent;
+    if (now == cached.end() || now->second == digest) continue;
+    result.altered = fmt::format(
+        "{}: {} of checkpoint {:.12} (run {:.12}, cycle {:g}) is not what the log says since the "
+        "file was pruned; restore this file from a backup, or `shearcell regenerate {:.12}`",
+        DerivedCache::kFile, name, record.sha256, record.run, record.cycle, record.sha256);
+  }
+  return result;
 }
 
 DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider,

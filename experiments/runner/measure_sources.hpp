@@ -37,6 +37,18 @@ class MeasureSources {
   DerivedKey key(const CheckpointRecord& record, const Provider& provider,
                  std::uint64_t every) const;
 
+  /// Whether a cached object is what the log says since the checkpoint's file was pruned; nothing
+  /// if the log does not name the object. True if the log has no digests of the checkpoint.
+  std::optional<bool> is_as_pruned(const CheckpointRecord& record,
+                                   const DerivedObject& object) const;
+
+  struct PrunedMeasures {
+    std::size_t named = 0, absent = 0;  ///< in the log; of these, not in the cache
+    std::string altered;                ///< says which are others than in the log; "" if none is
+  };
+  /// Compares what is cached of a checkpoint that is pruned now with the log.
+  PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;
+
   /// Cycles between the checkpoints that experiments ask for, and 1.
   const std::set<std::uint64_t>& cadences(const std::string& run) const {
     return runs_.at(run).cadences;
@@ -64,6 +76,7 @@ class MeasureSources {
     RunFacts facts = {};
     std::set<std::uint64_t> cadences = {1};
     std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // of a shear, by step
+    std::map<std::string, Digests> digests = {};                 // by SHA-256
   };
 
   const Store* store_ = nullptr;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/bits_version.hpp"
 #include "core/diagnostics.hpp"
 #include "core/drive.hpp"
 #include "core/filling.hpp"
@@ -465,6 +466,13 @@ class StageAttempt {
       store_.start_stage(id(), facts, from, beginning.parent_checkpoint, filling);
       started = true;
       if (options_.begun) options_.begun();
+      const auto first = beginning.from || beginning.parent_checkpoint.empty()
+                             ? beginning.from
+                             : store_.find_checkpoint(beginning.parent_checkpoint);
+      RunLineages known;
+      const bool own = plan_.inputs.parameters.engine == EngineKind::shearcell;
+      const auto other = own && first ? why_not_again(store_, *first, known) : std::nullopt;
+      if (other && options_.continuing) options_.continuing("it continues a state: " + *other);
       return compute();
     } catch (const ConcurrencyConflict& conflict) {
       if (started) release(conflict);
@@ -716,7 +724,8 @@ Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& 
 
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options) {
   if (record.state != CheckpointState::pruned) return;
-  if (!options.restores || why_not_again(store.stage(record.run))) {
+  RunLineages known;
+  if (!options.restores || why_not_again(store, record, known)) {
     store.load_checkpoint(record);  // throws, unless it was restored meanwhile
     return;
   }
@@ -780,9 +789,21 @@ nlohmann::json to_json(const Divergence& divergence) {
           {"why", divergence.message}};
 }
 
-std::optional<std::string> why_not_again(const Stage& stage) {
-  if (engine_of(stage.resolved) == EngineKind::shearcell) return std::nullopt;
-  return "LAMMPS made it, whose runs are not repeated bit for bit";
+std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
+                                         RunLineages& known) {
+  add_run_lineage(store, record.run, known);
+  const RunLineage& run = known.at(record.run);
+  if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
+    return "LAMMPS made it, whose runs are not repeated bit for bit";
+  }
+  const CheckpointHistory* made = run.find(record.sha256);
+  if (made == nullptr || !made->attempt) return std::nullopt;
+  const Attempt& by = run.attempts[*made->attempt];
+  if (by.bits_version == bits_version) return std::nullopt;
+  return fmt::format(
+      "shearcell {} made it, with bits version {}, and this program computes version {}, whose "
+      "states differ in the last bits",
+      maker_of(by.host).version, by.bits_version, bits_version);
 }
 
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "experiments/manifest/parameters.hpp"
+#include "provenance/lineage.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell {
@@ -30,6 +31,8 @@ struct StageOptions {
   bool restores = true;  ///< whether it recomputes files of pruned states that it needs
   std::function<void(const std::string&)> damaged = {};  ///< called for each skipped checkpoint
   std::function<void()> begun = {};                      ///< called when an attempt is recorded
+  /// Called when the stage continues a state that this program would compute with other bits.
+  std::function<void(const std::string&)> continuing = {};
   /// Called before a pruned state that the stage needs is recomputed.
   std::function<void(const std::string&)> restoring = {};
   /// Called a few times a second with the progress: where the stage is, its rate, the time left.
@@ -77,8 +80,10 @@ struct Replay {
   bool interrupted = false;  ///< by a signal; there is no result and nothing was recorded
 };
 
-/// Why the checkpoints of a run cannot be recomputed bit for bit; nothing if they can.
-std::optional<std::string> why_not_again(const Stage& stage);
+/// Why this program cannot recompute the checkpoint bit for bit; nothing if it can. `known` holds
+/// what was read of the log for other checkpoints.
+std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
+                                         RunLineages& known);
 
 /// Computes from the nearest earlier checkpoint that is kept, or from the beginning of the stage,
 /// up to the record's step. Compares the state and all that is recorded with it (cycle, time, tilt,

@@ -2,6 +2,8 @@
 #include "provenance/io/file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +13,8 @@
 #include <cstdlib>
 #include <system_error>
 #include <utility>
+
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 
@@ -80,6 +84,23 @@ void sync(const Descriptor& file, const std::filesystem::path& path) {
   if (fsync(file.get()) != 0) fail_on(path, "write to disk (fsync)");
 }
 
+void remove_leftovers(const fs::path& folder, bool below) {
+  constexpr std::string_view mark = ".tmp-";
+  std::error_code ignored;
+  fs::recursive_directory_iterator entry(folder, ignored);
+  for (; entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
+    const fs::path path = entry->path();
+    const std::string name = path.filename();
+    const std::size_t at = name.rfind(mark), from = at + mark.size(), last = name.rfind('-');
+    if (!below || name[0] == '.') entry.disable_recursion_pending();
+    if (name[0] != '.' || at == name.npos || last <= from) continue;
+    const auto pid = read_number<pid_t>(std::string_view(name).substr(from, last - from));
+    if (!pid || *pid < 1 || kill(*pid, 0) == 0 || errno != ESRCH) continue;
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (flock(file.get(), LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, ignored);
+  }
+}
+
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability) {
@@ -89,10 +110,11 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
   do {
     name = temporary + std::to_string(getpid()) + '-' + std::to_string(counter++);
     number = openat(folder.get(), name.c_str(),
-                    O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+                    O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   } while (number < 0 && errno == EEXIST);
   if (number < 0) fail_on(path, "write");
   const Descriptor file(number);
+  flock(file.get(), LOCK_EX);  // in use, for remove_leftovers()
   try {
     write_all(file, bytes, path);
     if (durability == Durability::synced) sync(file, path);
@@ -138,13 +160,14 @@ void write_output(const fs::path& path, std::string_view bytes) {
   fs::create_directories(parent, ignored);
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");
+  remove_leftovers(parent);
   replace_file(folder, path, bytes_of(bytes), '.' + path.filename().string() + ".tmp-",
                Durability::renamed);
 }
 
 NewFile::NewFile(const fs::path& path)
     : path_(path),
-      file_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644)) {
+      file_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)) {
   if (!file_.valid()) fail_on(path_, "write");
 }
 
@@ -158,7 +181,7 @@ void NewFile::add(std::string_view text) {
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
-  fs::path whole = prefix + "XXXXXX";
+  fs::path whole = prefix + std::to_string(getpid()) + "-XXXXXX";
   const bool named = whole.is_absolute();
   if (!named) {
     std::error_code missing;
@@ -171,6 +194,7 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
     }
     whole = folder / whole;
   }
+  remove_leftovers(whole.parent_path());
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {
     fail_on(whole.parent_path(), named
@@ -178,6 +202,7 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
                                      : "make a temporary folder in it (TMPDIR names another one)");
   }
   path_ = pattern;
+  flock(held_.emplace(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).get(), LOCK_EX);
 }
 
 TemporaryFolder::~TemporaryFolder() {

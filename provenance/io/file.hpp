@@ -46,7 +46,12 @@ enum class Durability {
   synced    ///< and the new file survives a power cut
 };
 
-/// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0644
+/// Deletes temporary files and folders (".*.tmp-<pid>-*") that killed programs left in the folder,
+/// with `below` also in the folders in it: the process has ended, and no process, as of another
+/// container, holds the lock.
+void remove_leftovers(const std::filesystem::path& folder, bool below = false);
+
+/// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0666
 /// less umask). Then renames the file to the last part of `path`, in place of a file or link of
 /// that name. On any error deletes the temporary file and throws as fail_on does.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
@@ -86,12 +91,13 @@ class NewFile {
   Descriptor file_;
 };
 
-/// A new folder PREFIX + six random characters, in the folder for temporary files (TMPDIR) unless
-/// the prefix is an absolute path; readable by this user only, and deleted with its content at the
-/// end of the object's life. The constructor throws std::system_error, which names the folder.
+/// A new folder PREFIX + "<pid>-" + six random characters, in the folder for temporary files
+/// (TMPDIR) unless the prefix is an absolute path; remove_leftovers() is called there. The folder
+/// is readable by this user only, and deleted with its content at the end of the object's life. The
+/// constructor throws std::system_error, which names the folder.
 class TemporaryFolder {
  public:
-  explicit TemporaryFolder(const std::string& prefix = "shearcell-");
+  explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -99,6 +105,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  std::optional<Descriptor> held_;  ///< a lock: the folder is in use
 };
 
 }  // namespace shearcell

@@ -12,6 +12,14 @@ TEST(Reproducible, TheBitsOfTheReferenceBuildOnEveryKernel) {
   for (const test::Golden& golden : test::kGolden) EXPECT_TRUE(is_reached(golden)) << golden.name;
 }
 
+// Two versions with equal bits, or a version that was left out, would forbid what is possible.
+TEST(Reproducible, EachVersionOfTheBitsHasItsOwn) {
+  for (std::size_t k = 1; k < test::kBits.size(); ++k) {
+    EXPECT_EQ(test::kBits[k].version, test::kBits[k - 1].version + 1);
+    EXPECT_NE(test::kBits[k].fingerprints, test::kBits[k - 1].fingerprints);
+  }
+}
+
 // Any cutoffs and kernels, on random scenes: EqualsBruteForceOverAllPairs and
 // tests/provenance/restart_property_test.cpp.
 TEST(Reproducible, AnyThreadsAndAnyLists) {

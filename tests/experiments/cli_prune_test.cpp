@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <regex>
 
+#include "analysis/measures.hpp"
+#include "provenance/derived.hpp"
+#include "provenance/events.hpp"
+#include "tests/experiments/damage.hpp"
 #include "tests/experiments/program.hpp"
 
 namespace shearcell::test {
@@ -66,6 +71,14 @@ class Prune : public ProgramTest {
       if (file.starts_with("drawn/") && file.ends_with(".csv")) all += read_bytes(path(file));
     }
     return all;
+  }
+
+  /// Changes digits of every measure of this name, and its digest in the cache.
+  void forge_measures(const std::string& store, const std::string& name) {
+    measures(name, [](nlohmann::json& content) {
+      const std::string text = content.dump();
+      content = nlohmann::json::parse(std::regex_replace(text, std::regex("\\.6"), ".7"));
+    })(path(store));
   }
 
   std::size_t pruned_events() const {
@@ -318,6 +331,125 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   EXPECT_EQ(drawn("shearcell-store"), drawn("twin"));
 }
 
+/// With `--last-too` the cache alone has the measures. What was changed there is damage, what is
+/// missing is counted, and `table` and `verify` agree.
+TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
+  start_again();
+  expect(0, {"prune", "--last-too", "--yes"});
+  const nlohmann::json sound = json({"verify", "--json"}).at("measures");
+  EXPECT_EQ(sound.at("not_covered_checkpoints"), 0);
+  EXPECT_EQ(sound.at("absent"), 0);
+  expect(0, {"verify"}, {"nothing was changed\n"});
+  fs::copy(path("shearcell-store"), path("sound"), fs::copy_options::recursive);
+  const fs::path cache = path("shearcell-store/derived.sqlite");
+  const auto sql = [&](const std::string& text) {
+    sqlite::Database(cache, Access::write).execute(text);
+  };
+  const auto forge = [&](const char* name) { forge_measures("shearcell-store", name); };
+  struct Case {
+    const char* what;
+    std::function<void()> damage;
+    int code;
+    std::vector<std::string> verify_says;
+  };
+  for (const Case& one :
+       {Case{
+            "forged with its digest", [&] { forge("scalars"); }, 4, {"scalars-", "not as the log"}},
+        {"forged without it",
+         [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
+         4,
+         {"core-", "not as the log"}},
+        {"swapped",
+         [&] {
+           sql("UPDATE derived SET content = (SELECT content FROM derived AS other WHERE "
+               "other.measure = derived.measure AND other.checkpoint > derived.checkpoint LIMIT 1) "
+               "WHERE measure LIKE 'scalars%' AND checkpoint = (SELECT min(checkpoint) FROM "
+               "derived)");
+         },
+         4,
+         {"scalars-"}},
+        {"cut", [&] { fs::resize_file(cache, fs::file_size(cache) / 2); }, 4, {"derived.sqlite"}},
+        {"overwritten",
+         [&] { write_bytes(cache, std::string(5000, 'x')); },
+         4,
+         {"it is not a database of measures"}},
+        {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; those of 0 checkpoints"}},
+        {"deleted", [&] { fs::remove(cache); }, 0, {" absent; those of 0 checkpoints"}},
+        {"without one measure",
+         [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
+         0,
+         {"measures of pruned checkpoints: 30 absent"}}}) {
+    SCOPED_TRACE(one.what);
+    fs::remove_all(path("shearcell-store"));
+    fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
+    one.damage();
+    expect(one.code, {"verify"}, one.verify_says);
+    expect(one.code, {"table"}, {one.code == 4 ? "derived.sqlite" : "not measured: "});
+  }
+  // The remedy that the message gives.
+  fs::remove_all(path("shearcell-store"));
+  fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
+  forge("scalars");
+  expect(0, {"regenerate", "--all"});
+  EXPECT_EQ(shown("shearcell-store"), shown_);
+  expect(0, {"prune", "--last-too", "--yes"});
+  expect(0, {"verify"}, {"nothing was changed\n"});
+}
+
+// Measures that a program caches of a checkpoint after it was pruned do not count.
+TEST_F(Prune, AMeasureThatTheLogDoesNotNameIsNotUsed) {
+  start_again();
+  expect(0, {"prune", "--last-too", "--yes"});
+  const std::string before = expect(0, {"table", "--ledger"}).out;
+  DerivedCache cache(path("shearcell-store"));
+  const Store store(path("shearcell-store"), Access::read);
+  const CheckpointRecord record = store.checkpoints(last_run(), Listed::and_pruned).at(4);
+  const DerivedObject forged{{record.sha256, provider("ledger").key(), analysis_version},
+                             encode_result({1, 2, 3, 4, 5})};
+  cache.put({&forged, 1});
+  EXPECT_EQ(expect(0, {"table", "--ledger"}).out, before);
+}
+
+TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
+  start_again();
+  expect(0, {"table"});
+  const fs::path cache = path("shearcell-store/derived.sqlite");
+  fs::rename(cache, path("aside"));
+  {
+    Store store(path("shearcell-store"), Access::write);
+    store.prune(store.prunable({}));
+  }
+  fs::rename(path("aside"), cache);
+  expect(0, {"verify"},
+         {"those of 24 checkpoints not covered by the log", "nothing was changed\n"});
+  expect(0, {"table"});
+}
+
+TEST_F(Prune, AMergeTakesMeasuresThatTheLogsCover) {
+  start_again();
+  fs::copy(path("shearcell-store"), path("few"), fs::copy_options::recursive);
+  expect(0, {"table", "--rest"});
+  for (const char* store : {"shearcell-store", "few"}) {
+    expect(0, {"prune", "--last-too", "--yes", "--store", store});
+  }
+  // A measure that the other store alone has gets into the log of this one.
+  expect(0, {"merge", "shearcell-store", "--store", "few"});
+  const std::string whole = expect(0, {"table", "--rest"}).out;
+  EXPECT_EQ(expect(0, {"table", "--rest", "--store", "few"}).out, whole);
+  const nlohmann::json covered = json({"verify", "--json", "--store", "few"}).at("measures");
+  EXPECT_EQ(covered.at("not_covered_checkpoints"), 0);
+  EXPECT_EQ(covered.at("absent"), 0);
+  const std::size_t events = Store(path("few"), Access::read).head().seq;
+  expect(0, {"merge", "shearcell-store", "--store", "few"});
+  EXPECT_EQ(Store(path("few"), Access::read).head().seq, events) << "merged again";
+  expect(0, {"rebuild", "--store", "few"});
+  expect(0, {"verify", "--store", "few"}, {"nothing was changed\n"});
+  // Altered ones are not taken.
+  forge_measures("few", "scalars");
+  expect(4, {"merge", "few", "--store", "united"}, {"scalars-"});
+  EXPECT_FALSE(fs::exists(path("united/derived.sqlite")));
+}
+
 TEST_F(Prune, RunKeepsEveryKthFile) {
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
@@ -371,6 +503,69 @@ TEST_F(Prune, RunDeletesNothingIfMeasuresCannotBeKept) {
   expect(1, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "-q", "--store", "thin"},
          {"measures cannot be cached", "kept: "});
   EXPECT_TRUE(Store(path("thin"), Access::read).events("", "CheckpointPruned").empty());
+}
+
+/// A store of a program that computes other bits. Its states cannot be made again.
+class OtherBits : public ProgramTest {
+ protected:
+  void SetUp() override {
+    fs::copy(fs::path(SHEARCELL_TEST_DATA) / "store_v1", path("shearcell-store"),
+             fs::copy_options::recursive);
+    for (const auto& entry : fs::recursive_directory_iterator(path("shearcell-store"))) {
+      fs::permissions(entry, fs::perms::owner_write, fs::perm_options::add);
+    }
+  }
+
+  std::vector<std::uint64_t> versions() const {
+    std::vector<std::uint64_t> found;
+    for (const Event& event : Store(path("shearcell-store"), Access::read).events()) {
+      if (!events::begins_attempt(event)) continue;
+      found.push_back(event.body().value("bits_version", std::uint64_t{0}));
+    }
+    return found;
+  }
+};
+
+TEST_F(OtherBits, AreKeptByPrune) {
+  expect(0, {"prune", "--last-too", "--yes"},
+         {"4 checkpoints kept: LAMMPS or a program with another bits version"});
+  EXPECT_EQ(objects(), 4U);
+  EXPECT_EQ(json({"prune", "--keep-every", "2", "--json"}).at("kept_of_other_engines"), 1);
+  expect(0, {"verify", "--replay", "9"}, {"4 checkpoints are left out"});
+  expect(0, {"verify"}, {"nothing was changed"});
+}
+
+TEST_F(OtherBits, AreNotRegeneratedAndNotCalledDiverged) {
+  const Store store(path("shearcell-store"), Access::read);
+  const CheckpointRecord record = store.checkpoints(last_run()).at(1);
+  fs::remove(path("shearcell-store/" + record.file));
+  const std::size_t events = store.head().seq;
+  const Outcome refused = expect(1, {"regenerate", record.sha256},
+                                 {"shearcell 0.1.0 (41b6139096fb) made it, with bits version 1",
+                                  "this program computes version 2"});
+  EXPECT_FALSE(has(refused.out, "DIVERGED"));
+  EXPECT_EQ(store.head().seq, events);
+}
+
+TEST_F(OtherBits, AreNamedByWhatContinuesThem) {
+  // With the default of that time, which is part of the run's id.
+  std::string manifest = read_bytes(fs::path(SHEARCELL_TEST_DATA) / "store_v1/manifest.yaml");
+  manifest.insert(manifest.find("  grains"), "  pressure_at: moving_wall\n");
+  write("m.yaml", manifest);
+  EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0})) << "written before they were";
+  const std::string run = last_run();
+  expect(0, {"run", "m.yaml", "--cycles", "4", "-q"},
+         {"it continues a state: shearcell 0.1.0", "with bits version 1"});
+  EXPECT_EQ(last_run(), run);
+  EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0, 2}));
+  // Cycles 3 and 4 can be made again from cycle 2, which cannot.
+  expect(0, {"prune", "--last-too", "--yes"}, {"4 checkpoints kept"});
+  EXPECT_EQ(objects(), 4U);
+  expect(0, {"regenerate", "--all"}, {"the same bytes"});
+  EXPECT_EQ(objects(), 6U);
+  // Nor does a program say so of its own states.
+  const Outcome more = expect(0, {"run", "m.yaml", "--cycles", "5", "-q"});
+  EXPECT_FALSE(has(more.err, "bits version")) << more.err;
 }
 
 }  // namespace

@@ -116,10 +116,8 @@ std::vector<std::string> check_left_behind(const fs::path& folder, bool could_wr
       }
     }
   } catch (const std::exception& error) {
-    // A crash during the creation of the store may leave an empty log: nothing was recorded.
-    std::error_code missing;
-    const auto size = fs::file_size(store_folder / "store.sqlite", missing);
-    if (!missing && size > 0) wrong.emplace_back(error.what());
+    // A crash during the creation of the store leaves none.
+    if (fs::exists(store_folder / "store.sqlite")) wrong.emplace_back(error.what());
   }
   return wrong;
 }

@@ -278,6 +278,11 @@ int renameat(int from_folder, const char* from, int to_folder, const char* to) n
   return faulty_at("renameat", from_folder, from, to_folder, to);
 }
 
+int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+              unsigned flags) noexcept {
+  return faulty_at("renameat2", from_folder, from, to_folder, to, flags);
+}
+
 int mkdir(const char* path, mode_t mode) noexcept {
   return faulty_path("mkdir", path, mode);
 }

@@ -107,6 +107,9 @@ class Faults : public testing::Test {
     const Store store(folder / "store", Access::read);
     EXPECT_TRUE(store.verify().ok());
     EXPECT_TRUE(store.leases().empty());
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      EXPECT_EQ(entry.path().filename().string().find(".tmp-"), std::string::npos) << entry.path();
+    }
   }
 
   /// The command on a copy of a folder, with a fault. `whole`: where it met none.

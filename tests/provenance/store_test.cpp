@@ -2,14 +2,21 @@
 // The store records what happened to each run, for all threads and processes, now and later.
 #include "provenance/store.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <optional>
 
 #include "core/threads.hpp"
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/io/file.hpp"
 #include "tests/provenance/samples.hpp"
 
 namespace shearcell {
@@ -300,6 +307,80 @@ TEST_F(StoreTest, CanBeCreatedAfterAnInterruptedCreation) {
   Store store(other, Access::create);
   store.declare_stage(sample_run(1));
   EXPECT_TRUE(store.verify().ok());
+}
+
+// A killed program leaves no log without tables: until the log is whole it has another name.
+TEST_F(StoreTest, TheLogIsWholeWhenItHasItsName) {
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const fs::path folder = folder_.path() / std::to_string(attempt);
+    const pid_t child = fork();
+    if (child == 0) {
+      Store(folder, Access::create);
+      _exit(0);
+    }
+    for (;;) {  // as soon as there is a file of this name
+      if (fs::exists(folder / "store.sqlite")) break;
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_TRUE(Store(folder, Access::read).verify().ok());
+  }
+}
+
+TEST_F(StoreTest, FilesHaveThePermissionsOfTheUmask) {
+  const auto mode = [](const fs::path& path) {
+    return static_cast<unsigned>(fs::status(path).permissions());
+  };
+  for (const mode_t mask : {mode_t{002}, mode_t{022}, mode_t{077}}) {
+    const mode_t before = umask(mask);
+    const fs::path folder = folder_.path() / std::to_string(mask);
+    Store store(folder, Access::create);
+    store.declare_stage(sample_run(1));
+    store.start_stage(id_, {});
+    const CheckpointRecord record = store.record_checkpoint(id_, sample_checkpoint(id_));
+    DerivedCache cache(folder);
+    umask(before);
+    for (const fs::path& file :
+         {folder / "store.sqlite", folder / DerivedCache::kFile, folder / record.file}) {
+      EXPECT_EQ(mode(file), 0666 & ~mask) << file;
+    }
+    for (const fs::path& path :
+         {folder, folder / "objects", (folder / record.file).parent_path()}) {
+      EXPECT_EQ(mode(path), 0777 & ~mask) << path;
+    }
+  }
+}
+
+TEST_F(StoreTest, DeletesTemporaryFilesOfKilledPrograms) {
+  store_.start_stage(id_, {});
+  const CheckpointRecord record = store_.record_checkpoint(id_, sample_checkpoint(id_));
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  const auto name = [](const std::string& begin, pid_t pid) {
+    return begin + ".tmp-" + std::to_string(pid) + "-0";
+  };
+  const fs::path objects = (path_ / record.file).parent_path();
+  const std::vector<fs::path> left = {objects / name("", child),
+                                      path_ / name(".store.sqlite", child)};
+  const std::vector<fs::path> others = {objects / name("", getpid()),
+                                        objects / name("", 0),
+                                        objects / name("kept", child),
+                                        objects / ".tmp-x-0",
+                                        path_ / (".tmp-" + std::to_string(child)),
+                                        path_ / ".tmp-"};
+  for (const auto* files : {&left, &others}) {
+    for (const fs::path& file : *files) write_bytes(file, "half");
+  }
+  const fs::path used = objects / (".tmp-" + std::to_string(child) + "-1");
+  const Descriptor lock(::open(used.c_str(), O_CREAT | O_WRONLY, 0600));  // of another container
+  flock(lock.get(), LOCK_EX);
+  open(Access::read);
+  for (const fs::path& file : left) EXPECT_TRUE(fs::exists(file)) << file;
+  open(Access::write);
+  for (const fs::path& file : left) EXPECT_FALSE(fs::exists(file)) << file;
+  for (const fs::path& file : others) EXPECT_TRUE(fs::exists(file)) << file;
+  EXPECT_TRUE(fs::exists(used));
 }
 
 TEST_F(StoreTest, IsReadOnlyIfItMayNotBeWritten) {

@@ -12,7 +12,7 @@ BELOW = {
     "core": [],
     "protocols": ["core"],
     "provenance/io": [],
-    "provenance": ["core/cell.hpp", "core/machine.hpp", "core/named.hpp", "core/scene.hpp", "core/state.hpp", "provenance/io"],
+    "provenance": ["core/bits_version.hpp", "core/cell.hpp", "core/machine.hpp", "core/named.hpp", "core/scene.hpp", "core/state.hpp", "provenance/io"],
     "analysis": ["core", "provenance", "provenance/io"],
     "experiments/manifest": ["analysis", "core", "protocols", "provenance", "provenance/io"],
 }
