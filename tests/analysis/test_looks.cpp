@@ -54,9 +54,9 @@ TEST(LookLevel, OfOneLookIsTheLevel) {
 }
 
 #ifdef NDEBUG
-constexpr std::uint32_t samples = 20000;
+constexpr std::uint32_t campaigns = 20000;
 #else
-constexpr std::uint32_t samples = 1000;
+constexpr std::uint32_t campaigns = 1000;
 #endif
 
 /// Percentages of campaigns of normal runs in which the interval of some look is above or below the
@@ -85,13 +85,13 @@ TEST(LookLevel, FalseVerdictsAreOneInTwentyOnEachSide) {
   for (std::size_t runs = 10; runs <= 40; runs += 2) many.push_back(runs);
   for (const Looks& looks : {Looks{6, 12, 20}, Looks{6, 30}, Looks{12, 36, 60}, many}) {
     const double level = look_level(looks);
-    const auto [above, below] = false_verdicts(looks, level, samples);
-    const auto naive = false_verdicts(looks, confidence_level, samples / 10 + 900);
+    const auto [above, below] = false_verdicts(looks, level, campaigns);
+    const auto naive = false_verdicts(looks, confidence_level, campaigns / 10 + 900);
     fmt::print("| {} to {}, {} | {:.4f} | {:.2f} % | {:.2f} % | {:.2f} %, {:.2f} % |\n",
                looks.front(), looks.back(), looks.size(), level, above, below, naive[0], naive[1]);
     // Both sides are alike, so that together they are known better. Of few campaigns: 3 standard
     // deviations.
-    const double slack = samples < 5000 ? 300 * std::sqrt(0.05 * 0.95 / (2.0 * samples)) : 0;
+    const double slack = campaigns < 5000 ? 300 * std::sqrt(0.05 * 0.95 / (2.0 * campaigns)) : 0;
     EXPECT_LE((above + below) / 2, 5.5 + slack);
     EXPECT_GE((naive[0] + naive[1]) / 2, 7);
   }

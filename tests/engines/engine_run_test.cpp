@@ -41,7 +41,7 @@ class EngineRun : public ProgramTest {
   Stage shear_of(const std::string& experiment) {
     const Store store(path("shearcell-store"), Access::read);
     for (const Stage& stage : store.stages()) {
-      if (stage.kind == "shear" && first_ask(stage).experiment == experiment) return stage;
+      if (stage.kind == "shear" && first_place(stage).experiment == experiment) return stage;
     }
     throw std::runtime_error("no shear of " + experiment);
   }
