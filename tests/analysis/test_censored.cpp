@@ -151,9 +151,9 @@ TEST(Censored, EqualValues) {
 // Coverage.
 
 #ifdef NDEBUG
-constexpr std::uint32_t samples = 2000;
+constexpr std::uint32_t coverage_draws = 2000;
 #else
-constexpr std::uint32_t samples =
+constexpr std::uint32_t coverage_draws =
     100;  // without optimization an interval takes forty times as long
 #endif
 
@@ -308,12 +308,12 @@ TEST(CensoredCoverage, OfNormalRunsAndOfRunsWithTheMeasuredHazard) {
         fmt::print("| {} | {} | {} |", source.name, kind.name, runs);
         for (const double share : shares) {
           std::uint32_t held = 0;
-          for (std::uint32_t s = 0; s < samples; ++s)
+          for (std::uint32_t s = 0; s < coverage_draws; ++s)
             held += kind.holds(source, sampled(source, s, runs, share)) ? 1 : 0;
-          const double covered = static_cast<double>(held) / samples;
+          const double covered = static_cast<double>(held) / coverage_draws;
           fmt::print(" {:.3f} |", covered);
           // Of few draws: 3 standard deviations of the simulation.
-          const double slack = samples < 1000 ? 3 * std::sqrt(0.9 * 0.1 / samples) : 0;
+          const double slack = coverage_draws < 1000 ? 3 * std::sqrt(0.9 * 0.1 / coverage_draws) : 0;
           EXPECT_GE(covered, source.at_least - slack)
               << source.name << ", " << kind.name << ", " << runs << ", " << share;
         }

@@ -54,9 +54,9 @@ TEST(LookLevel, OfOneLookIsTheLevel) {
 }
 
 #ifdef NDEBUG
-constexpr std::uint32_t campaigns = 20000;
+constexpr std::uint32_t kCampaigns = 20000;
 #else
-constexpr std::uint32_t campaigns = 1000;
+constexpr std::uint32_t kCampaigns = 1000;
 #endif
 
 /// Percentages of campaigns of normal runs in which the interval of some look is above or below the
@@ -85,13 +85,13 @@ TEST(LookLevel, FalseVerdictsAreOneInTwentyOnEachSide) {
   for (std::size_t runs = 10; runs <= 40; runs += 2) many.push_back(runs);
   for (const Looks& looks : {Looks{6, 12, 20}, Looks{6, 30}, Looks{12, 36, 60}, many}) {
     const double level = look_level(looks);
-    const auto [above, below] = false_verdicts(looks, level, campaigns);
-    const auto naive = false_verdicts(looks, confidence_level, campaigns / 10 + 900);
+    const auto [above, below] = false_verdicts(looks, level, kCampaigns);
+    const auto naive = false_verdicts(looks, confidence_level, kCampaigns / 10 + 900);
     fmt::print("| {} to {}, {} | {:.4f} | {:.2f} % | {:.2f} % | {:.2f} %, {:.2f} % |\n",
                looks.front(), looks.back(), looks.size(), level, above, below, naive[0], naive[1]);
-    // Both sides are alike, so that together they are known better. Of few campaigns: 3 standard
+    // Both sides are alike, so that together they are known better. Of few kCampaigns: 3 standard
     // deviations.
-    const double slack = campaigns < 5000 ? 300 * std::sqrt(0.05 * 0.95 / (2.0 * campaigns)) : 0;
+    const double slack = kCampaigns < 5000 ? 300 * std::sqrt(0.05 * 0.95 / (2.0 * kCampaigns)) : 0;
     EXPECT_LE((above + below) / 2, 5.5 + slack);
     EXPECT_GE((naive[0] + naive[1]) / 2, 7);
   }
@@ -103,7 +103,7 @@ TEST(PowerOf, OneLookIsThatOfTheIntegralOverTheSampleVariance) {
     const std::vector<LookPower> found = power_of({"", margin}, truth, 1, groups, Looks{runs});
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].runs, runs);
-    EXPECT_NEAR(found[0].as_claimed, agrees, 0.025);  // 3 standard deviations of 4000 campaigns
+    EXPECT_NEAR(found[0].as_claimed, agrees, 0.025);  // 3 standard deviations of 4000 kCampaigns
     EXPECT_NEAR(found[0].against, differs, 0.025);
   };
   expect(1, 0, 1, 12, 0.8894, 0.0000);
@@ -114,19 +114,19 @@ TEST(PowerOf, OneLookIsThatOfTheIntegralOverTheSampleVariance) {
 
 TEST(PowerOf, LaterLooksDecideMoreAndTheFirstVerdictIsFinal) {
   const Looks looks = {6, 12, 24};
-  const std::vector<LookPower> equal = power_of({"", 1}, 0, 1, 1, looks);
-  ASSERT_EQ(equal.size(), 3U);
-  EXPECT_LT(equal[0].as_claimed, equal[1].as_claimed);
-  EXPECT_LT(equal[1].as_claimed, equal[2].as_claimed);
-  EXPECT_GT(equal[2].as_claimed, 0.99);
+  const std::vector<LookPower> found = power_of({"", 1}, 0, 1, 1, looks);
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_LT(found[0].as_claimed, found[1].as_claimed);
+  EXPECT_LT(found[1].as_claimed, found[2].as_claimed);
+  EXPECT_GT(found[2].as_claimed, 0.99);
   // At the edge of the margin the claim agrees in one case of twenty, at all looks together.
   const std::vector<LookPower> edge = power_of({"", 1}, 1, 1, 1, looks);
   EXPECT_LE(edge[2].as_claimed, 0.06);
   EXPECT_GT(edge[2].as_claimed, 0.03);
   const std::vector<LookPower> higher = power_of({"", 1, Relation::higher}, 2, 1, 1, looks);
   EXPECT_GT(higher[2].as_claimed, 0.99);
-  EXPECT_EQ(power_of({"", 1}, 0, 1, 1, looks)[1].as_claimed, equal[1].as_claimed);
-  EXPECT_EQ(power_of({"", 1e-3}, 0, 1e-3, 1, looks)[1].as_claimed, equal[1].as_claimed) << "units";
+  EXPECT_EQ(power_of({"", 1}, 0, 1, 1, looks)[1].as_claimed, found[1].as_claimed);
+  EXPECT_EQ(power_of({"", 1e-3}, 0, 1e-3, 1, looks)[1].as_claimed, found[1].as_claimed) << "units";
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ pair_coeff * * ${{law}})",
   // A side plane turns about its end at the top wall. Regions begin in their present pose: LAMMPS
   // computes their velocities from displacements. `wall/region` reports its force only once.
   void plane(std::size_t side) {
-    const auto& [point, normal] = wall_planes(cell_, pose_)[side];
+    const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
     const bool upright = side < 2, moves = side == (bottom_moves_ ? 2 : 3);
     if (upright || for_users_) {
