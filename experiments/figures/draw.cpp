@@ -322,9 +322,6 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
       made.undrawn.emplace_back(error.what());
     }
   }
-  if (!find_program("rsvg-convert")) {
-    made.notes.emplace_back("no PDF: rsvg-convert is not installed (Debian package librsvg2-bin)");
-  }
   const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
   write(".caption.txt", drawn ? caption(made, options.runs) + "\n" : "");
   const bool claims = !made.verdicts.empty();

@@ -14,7 +14,7 @@
 #define DOWN(address) ((address) & ~(PAGE - 1))
 #define UP(address) DOWN((address) + PAGE - 1)
 
-static char loader[4200] = "", program[4200];
+static char loader[4200] = "", library[4200], program[4200];
 static char image[PAGE] __attribute__((aligned(16))); /* the loader's headers */
 
 static long call(long number, long a, long b, long c, long d, long e, long f) {
@@ -117,15 +117,15 @@ __attribute__((used, noreturn)) static void launch(const long* stack) {
   long folder = length(own);
   while (folder > 0 && own[folder - 1] != '/') --folder;
   join(loader, own, folder, "lib/ld-linux-x86-64.so.2");
+  join(library, own, folder, "lib");
   join(program, own, folder, "lib/program");
   const unsigned long base = map_loader();
   const Elf64_Ehdr* head = (const Elf64_Ehdr*)image;
 
-  /* As if the user had typed: lib/ld-linux-x86-64.so.2 --library-path '$ORIGIN' lib/program ...
-   * The loader replaces $ORIGIN by the folder of lib/program after it has separated the paths at
-   * : and ;, so the folder may have these characters. */
+  /* As if the user had typed: lib/ld-linux-x86-64.so.2 --library-path lib ... lib/program ARGUMENTS
+   */
   const long first[] = {(long)loader,           (long)"--inhibit-cache",
-                        (long)"--library-path", (long)"$ORIGIN",
+                        (long)"--library-path", (long)library,
                         (long)"--argv0",        arguments[0] ? arguments[0] : (long)"shearcell",
                         (long)program};
   const long added = sizeof first / sizeof *first;
