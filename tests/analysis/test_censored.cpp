@@ -313,7 +313,8 @@ TEST(CensoredCoverage, OfNormalRunsAndOfRunsWithTheMeasuredHazard) {
           const double covered = static_cast<double>(held) / coverage_draws;
           fmt::print(" {:.3f} |", covered);
           // Of few draws: 3 standard deviations of the simulation.
-          const double slack = coverage_draws < 1000 ? 3 * std::sqrt(0.9 * 0.1 / coverage_draws) : 0;
+          const double slack =
+              coverage_draws < 1000 ? 3 * std::sqrt(0.9 * 0.1 / coverage_draws) : 0;
           EXPECT_GE(covered, source.at_least - slack)
               << source.name << ", " << kind.name << ", " << runs << ", " << share;
         }

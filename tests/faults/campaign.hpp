@@ -20,8 +20,8 @@ struct Fault {
 
 using Words = std::vector<std::string>;
 
-/// Starts `shearcell WORDS --store FOLDER/store` in the folder, with the fault layer if `fault` has a kind. With
-/// `reads` the layer also counts operations that read. Standard output is appended to
+/// Starts `shearcell WORDS --store FOLDER/store` in the folder, with the fault layer if `fault` has
+/// a kind. With `reads` the layer also counts operations that read. Standard output is appended to
 /// FOLDER/printed, standard error to FOLDER/said.
 pid_t start_program(const std::filesystem::path& folder, const Words& words, const Fault& fault,
                     bool reads = false);
