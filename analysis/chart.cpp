@@ -133,7 +133,7 @@ Text formula(std::string_view text) {
 
 int digits_between(double low, double high) {
   const double spread = (high - low) / std::max(std::abs(low), std::abs(high));
-  if (!(spread > 1e-13)) return 9;
+  if (!(spread > 1e-11)) return 9;  // less is rounding
   return std::clamp(5 - static_cast<int>(std::floor(std::log10(spread))), 9, 17);
 }
 

@@ -230,7 +230,7 @@ TEST_F(Measure, WrongContentUnderARightHashIsRejected) {
   EXPECT_EQ(csv("second"), csv("first"));
   object.content = encode_result(nlohmann::json{{"phi", "dense"}});
   kept.put(std::span(&object, 1));
-  EXPECT_THROW(make("third"), AnalysisError);
+  EXPECT_THROW(make("third"), StoreDamaged);
   EXPECT_EQ(findings().size(), 1U);
   std::filesystem::remove(cache());
   make("fourth");
