@@ -94,7 +94,7 @@ std::string unfit_scratch(const std::string& text) {
 
 fs::path scratch_here(const std::string& text) {
   static const std::regex variable(kVariable);
-  if (const std::string why = unfit_scratch(text); !why.empty()) throw UsageError(why);
+  if (text.size() > kLongest) throw UsageError(unfit_scratch(text));
   std::string folder;
   auto rest = text.begin();
   for (std::sregex_iterator found(text.begin(), text.end(), variable), end; found != end; ++found) {

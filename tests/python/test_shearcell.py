@@ -557,7 +557,9 @@ class Package(unittest.TestCase):
                     break
                 time.sleep(0.1)
             states = {run.state for run in Store(store).runs()}
-            self.assertLessEqual(states, {"interrupted", "declared", "completed"})
+            # Without a reader the program may end at its next line, as if it had been killed.
+            killed = {"running"} if number == signal.SIGKILL else set()
+            self.assertLessEqual(states, {"interrupted", "declared", "completed"} | killed)
             self.assertNotEqual(states, {"completed"})
             self.assertEqual(self.hashes(shearcell.run(question, store=store).path), expected, "it continues")
 
