@@ -20,25 +20,30 @@ constexpr int significant = 9;  // digits
 using nlohmann::json;
 
 struct FieldText {
+  Digits precision;
+
   std::string operator()(std::monostate) const { return {}; }
-  std::string operator()(double value) const { return std::isfinite(value) ? digits(value) : ""; }
+  std::string operator()(double value) const {
+    if (!std::isfinite(value)) return "";
+    return precision == Digits::nine ? digits(value) : json(value).dump();
+  }
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(const std::string& value) const { return csv_field(value); }
 };
 
 /// Place of a column, counted from 1.
-std::size_t column_number(const FigureTable& table, const std::string& name) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-  if (found == table.columns.end()) {
+std::size_t column_number(const Table& table, const std::string& name) {
+  const std::size_t place = table.place(name);
+  if (place == table.columns.size()) {
     throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
   }
-  return static_cast<std::size_t>(found - table.columns.begin()) + 1;
+  return place + 1;
 }
 
 /// The number in a column, counted from 1; none for column 0 and where there is no finite number.
 std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
-  const TableValue& value = row.at(column - 1);
+  const TableCell& value = row.at(column - 1);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   const auto* real = std::get_if<double>(&value);
   if (real == nullptr || !std::isfinite(*real)) return std::nullopt;
@@ -68,7 +73,7 @@ json to_json(const Axis& axis) {
           {"clip", axis.clip}};
 }
 
-json to_json(const FigureTable& table, const Series& series) {
+json to_json(const Table& table, const Series& series) {
   json points = json::array();
   for (const ChartPoint& p : points_of(table, series)) {
     points.push_back(
@@ -141,20 +146,46 @@ std::string csv_field(const std::string& text) {
   return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
-std::string to_csv(const FigureTable& table) {
+TableCell cell_of(const json& value) {
+  if (value.is_number_float()) return value.get<double>();
+  if (value.is_number()) return value.get<std::int64_t>();
+  return value.is_null() ? TableCell() : TableCell(value_text(value));
+}
+
+json json_of(const TableCell& cell) {
+  return std::visit(
+      [](const auto& value) -> json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+          return nullptr;
+        else
+          return value;
+      },
+      static_cast<const TableCell::variant&>(cell));
+}
+
+nlohmann::ordered_json to_json(const Table& table) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const TableRow& row : table.rows) {
+    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = json_of(row[c]);
+  }
+  return rows;
+}
+
+std::string to_csv(const Table& table, Digits precision) {
   std::string text;
   const auto add_line = [&](const auto& cells, const auto& field) {
     for (const auto& cell : cells) text += field(cell) + ',';
     if (!cells.empty()) text.back() = '\n';
   };
-  add_line(table.columns, csv_field);
+  add_line(table.columns, [](const TableColumn& column) { return csv_field(column.name); });
   for (const TableRow& row : table.rows) {
-    add_line(row, [](const TableValue& value) { return std::visit(FieldText{}, value); });
+    add_line(row, [&](const TableCell& value) { return std::visit(FieldText{precision}, value); });
   }
   return text;
 }
 
-std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {
+std::vector<ChartPoint> points_of(const Table& table, const Series& series) {
   const SeriesColumns& from = series.columns;
   if (from.x.empty()) {
     std::vector<ChartPoint> points = series.points;
@@ -181,7 +212,7 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
   return points;
 }
 
-void name_run_counts(FigureTable& table) {
+void name_run_counts(Table& table) {
   std::vector<Series*> means;
   std::vector<std::string> counts;  // of each; "" if it is complete
   for (Series& series : table.chart.series) {
@@ -229,7 +260,7 @@ bool is_on_log_axes(const Chart& chart, const ReferenceLine& line) {
   return line.at > 0 || !(line.vertical ? chart.x : chart.y).log;
 }
 
-std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
+std::string caption_of(const std::string& title, std::span<const Table> tables) {
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
@@ -239,7 +270,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
   };
-  for (const FigureTable& table : tables) {
+  for (const Table& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
     ++charts;
@@ -297,7 +328,7 @@ json to_json(const Text& text) {
   return parts;
 }
 
-json chart_json(const FigureTable& table) {
+json chart_json(const Table& table) {
   const Chart& chart = table.chart;
   json series = json::array();
   for (const Series& one : chart.series) series.push_back(to_json(table, one));

@@ -29,10 +29,8 @@ bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Numbers, names and other single characters, without spaces; of a text that is too long only the
-/// beginning, because std::regex recurses for each character.
+/// Numbers, names and other single characters, without spaces.
 std::vector<std::string> tokens_of(std::string_view text) {
-  text = text.substr(0, longest_expression + 1);
   static const std::regex token("[0-9.][0-9.]*(?:[eE][-+]?[0-9]*)?|[A-Za-z_][A-Za-z_0-9]*|[^ ]");
   return {std::cregex_token_iterator(text.data(), text.data() + text.size(), token), {}};
 }

@@ -2,6 +2,8 @@
 #include "analysis/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -136,6 +138,12 @@ Estimate estimate_with(double value, const Interval& interval, double quantile, 
           .spread = error * std::sqrt(static_cast<double>(runs))};
 }
 
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing) {
+  estimate.value = increasing(estimate.value);
+  estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
+  return estimate;
+}
+
 double student_quantile(double probability, double freedom) {
   return boost::math::quantile(boost::math::students_t(freedom), probability);
 }
@@ -186,6 +194,30 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic) {
   if (runs < least_bootstrap_runs) return {-infinite, infinite};
   return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper);
+}
+
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups) {
+  double n = 0, k = 0, sum = 0, sum_of_squares = 0, sizes = 0, within = 0;
+  for (const std::vector<double>& group : groups) {
+    const RunStatistics found = over_runs(group);
+    if (found.runs == 0) continue;
+    const double size = static_cast<double>(found.runs), mean = *found.mean;
+    k += 1;
+    n += size;
+    sizes += size * size;
+    sum += size * mean;
+    sum_of_squares += size * mean * mean;
+    within += std::pow(found.standard_error.value_or(0), 2) * size * (size - 1);
+  }
+  if (k < 2 || n == k) return std::nullopt;
+  constexpr double tail = 0.05;
+  const double size = (n - sizes / n) / (k - 1);
+  const double between = (sum_of_squares - sum * sum / n) / (k - 1), noise = within / (n - k);
+  const double least = boost::math::quantile(boost::math::fisher_f(k - 1, n - k), tail);
+  const double chi = boost::math::quantile(boost::math::chi_squared(k - 1), tail);
+  const auto root = [size](double variance) { return std::sqrt(std::max(0.0, variance) / size); };
+  return SpreadBetween{root(between - noise), root((between - least * noise) * (k - 1) / chi),
+                       between / noise};
 }
 
 Estimate ratio(const Estimate& a, const Estimate& b) {

@@ -68,6 +68,9 @@ struct Estimate {
 /// The estimate with an interval whose ends are `quantile` standard errors from its middle.
 Estimate estimate_with(double value, const Interval& interval, double quantile, std::size_t runs);
 
+/// Applies an increasing function to the value and the interval; the spread does not change.
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
+
 /// Quantiles of Student's t with `freedom` degrees of freedom and of the normal distribution.
 double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);
@@ -89,6 +92,22 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
 /// Where 90 % of repetitions with `chosen` runs lie: 5 and 95 % quantiles of the statistic of so
 /// many of the `runs`, drawn with replacement. Unbounded for fewer than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
+
+/// Standard deviation between the true means of groups that are drawn from many (one-way random
+/// effects).
+struct SpreadBetween {
+  double value = 0;        ///< sqrt of (variance between groups - variance within) / group size
+  double upper_limit = 0;  ///< exceeds the true one with 95 % probability
+  double f = 0;            ///< variance ratio; with no difference between groups it is about 1
+};
+/// Analysis of variance of groups of one value per run, which may be of unequal size: S. R. Searle,
+/// G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit is that
+/// of J. S. Williams, Biometrika 49, 278 (1962), with k groups and f = n - k:
+///
+///     limit^2 = (k - 1) MSB (1 - F / f_ratio) / (n0 chi^2),   F, chi^2: 5 % quantiles
+///
+/// None for fewer than two groups with values, or without a group of two.
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups);
 
 /// a / b of two independent estimates of positive quantities. The errors of the logarithms are
 /// added in squares, on each side those that move the ratio there: G. Y. Zou and A. Donner, Stat.

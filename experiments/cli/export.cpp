@@ -195,8 +195,8 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
-    const Frame frame = frame_of(store.load_checkpoint(record), record,
-                                 {shown_place(run), run.stage}, &sources, every);
+    const ExportedState frame = frame_of(store.load_checkpoint(record), record,
+                                    {shown_place(run), run.stage}, &sources, every);
     for (const FrameWriter& write : writers) write(frame);
   }
   writers.clear();  // closes the files

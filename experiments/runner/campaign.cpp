@@ -53,8 +53,7 @@ class Progress {
   void begin(const StageJob& job) {
     const std::lock_guard lock(mutex_);
     running_[job.id] = {job.name, "starting", {}};
-    if (terminal_ || quiet_) return;
-    print_stderr("{}: started ({} of {} stages done)\n", job.name, done_, stages_);
+    if (!terminal_ && !quiet_) print_stderr("{}: started\n", job.name);
   }
 
   void update(const StageJob& job, const std::string& text) {

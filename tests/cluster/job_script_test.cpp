@@ -108,19 +108,6 @@ TEST(Scratch, IsAnAbsolutePathThatMayHaveVariables) {
   }
 }
 
-// A regular expression of the standard library recurses for each character.
-TEST(LongTexts, AreRefusedAndOverflowNoStack) {
-  const std::string a(100'000, 'a'), ones(100'000, '1');
-  for (const std::string& text : {"/" + a, "$" + a, "${" + a + "}", "/$" + a + "/x", a}) {
-    EXPECT_TRUE(has(unfit_scratch(text), " bytes")) << text.size();
-    EXPECT_THROW(scratch_here(text), UsageError);
-  }
-  EXPECT_EQ(unfit_scratch("/" + a.substr(0, 900)), "");
-  for (const std::string& text : {ones, ones + "-1", "1-" + ones, "1:" + ones, ones + ":1:1", a}) {
-    EXPECT_FALSE(slurm_seconds(text));
-  }
-}
-
 TEST(Scratch, HasTheValuesOfVariablesHereAndRunsNothing) {
   const Variable disk("NODE_DISK", "/node's \"disk\" $(touch x)`id`/$HOME"), user("ME", "me");
   const std::string value = "/node's \"disk\" $(touch x)`id`/$HOME";

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <set>
 
+#include "core/simulation.hpp"
+#include "core/watchdog.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "provenance/errors.hpp"

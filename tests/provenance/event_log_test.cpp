@@ -7,6 +7,7 @@
 
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {
@@ -191,7 +192,7 @@ TEST_F(EventLogTest, SaysHowToRecoverWhatAKilledWriterLeftOnAReadOnlyDisk) {
            {log.string() + ": a program was writing to this store when it was killed",
             "cannot write to " + folder_.path().string(), c.unwritable,
             std::string("copy the whole folder to a disk where you can write")}) {
-        EXPECT_TRUE(has(error.what(), part)) << part << "\n" << error.what();
+        EXPECT_TRUE(test::has(error.what(), part)) << part << "\n" << error.what();
       }
     }
     // As the message says.

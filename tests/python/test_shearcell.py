@@ -11,11 +11,9 @@ import os
 import pathlib
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import warnings
 
@@ -34,7 +32,6 @@ try:
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
-import shearcell
 from shearcell.checkpoint import GRAIN_MEASURES
 from shearcell import ShearcellError, Store
 
@@ -430,219 +427,25 @@ class Package(unittest.TestCase):
         finally:
             os.chdir(here)
 
-    def pip(self, package, *options):
-        """pip without network, in a clone's place; skips the test where there is no pip."""
-        environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-        if importlib.util.find_spec("pip") is None:
-            self.skipTest("needs python3-pip")
-        return subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--quiet",
-                               "--break-system-packages", *options, str(package)],
-                              capture_output=True, text=True, env=environment, check=False)
-
     def test_pip_installs_it_from_a_clone(self):
         clone, there = self.folder / "clone", self.folder / "there"
         shutil.copytree(f"{source}/experiments/python", clone / "experiments/python",
-                        ignore=shutil.ignore_patterns("build", "*.egg-info", "__pycache__"))
+                        ignore=shutil.ignore_patterns("build", "*.egg-info"))
         shutil.copy(f"{source}/CMakeLists.txt", clone)
-        before = sorted(clone.rglob("*"))
-        # Neither setuptools nor the network is needed to build it.
-        done = self.pip(clone / "experiments/python", "--target", there)
+        environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+        if not all(map(importlib.util.find_spec, ("pip", "setuptools", "wheel"))):
+            self.skipTest("needs python3-pip, python3-setuptools and python3-wheel")
+        done = subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation",
+                               "--no-deps", "--quiet", "--break-system-packages", "--target", str(there),
+                               str(clone / "experiments/python")],
+                              capture_output=True, text=True, env=environment, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(sorted(clone.rglob("*")), before, "something was left in the clone")
         code = ("import importlib.metadata, shearcell, sys; print(importlib.metadata.version('shearcell'), "
                 "len(shearcell.Store(sys.argv[1]).runs()), shearcell.__file__)")
         done = subprocess.run([sys.executable, "-B", "-c", code, str(self.path)], capture_output=True, text=True,
-                              cwd="/", env={**os.environ, "PYTHONPATH": str(there)}, check=False)
+                              cwd="/", env={**environment, "PYTHONPATH": str(there)}, check=False)
         version = self.store.version().split()[1]
         self.assertEqual(done.stdout, f"{version} 2 {there}/shearcell/__init__.py\n", done.stderr)
-
-    def test_pip_says_what_to_do_with_a_copy(self):
-        copy = self.folder / "copied"
-        shutil.copytree(f"{source}/experiments/python", copy, ignore=shutil.ignore_patterns("__pycache__"))
-        before = sorted(copy.rglob("*"))
-        done = self.pip(copy, "--target", self.folder / "nowhere")
-        self.assertNotEqual(done.returncode, 0)
-        self.assertIn("pip install CLONE/experiments/python", done.stderr)
-        self.assertNotIn("Traceback", done.stderr)
-        self.assertEqual(sorted(copy.rglob("*")), before)
-
-    QUESTION = {"experiment": "asked", "base": {"grains": 200, "amplitude_rad": 0.1, "cycles": 1, "steps_per_cycle": 20000},
-                "sweep": {"grid": {"fluid": ["still", "cell"]}}, "seeds": 1,
-                "checkpoints": {"every_cycles": 1},
-                "plots": [{"name": "compaction", "y": "phi", "x": "cycle"}],
-                "claims": [{"name": "same", "compare": "phi", "at_cycle": 1,
-                            "between": [{"fluid": "still"}, {"fluid": "cell"}], "margin": 0.005}]}
-
-    def hashes(self, store):
-        return {run.id: run.facts["state_hash"] for run in Store(store).runs()}
-
-    def inside(self, folder):
-        """Works in that new folder until the test ends."""
-        (self.folder / folder).mkdir()
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(self.folder / folder)
-
-    def test_run_takes_a_path_a_text_or_a_dict(self):
-        self.inside("computed")
-        planned = shearcell.plan(self.QUESTION)
-        self.assertEqual(list(planned["stage"]), ["prepare", "shear", "shear"])
-        self.assertAlmostEqual(planned["core_seconds_left"].sum() / planned.attrs["cores"],
-                               planned.attrs["seconds_left"], delta=0.5 * planned.attrs["seconds_left"])
-        # By hand what the dict states.
-        text = ("experiment: asked\nbase: {grains: 200, amplitude_rad: 0.1, cycles: 1, steps_per_cycle: 20000}\n"
-                "sweep:\n  grid:\n    fluid: [still, cell]\nseeds: 1\ncheckpoints: {every_cycles: 1}\n")
-        pathlib.Path("asked.yaml").write_text(text)
-        subprocess.run([program, "run", "asked.yaml", "-q", "--store", "program"], check=True, stdout=subprocess.DEVNULL)
-        for manifest in (self.QUESTION, text, "asked.yaml", pathlib.Path("asked.yaml"), [text],
-                         {**self.QUESTION, "seeds": np.int64(1),
-                          "base": {**self.QUESTION["base"], "amplitude_rad": np.float64(0.1)}}):
-            store = shearcell.run(manifest, jobs=2)
-            self.assertEqual([run.state for run in store.runs()], ["completed"] * 2)
-            self.assertEqual(self.hashes(store.path), self.hashes("program"))
-        self.assertEqual(store.path, pathlib.Path("shearcell-store").absolute())
-        self.assertEqual(shearcell.plan(text)["state"].tolist(), ["done"] * 3)
-        self.assertEqual(len(shearcell.run(self.QUESTION, store=store, seeds=2, variant="fluid=cell").runs(seed=2)), 1)
-        self.assertEqual({p.name for p in pathlib.Path().iterdir()},
-                         {"asked.yaml", "program", "shearcell-store"}, "a file was left behind")
-
-    def test_errors_of_a_run_have_a_sentence_and_a_code(self):
-        self.inside("wrong")
-        base = self.QUESTION["base"]
-        for manifest, how, code, sentence in (
-                ({**self.QUESTION, "sede": 1}, {}, 2, r"^manifest:\d+.*sede.*Did you mean seeds"),
-                ({**self.QUESTION, "base": {**base, "grains": -1}}, {}, 2, r"^manifest:\d+.*grains"),
-                ("nowhere.yaml", {}, 2, "nowhere.yaml"), (self.QUESTION, {"scale": "desk"}, 2, "scale"),
-                (self.QUESTION, {"cycels": 3}, 2, "--cycels"),
-                ({**self.QUESTION, "base": {**base, "max_overlap_diameters": 1e-6}}, {}, 3, "unstable")):
-            with self.assertRaisesRegex(ShearcellError, sentence) as raised:
-                shearcell.run(manifest, **how)
-            self.assertEqual(raised.exception.code, code)
-            self.assertNotRegex(str(raised.exception), r"Traceback|\.shearcell-|^shearcell:")
-        with self.assertRaisesRegex(ShearcellError, "sede") as raised:
-            shearcell.plan({**self.QUESTION, "sede": 1})
-        self.assertEqual(raised.exception.code, 2)
-        with self.assertRaisesRegex(TypeError, "a path, a text or a dict"):
-            shearcell.run([3])
-        with self.assertRaises(ValueError):
-            shearcell.run({**self.QUESTION, "seeds": float("nan")})
-        with self.assertRaisesRegex(ShearcellError, "no program /nowhere") as raised:
-            shearcell.run(self.QUESTION, program="/nowhere")
-        self.assertIsNone(raised.exception.code)
-
-    def test_interrupt_stops_as_in_a_terminal(self):
-        self.inside("interrupted")
-        question = {**self.QUESTION, "base": {**self.QUESTION["base"], "steps_per_cycle": 200000}}
-        expected = self.hashes(shearcell.run(question, store="whole").path)
-        code = ("import json, shearcell, sys\n"
-                "try:\n    shearcell.run(json.loads(sys.argv[1]), store=sys.argv[2])\n"
-                "except KeyboardInterrupt:\n    sys.exit('KeyboardInterrupt')\n")
-        for number in (signal.SIGINT, signal.SIGKILL):
-            store = f"of-{number.name}"
-            with subprocess.Popen([sys.executable, "-B", "-u", "-c", code, json.dumps(question), store],
-                                  start_new_session=True, stderr=subprocess.PIPE, text=True) as python:
-                said = ""
-                while not re.search(r"fluid=\w+ seed=1: started", said):
-                    more = python.stderr.read(1)
-                    self.assertTrue(more, "it ended before it could be interrupted: " + said)
-                    said += more
-                children = pathlib.Path(f"/proc/{python.pid}/task/{python.pid}/children").read_text().split()
-                self.assertEqual(len(children), 1)
-                os.killpg(python.pid, number)  # as a terminal and Jupyter do
-                said = python.stderr.read()
-                python.wait()
-            if number == signal.SIGINT:
-                self.assertIn("KeyboardInterrupt", said)
-            for _ in range(600):  # the program ends by itself
-                if not pathlib.Path(f"/proc/{children[0]}/cmdline").is_file():
-                    break
-                time.sleep(0.1)
-            states = {run.state for run in Store(store).runs()}
-            self.assertLessEqual(states, {"interrupted", "declared", "completed"})
-            self.assertNotEqual(states, {"completed"})
-            self.assertEqual(self.hashes(shearcell.run(question, store=store).path), expected, "it continues")
-
-    def test_figures_show_themselves(self):
-        self.inside("shown")
-        store = shearcell.run(self.QUESTION)
-        figure = store.figure("compaction")
-        self.assertEqual((figure.name, figure.experiment, figure.undrawn), ("compaction", "asked", []))
-        self.assertTrue(all(file.is_file() for file in figure.files))
-        self.assertIn("shearcell-figures/asked/base/compaction.csv", str(figure.files))
-        self.assertTrue(figure._repr_svg_().startswith("<?xml"))
-        page = figure._repr_html_()
-        self.assertIn('<img src="data:image/svg+xml;base64,', page)
-        self.assertIn(figure.caption.split("<")[0][:40], page)
-        self.assertEqual([f.name for f in store.figures(fluid="cell", out="of cell")], ["compaction", "same"])
-        verdicts = store.verdicts(out="elsewhere")
-        claim = json.loads(pathlib.Path("elsewhere/asked/base/same.verdict.json").read_text())["claims"][0]
-        row = verdicts[verdicts["figure"] == "same"].iloc[0]
-        self.assertEqual((row["verdict"], row["margin"], row["runs"]), (claim["verdict"], 0.005, claim["runs"]))
-        facts = json.loads(json.dumps(figure.facts))
-        facts["verdict"]["claims"] = [{**claim, "id": "A.1", "interval": [1, None]}]
-        later = shearcell.Figure(facts).verdicts.iloc[0]
-        self.assertEqual((later["id"], later["low"]), ("A.1", 1))
-        self.assertIn("<!doctype html>", store.report("page.html").read_text(encoding="utf-8")[:20])
-        with self.assertRaisesRegex(ShearcellError, "S2") as raised:
-            store.figure("S2")
-        self.assertEqual(raised.exception.code, 2)
-        self.addCleanup(os.environ.update, {"PATH": os.environ["PATH"]})
-        os.environ["PATH"] = "/nowhere"
-        with self.assertWarnsRegex(UserWarning, "gnuplot is not installed"):
-            figure = store.figure("compaction", out="undrawn")
-        self.assertIsNone(figure._repr_svg_())
-        self.assertIn("gnuplot is not installed", figure._repr_html_())
-        self.assertTrue(pathlib.Path("undrawn/asked/base/compaction.csv").is_file())
-
-    def test_a_changed_function_is_said(self):
-        store = Store(self.copy("changed"))
-        scope = {}
-
-        def define(text):
-            exec(compile(text, "<cell>", "exec"), scope)
-            return scope["own"]
-
-        def said(function, key="own", **how):
-            with warnings.catch_warnings(record=True) as all_said:
-                warnings.simplefilter("always")
-                values = list(store.measure(function, key=key, **how).iloc[:, -1])
-            return values[1], [str(one.message) for one in all_said if "differs" in str(one.message)]
-
-        self.assertEqual(said(define("def own(state): return 2 * state.cycle")), (2, []))
-        # The same, written in another way and elsewhere.
-        self.assertEqual(said(define("# what\n\ndef own(state):\n    return 2 * state.cycle  # twice")), (2, []))
-        value, lines = said(define("def own(state): return 3 * state.cycle"))
-        self.assertEqual((value, len(lines)), (2, 1))
-        self.assertRegex(lines[0], "6 of these results were kept under the key own .*fresh=True")
-        self.assertEqual(len(said(scope["own"], fluid="cell")[1]), 1)
-        self.assertEqual(said(scope["own"], fresh=True), (3, []))
-        self.assertEqual(said(scope["own"]), (3, []))
-        # Whatever makes it compute something else.
-        helped = "def own(state): return helper(state) + FACTOR\n"
-        pairs = [(times(2), times(3)), (with_default(2), with_default(3)), (Scale(2), Scale(3)),
-                 (Scale(2).method, Scale(3).method),
-                 (functools.partial(multiplied, 2), functools.partial(multiplied, 3)),
-                 (lambda state: np.sin(state.cycle), lambda state: np.cos(state.cycle)),
-                 (lambda state: [1, 2][0], lambda state: [1, 3][0]),
-                 (lambda state: (lambda: 1)(), lambda state: (lambda: 2)())]
-        for n, (first, second) in enumerate(pairs):
-            self.assertEqual(said(first, f"pair{n}")[1], [])
-            self.assertEqual(said(first, f"pair{n}")[1], [])
-            self.assertEqual(len(said(second, f"pair{n}")[1]), 1, n)
-        define("def helper(state): return 1\nFACTOR = 1\n" + helped)
-        said(scope["own"], "helped")
-        for change in ("cycle = 7", "state = 1"):  # names that the function has for something else
-            define(change + "\n" + helped)
-            self.assertEqual(said(scope["own"], "helped")[1], [], change)
-        for change in ("FACTOR = 2", "FACTOR = 1\ndef helper(state): return 2"):
-            define(change + "\n" + helped)
-            self.assertEqual(len(said(scope["own"], "helped")[1]), 1, change)
-        # Files of an earlier version have no hash.
-        file = self.folder / "changed.measures/own.json"
-        kept = json.loads(file.read_text())
-        for entry in kept["checkpoints"].values():
-            del entry["function"]
-        file.write_text(json.dumps(kept))
-        self.assertEqual(said(define("def own(state): return 4 * state.cycle")), (3, []))
 
     def test_results_that_cannot_be_kept_are_returned(self):
         copy = self.copy("full")
@@ -671,25 +474,18 @@ class Package(unittest.TestCase):
             Store(copy).run(run.id).checkpoint()
 
     def test_tour(self):
-        notebook = json.loads(pathlib.Path(source, "experiments/python/tour.ipynb").read_text(encoding="utf-8"))
+        notebook = json.loads(pathlib.Path(source, "experiments/python/tour.ipynb").read_text())
         code = [c["source"] for c in notebook["cells"] if c["cell_type"] == "code"]
         lines = [line for cell in code for line in cell if line.strip()]
-        self.assertLess(len(lines), 40)
+        self.assertLess(len(lines), 30)
         if shutil.which("jupyter-nbconvert", path="/usr/bin") is None:
             self.skipTest("needs jupyter-nbconvert and python3-ipykernel")
-        self.inside("tour")
-        shutil.copy(f"{source}/experiments/python/tour.ipynb", "tour.ipynb")
+        shutil.copy(f"{source}/experiments/python/tour.ipynb", self.folder)
         done = subprocess.run(["/usr/bin/jupyter-nbconvert", "--to", "notebook", "--execute", "tour.ipynb",
-                               "--output", "executed.ipynb"], capture_output=True, text=True,
+                               "--output", "executed.ipynb"], cwd=self.folder, capture_output=True, text=True,
                               env={**os.environ, "MPLBACKEND": "agg"}, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("<svg", pathlib.Path("displacement.svg").read_text())
-        shown = [output["data"].get("text/html", "") for cell in json.loads(pathlib.Path("executed.ipynb").read_text())["cells"]
-                 for output in cell.get("outputs", []) if "data" in output]
-        shown = ["".join(text) for text in shown]
-        self.assertTrue(any("data:image/svg+xml" in text for text in shown), "no figure is shown")
-        self.assertTrue(any("<td>agrees</td>" in text for text in shown), "no verdict is shown")
-        self.assertTrue(pathlib.Path("tour.html").is_file())
+        self.assertIn("<svg", (self.folder / "displacement.svg").read_text())
 
 
 if __name__ == "__main__":

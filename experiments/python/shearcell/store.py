@@ -2,62 +2,66 @@
 """Stores and runs, by the program's own commands."""
 from __future__ import annotations
 
-import dis
 import functools
-import hashlib
 import json
 import math
 import numbers
 import os
 import re
-import sys
-import types
+import shutil
+import subprocess
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Union
 
-from .figures import Figure, Figures, verdicts_of
-from .program import ShearcellError, call, error_of, find_program, need, options, output_of
+from .checkpoint import Checkpoint
 
 if TYPE_CHECKING:
     import pandas
 
-    from .checkpoint import Checkpoint
-
-Measure = Callable[["Checkpoint"], Union[float, Mapping[str, float]]]
+Measure = Callable[[Checkpoint], Union[float, Mapping[str, float]]]
 
 
-def checkpoint_class() -> type["Checkpoint"]:
-    need("numpy", "h5py")
-    from .checkpoint import Checkpoint
-
-    return Checkpoint
+class ShearcellError(RuntimeError):
+    """The program ended with an error; the text is its message."""
 
 
 class Store:
-    """A store. Only `figures`, `figure` and `verdicts` write into it: what they have drawn, as `shearcell
-    figures` does; and every method may fill its cache `derived.sqlite`.
+    """A store, read only.
 
     Args:
         path: folder of the store. A relative path is of the working directory at this call.
-        program: the program shearcell; default $SHEARCELL, that in this package's wheel, or that in PATH.
+        program: the program shearcell; default $SHEARCELL, or that in PATH.
     """
 
     def __init__(self, path: str | os.PathLike[str] = "shearcell-store",
                  program: str | os.PathLike[str] | None = None) -> None:
         self.path = Path(path).absolute()
         self._not_kept: set[str] = set()  # measures of which measure() has said so
-        self.program = find_program(program)
+        name = str(program or os.environ.get("SHEARCELL") or "shearcell")
+        found = shutil.which(name)
+        if found is None:
+            raise ShearcellError(f"there is no program {name}: add its folder to PATH, or "
+                                 "name it in $SHEARCELL")
+        self.program = os.path.abspath(found)
         if not (self.path / "store.sqlite").is_file():
             raise FileNotFoundError(f"{self.path} is not a store")
 
     def call(self, *arguments: str | os.PathLike[str]) -> str:
         """Output of `shearcell ARGUMENTS --store PATH`. Raises ShearcellError."""
-        return output_of(self.program, *arguments, "--store", self.path)
+        # The program reads and writes UTF-8 whatever Python takes for the locale's encoding.
+        given = [argument.encode("utf-8", "surrogateescape") if isinstance(argument, str)
+                 else os.fsencode(argument) for argument in (*arguments, "--store", self.path)]
+        done = subprocess.run([self.program, *given], capture_output=True, check=False)
+        if done.returncode != 0:
+            raise ShearcellError(done.stderr.decode(errors="replace").strip()
+                                 or f"exit code {done.returncode}")
+        return done.stdout.decode()
 
     def version(self) -> str:
         """The first line of `shearcell --version`."""
-        return output_of(self.program, "--version").splitlines()[0]
+        done = subprocess.run([self.program, "--version"], capture_output=True, check=True)
+        return done.stdout.decode().splitlines()[0]
 
     def runs(self, **select: Any) -> list["Run"]:
         """The runs of each manifest as it stands, in the order of their declaration, without the packings
@@ -97,7 +101,8 @@ class Store:
             curve: name of a curve, or "".
             select: experiment, scale, variant, seed or a swept parameter, as for runs().
         """
-        pandas = need("pandas")
+        import pandas
+
         if curve and per != "checkpoint":
             raise ValueError("a curve has a row for each value at each checkpoint; leave out `per`")
         rows = ("--curve", curve) if curve else ("--per", per)
@@ -119,11 +124,9 @@ class Store:
 
         With a key, results are kept beside the store, in PATH.measures/KEY.json: a checkpoint is
         computed once, and its results stay when its file is pruned. The key is your promise that
-        the function is always the same and depends on the checkpoint alone: after a change use
-        another key or fresh=True. A hash of the function is kept beside its results, and a warning
-        says if it has changed since: its code, its defaults, and the numbers, texts and functions
-        that it captures. Data that it reads elsewhere are not compared, nor is anything after a
-        change of Python's version. Results by another build of the program are computed again.
+        the function is always the same and depends on the checkpoint alone. Nothing of the
+        function is compared: after a change to the function, its arguments or what it reads, use
+        another key or fresh=True. Results by another build of the program are computed again.
         Results that are not finite are not kept, since an earlier checkpoint that they need may
         come back.
 
@@ -133,14 +136,15 @@ class Store:
             fresh: computes every stored checkpoint again.
             select: experiment, scale, variant, seed, state or a swept parameter, as for runs().
         """
-        pandas = need("pandas")
+        import pandas
+
         name = key or _name_of(function)
         if key is None and name not in self._not_kept:
             self._not_kept.add(name)
             warnings.warn(f"the results of {name} are not kept: every call computes them again. "
                           "measure(function, key=...) keeps them under a name of yours",
                           stacklevel=2)
-        kept = _Kept(self, key, function)
+        kept = _Kept(self, key)
         select = {what: _texts(values) for what, values in select.items()}
         table = self.table(**{what: value for what, value in select.items() if what != "state"})
         runs: dict[tuple[str, str, str], list[Run]] = {}
@@ -159,7 +163,7 @@ class Store:
                 stored = record["state"] == "recorded"
                 found = None if fresh and stored else kept.get(sha256, stored)
                 if found is None and stored:
-                    result = function(checkpoint_class()(run, record))
+                    result = function(Checkpoint(run, record))
                     named = result if isinstance(result, Mapping) else {name: result}
                     found = {str(column): float(value) for column, value in named.items()}
                     if taken := set(found).intersection(table.columns):
@@ -169,58 +173,8 @@ class Store:
                 results.append(found or {})
         finally:
             kept.save()
-        if kept.changed > 0:
-            warnings.warn(f"{kept.changed} of these results were kept under the key {key} by a function that differs "
-                          f"from {_name_of(function)} now. measure(..., fresh=True) computes them again, and another "
-                          "key keeps both", stacklevel=2)
         own = pandas.DataFrame(results, index=table.index, dtype=float)
         return table.join(own if len(own.columns) > 0 else own.assign(**{name: math.nan}))
-
-    def figures(self, *names: str, out: str | os.PathLike[str] = "shearcell-figures", wide: bool = False,
-                **select: Any) -> Figures:
-        """Draws figures as `shearcell figures` does, into OUT/EXPERIMENT/SCALE; without names all that
-        the store's manifests list. A notebook shows them. Without gnuplot the drawings are missing,
-        which a warning says; numbers and verdicts are there.
-
-        Args:
-            names: such as "S2".
-            out: folder to write to.
-            wide: drawings as wide as two columns of a journal.
-            select: experiment, scale, variant, seed or a swept parameter, as for runs(); one scale.
-        """
-        done = call(self.program, "figures", *names, "--out", os.path.abspath(out),
-                    *options(width="double" if wide else None), *_filters(select), "--json", "--store", self.path)
-        lines = done.stderr.decode(errors="replace").splitlines()
-        try:
-            found = Figures(map(Figure, json.loads(done.stdout)["figures"]))
-        except ValueError:
-            raise error_of(done.returncode, lines) from None
-        undrawn = [why for figure in found for why in figure.undrawn]
-        if done.returncode not in ((0, 1) if undrawn else (0,)):
-            raise error_of(done.returncode, lines)
-        for why in dict.fromkeys([*undrawn, *(line[9:] for line in lines if line.startswith("warning: "))]):
-            warnings.warn(why, stacklevel=2)
-        return found
-
-    def figure(self, name: str, **how: Any) -> Figure:
-        """One figure; arguments as for figures(). Raises ValueError if several experiments list it."""
-        found = self.figures(name, **how)
-        if len(found) != 1:
-            raise ValueError(f"{len(found)} experiments list {name}: "
-                             f"{', '.join(figure.experiment for figure in found)}; name one with experiment=")
-        return found[0]
-
-    def verdicts(self, *names: str, **how: Any) -> "pandas.DataFrame":
-        """The verdicts of figures: a row for each claim, with the ends of its interval as `low` and
-        `high`; arguments as for figures(); needs pandas."""
-        need("pandas")
-        return verdicts_of(self.figures(*names, **how))
-
-    def report(self, path: str | os.PathLike[str] = "report.html", **select: Any) -> Path:
-        """Writes the interactive page of `shearcell report`, and returns its path. `select` as for
-        runs(), without `state`."""
-        self.call("report", "--out", os.path.abspath(path), *_filters(select))
-        return Path(path).absolute()
 
     def __repr__(self) -> str:
         return f"Store({str(self.path)!r})"
@@ -281,21 +235,21 @@ class Run:
         """Cycles at which the experiment has a checkpoint whose file is stored."""
         return [record["cycle"] for record in self._of_experiment()]
 
-    def checkpoint(self, cycle: float | None = None) -> "Checkpoint":
+    def checkpoint(self, cycle: float | None = None) -> Checkpoint:
         """The checkpoint at that cycle, which may be any of `records()`, or the newest of `cycles`.
         A cycle is found to within 1e-6, but never that of another time step. Raises KeyError if
         there is none."""
         if cycle is None:
             if not self._of_experiment():
                 raise KeyError(f"run {self.id[:12]} has no stored checkpoint of {self.experiment}")
-            return checkpoint_class()(self, self._of_experiment()[-1])
+            return Checkpoint(self, self._of_experiment()[-1])
         if not isinstance(cycle, numbers.Real):
             raise TypeError(f"a cycle is a number, not {cycle!r}")
         known = sorted(self._by_sha256.values(), key=lambda c: abs(c["cycle"] - cycle))
         step = min((c["cycle"] / c["step"] for c in known if c["step"] > 0), default=1)  # [cycles]
         found = [c for c in known if abs(c["cycle"] - cycle) <= min(1e-6, step / 2)][:1]
         if found and found[0]["state"] == "recorded":
-            return checkpoint_class()(self, found[0])
+            return Checkpoint(self, found[0])
         if found:
             raise KeyError(f"the checkpoint of run {self.id[:12]} at cycle {cycle:g} was pruned; "
                            f"`shearcell regenerate {found[0]['sha256'][:12]}` brings it back")
@@ -303,9 +257,9 @@ class Run:
         raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; nearest to "
                        f"it, it has those of cycles {', '.join(f'{c:.12g}' for c in near)}")
 
-    def checkpoints(self) -> Iterator["Checkpoint"]:
+    def checkpoints(self) -> Iterator[Checkpoint]:
         """The checkpoints at `cycles`, read one after the other."""
-        return (checkpoint_class()(self, record) for record in self._of_experiment())
+        return (Checkpoint(self, record) for record in self._of_experiment())
 
     def __repr__(self) -> str:
         return f"<Run {self.id[:12]} {self.experiment} {self.variant} seed {self.seed}>"
@@ -314,22 +268,18 @@ class Run:
 class _Kept:
     """Results under a user's key, in a file beside the store. Without a key nothing is kept."""
 
-    def __init__(self, store: Store, key: str | None, function: Measure) -> None:
+    def __init__(self, store: Store, key: str | None) -> None:
         fits = isinstance(key, str) and re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.+=-]{0,99}", key)
         if key is not None and not fits:
             raise ValueError(f"{key!r} cannot be a key: a key has at most 100 letters, digits and "
                              "_ . + = - and begins with a letter, a digit or _")
         self.key = key
-        self.known: dict[str, dict[str, Any]] = {}  # by checkpoint: `program`, `function` and `results`
+        self.known: dict[str, dict[str, Any]] = {}  # by checkpoint: `program` and `results`
         self.new: dict[str, dict[str, Any]] = {}
-        self.changed = 0  # results that get() gave and another function has computed
         if key is not None:
             folder = store.path.resolve()
             self.file = folder.with_name(folder.name + ".measures") / f"{key}.json"
             self.program = store.version()
-            # The bytes of the code depend on the version of Python.
-            text = _text_of(function, {})
-            self.function = f"{sys.version_info[0]}.{sys.version_info[1]} {hashlib.sha256(text.encode()).hexdigest()}"
             self.known = self._read()
 
     def _read(self) -> dict[str, dict[str, Any]]:
@@ -345,16 +295,12 @@ class _Kept:
     def get(self, sha256: str, stored: bool) -> dict[str, float] | None:
         """Results by this build of the program; where nothing is stored, those of any build."""
         entry = self.known.get(sha256)
-        if entry is None or (entry["program"] != self.program and stored):
-            return None
-        python, _, before = entry.get("function", "").partition(" ")
-        now = self.function.split(" ")
-        self.changed += python == now[0] and before != now[1]
-        return entry["results"]
+        known = entry is not None and (entry["program"] == self.program or not stored)
+        return entry["results"] if known else None
 
     def add(self, sha256: str, results: dict[str, float]) -> None:
         if self.key is not None:
-            self.new[sha256] = {"program": self.program, "function": self.function, "results": results}
+            self.new[sha256] = {"program": self.program, "results": results}
 
     def save(self) -> None:
         if not self.new:
@@ -378,62 +324,6 @@ def _name_of(function: Measure) -> str:
     while isinstance(function, functools.partial):
         function = function.func
     return getattr(function, "__name__", type(function).__name__)
-
-
-def _text_of(value: Any, seen: Mapping[int, int]) -> str:
-    """Equal for what computes the same: code without its places and documentation, with all that it captures."""
-    if value is None or isinstance(value, (bool, int, float, complex, str, bytes, type(...))):
-        return repr(value)
-    if id(value) in seen:  # a function that calls itself
-        return f"<{seen[id(value)]}>"
-    if isinstance(value, (types.ModuleType, types.BuiltinFunctionType)) or len(seen) > 30:
-        return f"{type(value).__name__} {getattr(value, '__name__', '')}"
-    seen = {**seen, id(value): len(seen)}
-    parts: Any = ()
-    if isinstance(value, types.CodeType):
-        parts = (value.co_code, value.co_names, value.co_varnames, value.co_argcount, value.co_consts)
-    elif isinstance(value, types.FunctionType) and not _LIBRARY.search(value.__code__.co_filename):
-        code, scope = value.__code__, value.__globals__
-        # The documentation is a constant of the code.
-        parts = (code.replace(co_consts=tuple(None if each is value.__doc__ else each for each in code.co_consts)),
-                 value.__defaults__, value.__kwdefaults__,
-                 [cell.cell_contents for cell in value.__closure__ or () if cell != types.CellType()],
-                 [scope.get(name) for name in _globals_of(code)])
-    elif isinstance(value, functools.partial):
-        parts = (value.func, value.args, value.keywords)
-    elif isinstance(value, types.MethodType):
-        parts = (value.__func__, value.__self__)
-    elif isinstance(value, Mapping):
-        parts = [part for pair in value.items() for part in pair]
-    elif isinstance(value, (tuple, list)):
-        parts = value
-    elif isinstance(value, (set, frozenset)):
-        parts = sorted(_text_of(part, seen) for part in value)
-    elif type(value).__module__ == "numpy" and hasattr(value, "tobytes"):
-        parts = (str(value.dtype), value.shape, value.tobytes())
-    elif isinstance(value, types.FunctionType):
-        pass  # of a library
-    elif isinstance(value, type):
-        parts = [each for each in vars(value).values() if isinstance(each, types.FunctionType)]
-    elif any(_LIBRARY.search(each.__code__.co_filename) for each in vars(type(value)).values()
-             if isinstance(each, types.FunctionType)):
-        parts = ()  # an object of a library, such as a DataFrame
-    else:
-        parts = (type(value), getattr(value, "__dict__", ()))
-    own = isinstance(value, types.FunctionType) and parts != ()  # it may have any name
-    name = "" if own else getattr(value, "__name__", "")
-    return f"{type(value).__name__} {name}({', '.join(_text_of(part, seen) for part in parts)})"
-
-
-# Files of Python and of packages, this one included, whose functions are not compared.
-_LIBRARY = re.compile(f"^({re.escape(os.path.dirname(os.__file__))}|{re.escape(os.path.dirname(__file__))})/"
-                      "|/(site|dist)-packages/")
-
-
-def _globals_of(code: types.CodeType) -> list[str]:
-    """Names that the code and the functions inside it read from their module."""
-    names = [step.argval for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")]
-    return names + [name for each in code.co_consts if isinstance(each, types.CodeType) for name in _globals_of(each)]
 
 
 def _texts(values: Any) -> list[str]:
