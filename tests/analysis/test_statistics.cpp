@@ -199,8 +199,9 @@ TEST(VarianceBetween, TheUpperLimitExceedsTheTruthInNineteenOfTwentySamples) {
         std::vector<std::vector<double>> groups;
         std::size_t next = 0;
         for (std::size_t k = 0; k < sizes.size(); ++k) {
-          std::vector<double>& group = groups.emplace_back();
+          std::vector<double> group;
           while (group.size() < sizes[k]) group.push_back(0.646 + truth * means[k] + noise[next++]);
+          groups.push_back(group);
         }
         const SpreadBetween found = variance_between(groups).value();
         held += found.upper_limit >= truth ? 1 : 0;

@@ -353,8 +353,10 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
     std::vector<std::string> verify_says;
   };
   for (const Case& one :
-       {Case{
-            "forged with its digest", [&] { forge("scalars"); }, 4, {"scalars-", "is not what the log says"}},
+       {Case{"forged with its digest",
+             [&] { forge("scalars"); },
+             4,
+             {"scalars-", "is not what the log says"}},
         {"forged without it",
          [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
          4,
