@@ -352,35 +352,36 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
     int code;
     std::vector<std::string> verify_says;
   };
-  for (const Case& one :
-       {Case{"forged with its digest",
-             [&] { forge("scalars"); },
-             4,
-             {"scalars-", "is not what the log says"}},
-        {"forged without it",
-         [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
-         4,
-         {"core-", "is not what the log says"}},
-        {"swapped",
-         [&] {
-           sql("UPDATE derived SET content = (SELECT content FROM derived AS other WHERE "
-               "other.measure = derived.measure AND other.checkpoint > derived.checkpoint LIMIT 1) "
-               "WHERE measure LIKE 'scalars%' AND checkpoint = (SELECT min(checkpoint) FROM "
-               "derived)");
-         },
-         4,
-         {"scalars-"}},
-        {"cut", [&] { fs::resize_file(cache, fs::file_size(cache) / 2); }, 4, {"derived.sqlite"}},
-        {"overwritten",
-         [&] { write_bytes(cache, std::string(5000, 'x')); },
-         4,
-         {"it is not a database of measures"}},
-        {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; those of 0 checkpoints"}},
-        {"deleted", [&] { fs::remove(cache); }, 0, {" absent; those of 0 checkpoints"}},
-        {"without one measure",
-         [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
-         0,
-         {"measures of pruned checkpoints: 26 absent"}}}) {
+  const std::vector<Case> cases = {
+      Case{"forged with its digest",
+           [&] { forge("scalars"); },
+           4,
+           {"scalars-", "is not what the log says"}},
+      {"forged without it",
+       [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
+       4,
+       {"core-", "is not what the log says"}},
+      {"swapped",
+       [&] {
+         sql("UPDATE derived SET content = (SELECT content FROM derived AS other WHERE "
+             "other.measure = derived.measure AND other.checkpoint > derived.checkpoint LIMIT 1) "
+             "WHERE measure LIKE 'scalars%' AND checkpoint = (SELECT min(checkpoint) FROM "
+             "derived)");
+       },
+       4,
+       {"scalars-"}},
+      {"cut", [&] { fs::resize_file(cache, fs::file_size(cache) / 2); }, 4, {"derived.sqlite"}},
+      {"overwritten",
+       [&] { write_bytes(cache, std::string(5000, 'x')); },
+       4,
+       {"it is not a database of measures"}},
+      {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; those of 0 checkpoints"}},
+      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; those of 0 checkpoints"}},
+      {"without one measure",
+       [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
+       0,
+       {"measures of pruned checkpoints: 26 absent"}}};
+  for (const Case& one : cases) {
     SCOPED_TRACE(one.what);
     fs::remove_all(path("shearcell-store"));
     fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
