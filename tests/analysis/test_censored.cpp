@@ -6,6 +6,7 @@
 #include "analysis/censored.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/looks.hpp"
+#include "analysis/verdict.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 
 namespace shearcell::test {
@@ -156,6 +159,7 @@ constexpr std::uint32_t coverage_draws = 2000;
 constexpr std::uint32_t coverage_draws =
     100;  // without optimization an interval takes forty times as long
 #endif
+constexpr std::uint32_t power_draws = coverage_draws / 2;
 
 /// A value and the end of its run, if there is one.
 struct Drawn {
@@ -320,6 +324,67 @@ TEST(CensoredCoverage, OfNormalRunsAndOfRunsWithTheMeasuredHazard) {
         }
         fmt::print("\n");
       }
+    }
+  }
+}
+
+/// A claim on the onset that experiments/results/PLAN.md lists. `truth`: what the first look found;
+/// `spread`: standard deviation of the onset of a run, by censored likelihood.
+struct PlannedOnset {
+  const char* id;
+  double truth = 0;
+  double spread = 0;
+  double censored = 0;
+  std::size_t groups = 1;
+  std::vector<std::size_t> looks;
+};
+
+/// Share of campaigns in which the claim of 0 within 0.001 agrees at each look or before it.
+std::vector<double> agreement(const PlannedOnset& claim, const Source& source) {
+  const double level = look_level(claim.looks);
+  std::vector<std::uint32_t> agreed(claim.looks.size());
+  for (std::uint32_t s = 0; s < power_draws; ++s) {
+    const Sample sample = sampled(source, s, claim.looks.back(), claim.censored);
+    const auto runs_of = [&](const std::vector<Drawn>& drawn, double mean, std::size_t runs) {
+      Values all = seen({drawn.begin(), drawn.begin() + static_cast<std::ptrdiff_t>(runs)}, 0);
+      for (CensoredValue& one : all) {
+        one.value = mean + claim.spread * (one.value - source.true_mean) / source.spread;
+      }
+      return all;
+    };
+    for (std::size_t k = 0; k < claim.looks.size(); ++k) {
+      const Values a = runs_of(sample.a, claim.truth, claim.looks[k]);
+      const auto found =
+          claim.groups == 1
+              ? censored_mean(a, level)
+              : censored_difference(a, runs_of(sample.c, 0, claim.looks[k]), false, level);
+      const Ruling ruling =
+          found ? ruling_of(found->interval, 0.001, Relation::same) : Ruling::undecided;
+      if (ruling == Ruling::undecided) continue;
+      for (std::size_t later = k; ruling == Ruling::agrees && later < agreed.size(); ++later) {
+        ++agreed[later];
+      }
+      break;  // the first verdict is final
+    }
+  }
+  std::vector<double> shares;
+  for (const std::uint32_t count : agreed) shares.push_back(1.0 * count / power_draws);
+  return shares;
+}
+
+TEST(SecondLook, OnsetsAreDecidedInFourOfFiveCampaigns) {
+  const std::vector<PlannedOnset> planned = {
+      {"S5a.onset, A = 0.05", 0.0006, 0.0012, 0.03, 1, {36, 72}},
+      {"S5a.onset, A = 0.04", -0.0004, 0.0012, 0.33, 1, {24, 54}},
+      {"S6.onset, A = 0.04", 0, 0.0012, 0.33, 2, {30, 54}}};
+  fmt::print("| claim | looks | level of a look | runs | agrees at each look |\n");
+  fmt::print("|---|---|---|---|---|\n");
+  for (const PlannedOnset& claim : planned) {
+    for (const Source& source : {normal_source(), hazard_source()}) {
+      const std::vector<double> shares = agreement(claim, source);
+      fmt::print("| {} | {} | {:.4f} | {} | {:.2f} |\n", claim.id, fmt::join(claim.looks, ", "),
+                 look_level(claim.looks), source.name, fmt::join(shares, ", "));
+      EXPECT_GE(shares.back(), 0.8 - 3 * std::sqrt(0.8 * 0.2 / power_draws)) << claim.id;
     }
   }
 }

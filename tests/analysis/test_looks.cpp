@@ -4,8 +4,10 @@
 #include "analysis/looks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -127,6 +129,50 @@ TEST(PowerOf, LaterLooksDecideMoreAndTheFirstVerdictIsFinal) {
   EXPECT_GT(higher[2].as_claimed, 0.99);
   EXPECT_EQ(power_of({"", 1}, 0, 1, 1, looks)[1].as_claimed, found[1].as_claimed);
   EXPECT_EQ(power_of({"", 1e-3}, 0, 1e-3, 1, looks)[1].as_claimed, found[1].as_claimed) << "units";
+}
+
+/// A claim that experiments/results/PLAN.md lists. `truth` and `spread`: what the first look found.
+struct Planned {
+  const char* id;
+  Claim claim;
+  double truth = 0;
+  double spread = 0;
+  std::size_t groups = 1;
+  Looks looks;
+  bool primary = true;
+};
+
+TEST(SecondLook, PrimaryClaimsAreDecidedInFourOfFiveCampaigns) {
+  const Claim phi = {"", 0.001}, percentage = {"", 2}, phi_at_rest = {"", 2e-4, Relation::higher};
+  const std::vector<Planned> planned = {
+      {"S2.percentage", percentage, 0.16, 3.69, 1, {20, 40}},
+      {"S2.phi", phi, 0.00005, 0.00062, 1, {20, 40}},
+      {"S4.phi", phi, 0.00039, 0.00097, 2, {12, 24}},
+      {"B5.onset", phi, -0.00019, 0.00142, 1, {20, 40}},
+      {"B5.offset", {"", 2e-4, Relation::higher}, 0.00063, 0.00040, 1, {20, 40}},
+      {"B5.growth", {"", 5e-5, Relation::higher}, -0.4e-5, 1.0e-4, 1, {20, 40}},
+      {"choices.phi, wall mass x3", phi, 0.00046, 0.00111, 2, {20, 40}},
+      {"S3.percentage, 2.6e-5 s", percentage, 1.63, 2.16, 1, {40, 100, 200}, false},
+      {"S3.percentage, 3.5e-5 s", percentage, 2.16, 2.75, 1, {40, 100, 200}, false},
+      {"S3.phi, 3.5e-5 s", phi, 0.00093, 0.00278, 1, {40, 100, 200}, false},
+      {"S3.onset, 1.0e-4 s", phi, -0.00064, 0.0016, 1, {60, 130}, false},
+      {"S4.percentage", percentage, 1.63, 2.93, 2, {40, 100, 200}, false},
+      {"B5.rest", phi_at_rest, 0.00018, 0.00039, 1, {40, 100, 200}, false},
+      {"S5a.methods, A = 0.05", phi, 0.00051, 0.00235, 1, {60, 120}, false},
+      {"S5a.methods, A = 0.04", phi, 0.00079, 0.00373, 1, {60, 120}, false},
+      {"S5b.slope", {"", 7e-4}, -0.00128, 0.00242, 1, {38, 100}, false}};
+  fmt::print("| claim | looks | level of a look | as claimed, against at each look |\n");
+  fmt::print("|---|---|---|---|\n");
+  for (const Planned& one : planned) {
+    fmt::print("| {} | {} | {:.4f} |", one.id, fmt::join(one.looks, ", "), look_level(one.looks));
+    const auto powers = power_of(one.claim, one.truth, one.spread, one.groups, one.looks);
+    for (const LookPower& look : powers) {
+      fmt::print(" {:.2f}, {:.2f};", look.as_claimed, look.against);
+    }
+    fmt::print(" |\n");
+    const double decided = std::max(powers.back().as_claimed, powers.back().against);
+    EXPECT_EQ(decided >= 0.8, one.primary) << one.id << ": " << decided;
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include "analysis/growth.hpp"
@@ -202,6 +203,31 @@ TEST(Power, OfEveryKindOfClaimAtItsNumberOfRuns) {
                kind.margin, kind.spread, runs, none.agrees, twice.differs, at);
     EXPECT_LE(runs, predicted + 1 + predicted / 5) << kind.quantity;
     EXPECT_LE(at, 5 + 2 * std::sqrt(5.0 * 95.0 / kind.samples)) << "2 sigma of the simulation";
+  }
+}
+
+// The claims of S7 in experiments/results/PLAN.md: one look at 16 packings. At the first look
+// packings had 24 nuclei of these amplitudes, and 6 at ten times the stiffness, before 10 % were
+// crystalline.
+TEST(SecondLook, PowerOfTheSharesOfNuclei) {
+  struct Planned {
+    const char* id;
+    std::size_t nuclei;
+    double truth;
+    Relation claimed;
+  };
+  fmt::print(
+      "| claim | packings | nuclei of each | as claimed | against |\n|---|---|---|---|---|\n");
+  for (const Planned& one : {Planned{"S7.top", 24, 0, Relation::higher},
+                             {"S7.inner", 24, -0.21, Relation::same},
+                             {"S7.stiff", 9, 0.05, Relation::same}}) {
+    constexpr std::size_t packings = 16;
+    const Kind kind = {one.id, margin_share, "", shares(one.nuclei), one.claimed, 1, 400};
+    const Rates found = rates(kind, packings, one.truth, 0);
+    fmt::print("| {} | {} | {} | {:.0f} % | {:.0f} % |\n", one.id, packings, one.nuclei,
+               found.agrees, found.differs);
+    const bool decided = std::max(found.agrees, found.differs) >= 80;
+    EXPECT_EQ(decided, one.id == std::string_view("S7.top"));
   }
 }
 

@@ -23,6 +23,10 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments";
 const std::vector<std::string> kScales = {"smoke", "desk", "paper"};
+/// Those that have the scale "second": experiments/results/PLAN.md.
+const std::set<std::string> kSecond = {"choices",        "drag",       "gravity",
+                                       "moving_wall",    "relaxation", "nucleation_sites",
+                                       "onset_amplitude"};
 
 /// With the runs that the manifest starts from.
 Plan plan(const std::string& experiment, const std::string& scale) {
@@ -55,17 +59,20 @@ TEST(Manifests, EachExpandsAtEveryScale) {
     EXPECT_EQ(manifest.experiment, experiment);
     EXPECT_FALSE(manifest.question.empty());
     EXPECT_FALSE(manifest.figures.empty() && manifest.plots.empty());
-    EXPECT_EQ(names_of(manifest.scales), (std::vector<std::string_view>{"smoke", "desk", "paper"}));
+    std::vector<std::string_view> scales(kScales.begin(), kScales.end());
+    if (kSecond.contains(experiment)) scales.push_back("second");
+    EXPECT_EQ(names_of(manifest.scales), scales);
     for (const Scale& has : manifest.scales) {
       const std::string& scale = has.name;
       const Plan expanded = plan(experiment, scale);
       EXPECT_FALSE(expanded.runs.empty());
       // Some time steps are above 0.7 of the stability limit on purpose.
+      const bool published = scale == "paper" || scale == "second";
       const bool larger =
           experiment == "timestep" || experiment.starts_with("committor") ||
-          (scale == "paper" && (experiment == "critical_size" || experiment == "nucleation_sites"));
+          (published && (experiment == "critical_size" || experiment == "nucleation_sites"));
       EXPECT_EQ(expanded.warnings.size(), experiment == "accuracy" ? 4U  // small ones, too
-                                          : scale == "paper" && experiment == "nucleation_sites"
+                                          : published && experiment == "nucleation_sites"
                                               ? 2U  // for each spring constant
                                           : larger ? 1U
                                                    : 0U)
@@ -128,6 +135,21 @@ TEST(Manifests, ShareTheirCommonRun) {
   EXPECT_EQ(shared("system_size"), 12);
 }
 
+TEST(Manifests, ShareRunsOfTheSecondLook) {
+  const std::set<std::string> reference = last_stages(plan("drag", "second"));
+  const std::set<std::string> amplitudes = last_stages(plan("onset_amplitude", "second"));
+  const auto shared = [](const char* experiment, const std::set<std::string>& with) {
+    const std::set<std::string> stages = last_stages(plan(experiment, "second"));
+    return std::ranges::count_if(stages, [&](const auto& id) { return with.contains(id); });
+  };
+  EXPECT_EQ(reference.size(), 40U + 40);
+  EXPECT_EQ(shared("relaxation", reference), 40);
+  EXPECT_EQ(shared("choices", reference), 40);
+  EXPECT_EQ(shared("moving_wall", reference), 24);
+  EXPECT_EQ(amplitudes.size(), 72U + 54);
+  EXPECT_EQ(shared("gravity", amplitudes), 54);
+}
+
 // Seeds that no earlier result has, and the first of them for variants that have fewer.
 TEST(Manifests, PublishRunsOfFreshSeeds) {
   for (const auto& entry : fs::directory_iterator(kFolder)) {
@@ -136,9 +158,13 @@ TEST(Manifests, PublishRunsOfFreshSeeds) {
         experiment.starts_with("committor")) {
       continue;
     }
-    std::map<std::string, std::uint64_t> next;
+    std::map<std::string, std::uint64_t> next, next_of_second;
     for (const PlannedRun& run : plan(experiment, "paper").runs) {
       EXPECT_EQ(run.place.seed, 1001 + next[run.place.variant]++) << experiment;
+    }
+    if (!kSecond.contains(experiment)) continue;
+    for (const PlannedRun& run : plan(experiment, "second").runs) {
+      EXPECT_EQ(run.place.seed, 2001 + next_of_second[run.place.variant]++) << experiment;
     }
   }
 }
