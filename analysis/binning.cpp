@@ -5,41 +5,25 @@
 #include <cstdint>
 #include <map>
 
+#include "analysis/statistics.hpp"
+
 namespace shearcell {
 
-std::vector<PhiBin> binned_by_phi(RunGroup runs, const std::string& measure, double least) {
-  struct Members {
-    std::vector<const FigureRun*> runs;  // one for each number
-    std::vector<double> phi;
-    std::vector<double> value;
-  };
-  std::map<std::int64_t, Members> bins;
-  for (const FigureRun* run : runs) {
-    std::map<std::int64_t, Members> own;
-    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      const double phi = checkpoint.measures.number("phi");
-      if (!std::isfinite(phi)) continue;
-      Members& bin = own[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
-      bin.phi.push_back(phi);
-      const double value = checkpoint.measures.number(measure);
-      bin.value.push_back(value < least ? least : value);
-    }
-    for (const auto& [bin, checkpoints] : own) {
-      const RunStatistics value = over_runs(checkpoints.value);
-      if (!value.mean) continue;
-      bins[bin].runs.push_back(run);
-      bins[bin].phi.push_back(over_runs(checkpoints.phi).mean.value());
-      bins[bin].value.push_back(*value.mean);
-    }
+std::vector<PhiMean> means_over_phi(const FrameRun& run, const NumberColumn& column) {
+  std::map<std::int64_t, std::pair<std::vector<double>, std::vector<double>>> bins;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    const double phi = checkpoint.measures.number("phi");
+    if (!std::isfinite(phi)) continue;
+    auto& [phis, values] = bins[static_cast<std::int64_t>(std::floor(phi / phi_bin))];
+    phis.push_back(phi);
+    values.push_back(column(run, &checkpoint));
   }
-  std::vector<PhiBin> result;
-  for (const auto& [bin, found] : bins) {
-    const auto low = static_cast<double>(bin);
-    result.push_back({low * phi_bin, (low + 1) * phi_bin,
-                      over_runs(over_packings(found.runs, found.phi)),
-                      over_runs(over_packings(found.runs, found.value))});
+  std::vector<PhiMean> means;
+  for (const auto& [bin, members] : bins) {
+    const auto value = over_runs(members.second).mean;
+    if (value) means.push_back({over_runs(members.first).mean.value(), *value});
   }
-  return result;
+  return means;
 }
 
 }  // namespace shearcell

@@ -17,26 +17,28 @@ namespace {
 
 using nlohmann::json;
 
-std::string field_text(const TableValue& value, int significant) {
+/// A number at all digits if `significant` is 0.
+std::string field_text(const TableCell& value, int significant) {
   if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
   const auto* real = std::get_if<double>(&value);
-  return real != nullptr && std::isfinite(*real) ? digits(*real, significant) : "";
+  if (real == nullptr || !std::isfinite(*real)) return "";
+  return significant > 0 ? digits(*real, significant) : json(*real).dump();
 }
 
 /// Place of a column, counted from 1.
-std::size_t column_number(const FigureTable& table, const std::string& name) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
-  if (found == table.columns.end()) {
+std::size_t column_number(const Table& table, const std::string& name) {
+  const std::size_t place = table.place(name);
+  if (place == table.columns.size()) {
     throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
   }
-  return static_cast<std::size_t>(found - table.columns.begin()) + 1;
+  return place + 1;
 }
 
 /// The number in a column, counted from 1; none for column 0 and where there is no finite number.
 std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
-  const TableValue& value = row.at(column - 1);
+  const TableCell& value = row.at(column - 1);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   const auto* real = std::get_if<double>(&value);
   if (real == nullptr || !std::isfinite(*real)) return std::nullopt;
@@ -67,7 +69,7 @@ json to_json(const Axis& axis) {
           {"clip", axis.clip}};
 }
 
-json to_json(const FigureTable& table, const Series& series) {
+json to_json(const Table& table, const Series& series) {
   json points = json::array();
   for (const ChartPoint& p : points_of(table, series)) {
     points.push_back(
@@ -146,31 +148,58 @@ std::string csv_field(const std::string& text) {
   return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
-std::string to_csv(const FigureTable& table) {
+TableCell cell_of(const json& value) {
+  if (value.is_number_float()) return value.get<double>();
+  if (value.is_number()) return value.get<std::int64_t>();
+  return value.is_null() ? TableCell() : TableCell(value_text(value));
+}
+
+json json_of(const TableCell& cell) {
+  return std::visit(
+      [](const auto& value) -> json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+          return nullptr;
+        else
+          return value;
+      },
+      static_cast<const TableCell::variant&>(cell));
+}
+
+nlohmann::ordered_json to_json(const Table& table) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const TableRow& row : table.rows) {
+    nlohmann::ordered_json& object = rows.emplace_back(nlohmann::ordered_json::object());
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = json_of(row[c]);
+  }
+  return rows;
+}
+
+std::string to_csv(const Table& table, Digits precision) {
   std::string text;
   const auto add_line = [&](const auto& cells, auto field) {
     for (const auto& cell : cells) text += field(cell) + ',';
     if (!cells.empty()) text.back() = '\n';
   };
-  add_line(table.columns, csv_field);
-  std::vector<int> significant;  // digits, of each column
-  for (std::size_t column = 1; column <= table.columns.size(); ++column) {
+  add_line(table.columns, [](const TableColumn& column) { return csv_field(column.name); });
+  std::vector<int> significant(table.columns.size(), 0);
+  for (std::size_t column = 1; precision == Digits::enough && column <= significant.size();
+       ++column) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TableRow& row : table.rows) {
       const std::optional<double> value = number_in(row, column);
       low = std::min(low, value.value_or(low)), high = std::max(high, value.value_or(high));
     }
-    significant.push_back(digits_between(low, high));
+    significant[column - 1] = digits_between(low, high);
   }
   for (const TableRow& row : table.rows) {
-    add_line(row, [&, k = std::size_t{0}](const TableValue& value) mutable {
+    add_line(row, [&, k = std::size_t{0}](const TableCell& value) mutable {
       return field_text(value, significant[k++]);
     });
   }
   return text;
 }
 
-std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series) {
+std::vector<ChartPoint> points_of(const Table& table, const Series& series) {
   const SeriesColumns& from = series.columns;
   if (from.x.empty()) {
     std::vector<ChartPoint> points = series.points;
@@ -197,7 +226,7 @@ std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series
   return points;
 }
 
-void name_run_counts(FigureTable& table) {
+void name_run_counts(Table& table) {
   std::vector<Series*> means;
   std::vector<std::string> counts;  // of each; "" if it is complete
   for (Series& series : table.chart.series) {
@@ -245,7 +274,7 @@ bool is_on_log_axes(const Chart& chart, const ReferenceLine& line) {
   return line.at > 0 || !(line.vertical ? chart.x : chart.y).log;
 }
 
-std::string caption_of(const std::string& title, std::span<const FigureTable> tables) {
+std::string caption_of(const std::string& title, std::span<const Table> tables) {
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
@@ -255,7 +284,7 @@ std::string caption_of(const std::string& title, std::span<const FigureTable> ta
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
   };
-  for (const FigureTable& table : tables) {
+  for (const Table& table : tables) {
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
     ++charts;
@@ -313,7 +342,7 @@ json to_json(const Text& text) {
   return parts;
 }
 
-json chart_json(const FigureTable& table) {
+json chart_json(const Table& table) {
   const Chart& chart = table.chart;
   json series = json::array();
   for (const Series& one : chart.series) series.push_back(to_json(table, one));

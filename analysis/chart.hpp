@@ -3,6 +3,7 @@
 // interactive plot (chart_json) are both made from this one description.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -35,14 +36,29 @@ Text operator+(Text first, const Text& second);
 Text formula(std::string_view text);
 
 /// Empty (not measured, or no error from one run), a number, a whole number, or text.
-struct TableValue : std::variant<std::monostate, double, std::int64_t, std::string> {
+struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
-  TableValue(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
-  TableValue(const std::optional<double>& value) {                              // NOLINT
+  TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
+  TableCell(const std::optional<double>& value) {                              // NOLINT
     if (value) emplace<double>(*value);
   }
 };
-using TableRow = std::vector<TableValue>;
+using TableRow = std::vector<TableCell>;
+
+/// Null, number or text.
+TableCell cell_of(const nlohmann::json& value);
+nlohmann::json json_of(const TableCell& cell);
+
+/// A column. Its name ends in the unit, except for counts and pure numbers.
+struct TableColumn {
+  std::string name;
+  std::string meaning = {};
+
+  TableColumn(std::string of, std::string means = {})  // NOLINT: most columns are names alone
+      : name(std::move(of)), meaning(std::move(means)) {}
+  TableColumn(const char* of) : name(of) {}  // NOLINT
+  bool operator==(const TableColumn&) const = default;
+};
 
 struct Axis {
   Text name = {};    ///< "volume fraction"
@@ -77,7 +93,7 @@ struct SeriesColumns {
 /// The rows that have `value` in that column; every row when `column` is empty.
 struct RowFilter {
   std::string column;
-  TableValue value;
+  TableCell value;
 };
 
 enum class Join { none, line, dashes };
@@ -135,30 +151,43 @@ struct TextTable {
 };
 
 /// One panel: its data and one way to draw them. With neither chart nor text it is not drawn.
-struct FigureTable {
-  std::string name = {};             ///< "S2a": letters, digits, '-' and '_'
-  std::vector<std::string> columns;  ///< with the unit at the end where there is one
+struct Table {
+  std::string name = {};  ///< "S2a": letters, digits, '-' and '_'
+  std::vector<TableColumn> columns = {};
   std::vector<TableRow> rows = {};
   Chart chart = {};
   TextTable text = {};
+
+  /// The index of a column; the number of columns if there is none of that name.
+  std::size_t place(std::string_view column) const {
+    return static_cast<std::size_t>(std::ranges::find(columns, column, &TableColumn::name) -
+                                    columns.begin());
+  }
 };
 
 /// A text as a field of RFC 4180: in quotes where it needs them.
 std::string csv_field(const std::string& text);
 
-/// RFC 4180 with a header row and "\n" line ends. Numbers of a column carry digits_between() its
-/// least and its largest; a number that is not finite leaves its field empty.
-std::string to_csv(const FigureTable& table);
+/// Of numbers in a CSV: of a column digits_between() its least and its largest number, or the
+/// shortest text of each number that reads back to the same double.
+enum class Digits { enough, all };
+
+/// RFC 4180 with a header row and "\n" line ends. A number that is not finite leaves its field
+/// empty.
+std::string to_csv(const Table& table, Digits digits = Digits::enough);
+
+/// An array of objects, one for each row, keys in the order of the columns.
+nlohmann::ordered_json to_json(const Table& table);
 
 /// The points of one series, without its shift. Points of which x or y is not a finite number are
 /// left out.
-std::vector<ChartPoint> points_of(const FigureTable& table, const Series& series);
+std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 
 /// Adds the number of runs behind the points to the title of each series, as "(3 to 5 runs)", if
 /// this number differs between points or is less than Series::runs. A mean may change along a curve
 /// only because other runs enter it. If all series have the same numbers, the caption states them
 /// once.
-void name_run_counts(FigureTable& table);
+void name_run_counts(Table& table);
 
 /// Significant digits of values from `low` to `high`: nine, or more where nine would not show the
 /// spread in five digits. A spread as small as rounding errors does not count.
@@ -174,13 +203,13 @@ bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 
 /// The caption of a figure: what each panel shows, what the errors are, and what the reference
 /// lines are. One paragraph that begins with `title`.
-std::string caption_of(const std::string& title, std::span<const FigureTable> tables);
+std::string caption_of(const std::string& title, std::span<const Table> tables);
 
 /// [[text, style], ...].
 nlohmann::json to_json(const Text& text);
 
 /// The chart with the points of its series, for the front end of the report. The same table gives
 /// the same bytes.
-nlohmann::json chart_json(const FigureTable& table);
+nlohmann::json chart_json(const Table& table);
 
 }  // namespace shearcell

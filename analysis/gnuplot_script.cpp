@@ -143,7 +143,7 @@ Layout layout_of(const Chart& chart) {
 /// points as the report.
 class Script {
  public:
-  explicit Script(const FigureTable& table) : chart_(table.chart) {
+  explicit Script(const Table& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
       points_.push_back(points_of(table, series));
       for (ChartPoint& p : points_.back()) p.x += series.shift;
@@ -413,7 +413,7 @@ std::string text_table_commands(const TextTable& table) {
 
 }  // namespace
 
-std::string gnuplot_script(const FigureTable& table) {
+std::string gnuplot_script(const Table& table) {
   const bool words = !table.text.rows.empty();
   const Layout layout =
       words ? Layout{width_of(table.text), height_of(table.text)} : layout_of(table.chart);

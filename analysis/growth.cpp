@@ -145,7 +145,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   }
 }
 
-GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles) {
+GrowthBySize growth_of(const FrameRun& run, std::int64_t cycles) {
   std::map<std::int64_t, const CrystalliteMap*> maps;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     if (!checkpoint.measures.crystallite_map || std::floor(checkpoint.cycle) != checkpoint.cycle)

@@ -38,7 +38,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
 
 /// Of all pairs of checkpoints of a run that are `cycles` apart, from every cycle on. One
 /// crystallite is counted at many cycles, so counts of one run are not independent.
-GrowthBySize growth_of(const FigureRun& run, std::int64_t cycles);
+GrowthBySize growth_of(const FrameRun& run, std::int64_t cycles);
 
 /// delta_rho = rho_g - rho_s in a bin of sizes, with rho_g = larger / (larger + smaller).
 struct GrowthRate {

@@ -24,7 +24,7 @@
 
 namespace shearcell {
 
-struct FigureRun;  // analysis/figure.hpp
+struct FrameRun;  // analysis/figure.hpp
 struct RunValue;
 
 /// Raise it with every change that may alter a bit of any result: results that were stored with
@@ -69,7 +69,7 @@ struct Measure {
   MeasureKind kind = MeasureKind::number;
   std::string_view x = {}, x_unit = {};  ///< of a curve
   GrainScale scale = {};                 ///< of a measure of each grain
-  RunValue (*of_run)(const FigureRun& run) = nullptr;
+  RunValue (*of_run)(const FrameRun& run) = nullptr;
   /// The name in sentences; "": `name`. Numbers of a whole run and measures of each grain have such
   /// a name.
   std::string_view words = {};

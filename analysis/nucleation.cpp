@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/nucleation.hpp"
 
+#include "analysis/onset.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
@@ -153,7 +155,7 @@ double bisected(double low, double high, const auto& holds) {
 
 }  // namespace
 
-std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis, Seen seen) {
+std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen) {
   std::vector<double> places;
   std::set<std::int32_t> known;  // grains that have been in a nucleus
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
@@ -209,7 +211,7 @@ std::string grains_of(Region region) {
   return region == Region::core ? "core_grains" : "interior_grains";
 }
 
-std::map<std::int64_t, Exposure> exposures_of(const FigureRun& run, Region region, double width) {
+std::map<std::int64_t, Exposure> exposures_of(const FrameRun& run, Region region, double width) {
   const RunOnset onset = onset_by_size(run);
   std::map<std::int64_t, Exposure> exposures;
   if (onset.observed == Observed::before_start) return exposures;
@@ -232,7 +234,7 @@ std::map<std::int64_t, Exposure> exposures_of(const FigureRun& run, Region regio
 
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region) {
   std::map<std::int64_t, Exposure> sums;
-  for (const FigureRun* run : runs) {
+  for (const FrameRun* run : runs) {
     for (const auto& [bin, one] : exposures_of(*run, region, phi_bin)) {
       sums[bin].grain_cycles += one.grain_cycles;
       sums[bin].onsets += one.onsets;
@@ -257,7 +259,7 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region, double level
   Shares amplitudes;
   std::set<std::string> packings;
   std::size_t counted = 0;
-  for (const FigureRun* run : runs) {
+  for (const FrameRun* run : runs) {
     const auto exposures = exposures_of(*run, region, rate_step);
     if (exposures.empty()) continue;
     ++counted;

@@ -29,7 +29,7 @@ enum class Seen { always, first };
 /// Places of the centres of mass of the crystallites of 15 to 25 grains in a run. x is counted from
 /// d outside the left plane in units of w = width + 2 d, y from the bottom plane in units of the
 /// height h, so that both lie in [0, 1]; a cell higher than 1.675 L exceeds that. [choice]
-std::vector<double> nucleus_places(const FigureRun& run, CellAxis axis, Seen seen = Seen::always);
+std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
   double low = 0;
@@ -71,7 +71,7 @@ struct Exposure {
   std::size_t onsets = 0;   ///< 0 or 1
 };
 /// In ranges from whole multiples of `width` on, by that multiple.
-std::map<std::int64_t, Exposure> exposures_of(const FigureRun& run, Region region, double width);
+std::map<std::int64_t, Exposure> exposures_of(const FrameRun& run, Region region, double width);
 
 /// Ranges of phi in which size_exponent() takes the rate as constant.
 inline constexpr double rate_step = 0.0005;

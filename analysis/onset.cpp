@@ -17,7 +17,7 @@ struct Point {
   double cycle;
 };
 
-std::vector<Point> points_of(const FigureRun& run) {
+std::vector<Point> points_of(const FrameRun& run) {
   std::vector<Point> points;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     const Measures& m = checkpoint.measures;
@@ -29,13 +29,13 @@ std::vector<Point> points_of(const FigureRun& run) {
   return points;
 }
 
-double critical_size_for(const FigureRun& run) {
+double critical_size_for(const FrameRun& run) {
   return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
 
 }  // namespace
 
-RunOnset onset_by_size(const FigureRun& run) {
+RunOnset onset_by_size(const FrameRun& run) {
   const double critical_size = critical_size_for(run);
   double cycle_before = 0, phi_before = std::nan(""), size_before = 0;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
@@ -53,7 +53,7 @@ RunOnset onset_by_size(const FigureRun& run) {
   return {};
 }
 
-RunOnset onset_by_slope(const FigureRun& run) {
+RunOnset onset_by_slope(const FrameRun& run) {
   const RunOnset by_size = onset_by_size(run);
   if (by_size.observed != Observed::yes) return by_size;
   const std::vector<Point> points = points_of(run);
@@ -85,7 +85,7 @@ RunOnset onset_by_slope(const FigureRun& run) {
 namespace {
 
 template <OnsetMethod kMethod, double RunOnset::*kValue>
-RunValue at_onset(const FigureRun& run) {
+RunValue at_onset(const FrameRun& run) {
   const RunOnset onset = kMethod(run);
   if (onset.observed == Observed::never) return {0, Missing::too_short};
   if (onset.observed == Observed::before_start) return {0, Missing::too_late};
@@ -107,7 +107,7 @@ std::vector<Provider> onset_providers() {
                    .reach = "the onset",
                    .waits = waits};
   };
-  const auto critical = [](const FigureRun& run) { return measured(critical_size_for(run)); };
+  const auto critical = [](const FrameRun& run) { return measured(critical_size_for(run)); };
   using R = RunOnset;
   return {
       {.name = "onsets",
@@ -128,32 +128,6 @@ std::vector<Provider> onset_providers() {
             of_run("onset_slope_phi", "volume fraction at that onset",
                    at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
        .from = ComputedFrom::history}};
-}
-
-Onset onset(RunGroup runs, OnsetMethod method) {
-  Onset result;
-  std::vector<const FigureRun*> with_onset;
-  std::vector<double> phi;
-  std::vector<double> cycle;
-  for (const FigureRun* run : runs) {
-    const RunOnset found = method(*run);
-    if (found.observed == Observed::never) ++result.never;
-    if (found.observed == Observed::before_start) ++result.before_start;
-    if (found.observed == Observed::unclear) ++result.unclear;
-    if (found.observed != Observed::yes) continue;
-    with_onset.push_back(run);
-    phi.push_back(found.phi);
-    cycle.push_back(found.cycle);
-  }
-  phi = over_packings(with_onset, phi);
-  result.phi = over_runs(phi);
-  result.cycle = over_runs(over_packings(with_onset, cycle));
-  result.phi_error = bootstrap_error(phi.size(), [&](std::span<const std::size_t> selection) {
-    std::vector<double> selected;
-    for (const std::size_t run : selection) selected.push_back(phi[run]);
-    return over_runs(selected).mean.value();
-  });
-  return result;
 }
 
 }  // namespace shearcell

@@ -28,7 +28,7 @@ struct RunOnset {
 /// Method 1: the first time that the largest crystallite has the critical size. phi and cycle are
 /// interpolated linearly in the size between this checkpoint and the checkpoint before. A run that
 /// begins with a critical crystallite is censored at its start.
-RunOnset onset_by_size(const FigureRun& run);
+RunOnset onset_by_size(const FrameRun& run);
 
 /// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
 /// least-squares line through the checkpoints within `slope_window / 2` of phi. There must be at
@@ -36,20 +36,8 @@ RunOnset onset_by_size(const FigureRun& run);
 /// unclear. A packing without a crystallite counts as one grain. A run whose largest crystallite
 /// never has the critical size is censored. [choice]
 inline constexpr double slope_window = 0.008;
-RunOnset onset_by_slope(const FigureRun& run);
+RunOnset onset_by_slope(const FrameRun& run);
 
-using OnsetMethod = RunOnset (*)(const FigureRun& run);
-
-/// The onset over independent runs; runs of one packing count as one run. Censored runs do not
-/// enter the mean, which is therefore biased towards early onsets; they are counted.
-struct Onset {
-  RunStatistics phi;                ///< over packings of observed runs
-  std::optional<double> phi_error;  ///< of the mean, bootstrap over packings
-  RunStatistics cycle;              ///< over packings of observed runs
-  std::size_t never = 0;            ///< runs that end before
-  std::size_t before_start = 0;     ///< runs that begin after
-  std::size_t unclear = 0;          ///< runs in which the method finds none
-};
-Onset onset(RunGroup runs, OnsetMethod method);
+using OnsetMethod = RunOnset (*)(const FrameRun& run);
 
 }  // namespace shearcell

@@ -50,7 +50,7 @@ std::string fault_of(const char* program, const ProgramOutcome& outcome,
 
 }  // namespace
 
-void require_own_files(const FigureTable& table, const std::filesystem::path& folder) {
+void require_own_files(const Table& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
   const std::filesystem::path base = folder / table.name;
   const auto is_script = [](std::string_view beginning) {
@@ -58,7 +58,7 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
   };
   require_ours(base.string() + ".gp", is_script);
   const bool drawn = std::filesystem::exists(base.string() + ".gp");
-  FigureTable headed;
+  Table headed;
   headed.columns = table.columns;
   const std::string header = to_csv(headed);
   require_ours(base.string() + ".csv",
@@ -68,7 +68,7 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
   }
 }
 
-std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder) {
+std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder) {
   require_plain_name(table.name);
   std::filesystem::path svg = folder / (table.name + ".svg"), pdf = folder / (table.name + ".pdf");
   const std::string script = table.name + ".gp";

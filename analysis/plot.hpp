@@ -14,7 +14,7 @@ namespace shearcell {
 /// The gnuplot commands (gnuplot_script.cpp) that write NAME.svg into the current folder. They hold
 /// the points that they draw. A chart without points gets its axes and the words "no data". The
 /// same table gives the same bytes.
-std::string gnuplot_script(const FigureTable& table);
+std::string gnuplot_script(const Table& table);
 
 /// How every script begins.
 inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg size ";
@@ -22,7 +22,7 @@ inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg s
 /// Throws NotOurs if drawing the table would overwrite a file that this program did not write.
 /// Scripts are recognized by their first words, a CSV file by its header or by the script of the
 /// same name, drawings by the script of the same name.
-void require_own_files(const FigureTable& table, const std::filesystem::path& folder);
+void require_own_files(const Table& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
 /// again). Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.
@@ -32,7 +32,7 @@ void require_own_files(const FigureTable& table, const std::filesystem::path& fo
 /// Throws AnalysisError if gnuplot is missing (naming the package to install), fails (with its
 /// message) or writes a part of the drawing; the script stays, and drawings of other data are
 /// deleted.
-std::filesystem::path draw_svg(const FigureTable& table, const std::filesystem::path& folder);
+std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder);
 
 /// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes
 /// with the same librsvg (gnuplot's own PDF contains the time). Returns nothing if rsvg-convert

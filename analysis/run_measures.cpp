@@ -125,7 +125,7 @@ std::vector<Provider> run_providers() {
                                 "full for each experiment that shares the run. Where none was "
                                 "recorded, wall-clock time times processes",
                      .kind = MeasureKind::run,
-                     .of_run = [](const FigureRun& run) { return measured(run.core_time_s); },
+                     .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",
                      .reach = "its end"}},
        .from = ComputedFrom::history}};

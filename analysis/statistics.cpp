@@ -141,6 +141,12 @@ Estimate estimate_with(double value, const Interval& interval, double quantile, 
           .spread = error * std::sqrt(static_cast<double>(runs))};
 }
 
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing) {
+  estimate.value = increasing(estimate.value);
+  estimate.interval = {increasing(estimate.interval.low), increasing(estimate.interval.high)};
+  return estimate;
+}
+
 double student_quantile(double probability, double freedom) {
   return boost::math::quantile(boost::math::students_t(freedom), probability);
 }

@@ -69,6 +69,9 @@ struct Estimate {
 /// The estimate with an interval whose ends are `quantile` standard errors from its middle.
 Estimate estimate_with(double value, const Interval& interval, double quantile, std::size_t runs);
 
+/// Applies an increasing function to the value and the interval; the spread does not change.
+Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
+
 /// Quantiles of Student's t with `freedom` degrees of freedom and of the normal distribution.
 double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);

@@ -38,7 +38,8 @@ json claim_of(const Verdict& verdict) {
                 rounded(verdict.interval.high, significant)};
   }
   if (verdict.runs_needed) runs_needed = *verdict.runs_needed;
-  json claim = {{"claim", verdict.claim},
+  json claim = {{"id", verdict.id},
+                {"claim", verdict.claim},
                 {"quantity", verdict.quantity},
                 {"estimate", estimate},
                 {"interval", interval},
@@ -68,8 +69,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
 }
 
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
-               std::size_t runs, std::string note, FigureTable entered, Counted counted) {
+               std::size_t runs, std::string note, Table entered, Counted counted) {
   Verdict verdict;
+  verdict.id = claim.id;
   verdict.claim = claim.text;
   verdict.quantity = std::move(quantity);
   verdict.margin = claim.margin;
@@ -101,14 +103,13 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-FigureTable entered_table(std::span<const Verdict> verdicts) {
-  FigureTable table{.name = "entered", .columns = {"claim"}};
+Table entered_table(std::span<const Verdict> verdicts) {
+  Table table{.name = "entered", .columns = {"claim"}};
   for (const Verdict& verdict : verdicts) {
     std::vector<std::size_t> places;
-    for (const std::string& column : verdict.entered.columns) {
-      const auto found = std::ranges::find(table.columns, column);
-      places.push_back(static_cast<std::size_t>(found - table.columns.begin()));
-      if (found == table.columns.end()) table.columns.push_back(column);
+    for (const TableColumn& column : verdict.entered.columns) {
+      places.push_back(table.place(column.name));
+      if (places.back() == table.columns.size()) table.columns.push_back(column);
     }
     for (const TableRow& values : verdict.entered.rows) {
       TableRow& row = table.rows.emplace_back(TableRow{verdict.claim});

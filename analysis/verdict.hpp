@@ -33,6 +33,7 @@ struct Claim {
   std::string text;  ///< in the supplement's sense, with its section
   double margin = 0;
   Relation claimed = Relation::same;
+  std::string id = {};  ///< "S5a.onset@amplitude_rad=0.05"
 };
 
 /// What the runs of a verdict are counted in.
@@ -42,7 +43,8 @@ inline constexpr auto kNames<Counted> = names_in_order<Counted>("runs", "pairs",
                                                                 "runs per variant");
 
 struct Verdict {
-  std::string claim;
+  std::string id = {};             ///< of the claim
+  std::string claim;               ///< its text
   std::string quantity;            ///< what is estimated, with its unit
   std::optional<double> estimate;  ///< none if too few runs have the quantity
   Interval interval;               ///< at confidence_level; only with an estimate
@@ -52,8 +54,8 @@ struct Verdict {
   Counted counted = Counted::runs;
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
   std::string note;                        ///< how it was compared, what is missing
-  bool primary = false;      ///< its runs were made to decide it; others are exploratory
-  FigureTable entered = {};  ///< rows of a CSV file, from which anyone can compute it again
+  bool primary = false;  ///< its runs were made to decide it; others are exploratory
+  Table entered = {};    ///< rows of a CSV file, from which anyone can compute it again
 };
 
 /// agrees, supported: the interval lies where the claim puts it. differs, refuted: the interval
@@ -65,7 +67,7 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// excludes 0, or that many runs exist already, the true value is taken to be the estimate.
 /// `runs_needed` is always more than the runs of the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
-               std::size_t runs, std::string note, FigureTable entered = {},
+               std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
 
 /// The number of claims with each ruling, without rulings that no claim has.
@@ -76,9 +78,9 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
 /// The rows of all verdicts in one table, each row after its claim, with the columns of all
 /// verdicts.
-FigureTable entered_table(std::span<const Verdict> verdicts);
+Table entered_table(std::span<const Verdict> verdicts);
 
-/// {"verdict", "claims": [{"claim", "quantity", "estimate", "interval": [low, high], "level",
+/// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",
 /// "margin", "verdict", "runs", "counted", "runs_needed", "note", and "primary" if it is}]}.
 /// "verdict" is headline_of() or null. Numbers have six significant digits; null where there is
 /// none, for an infinite end of an interval too. The same verdicts give the same bytes.

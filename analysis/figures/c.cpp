@@ -10,11 +10,13 @@
 #include <set>
 #include <utility>
 
-#include "analysis/claims.hpp"
-#include "analysis/figures/curves.hpp"
+#include "analysis/axes.hpp"
+#include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
+#include "analysis/plots.hpp"
 #include "analysis/published.hpp"
+#include "analysis/styles.hpp"
 
 namespace shearcell {
 namespace {
@@ -38,7 +40,7 @@ std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   std::vector<GrowthBySize> all;
   for (const auto& [packing, members] : by_packing(runs)) {
     GrowthBySize counts;
-    for (const FigureRun* run : members) {
+    for (const FrameRun* run : members) {
       for (const auto& [size, count] : growth_of(*run, cycles)) counts[size] += count;
     }
     if (!counts.empty()) all.push_back(std::move(counts));
@@ -62,10 +64,11 @@ struct GrowthAfter {
 };
 
 struct AmplitudeGrowth {
-  CurveStyle style;
+  Text title;
+  Look look;
   double amplitude;
   const PublishedAmplitude* published;
-  std::vector<const FigureRun*> all_runs;
+  std::vector<const FrameRun*> all_runs;
   std::map<std::int64_t, GrowthAfter> after;  ///< by cycles_to_follow()
   std::optional<double> onset_cycle;          ///< median over runs
   GrowthCurve curve;
@@ -77,10 +80,7 @@ struct AmplitudeGrowth {
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
 };
 
-constexpr std::array<const char*, 5> amplitude_colours = {"#6a3d9a", "#000000", "#009e73",
-                                                          "#0072b2", "#d55e00"};
-
-std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs) {
+std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs) {
   std::vector<AmplitudeGrowth> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const PublishedAmplitude& published = published_nearest(amplitude);
@@ -92,10 +92,8 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FigureRun> runs
     const std::vector<GrowthBySize>& counts = after.at(published.n_bin).runs;
     const GrowthCurve curve(counts);
     const std::size_t k = all.size();
-    all.push_back({.style = {{{"amplitude_rad", amplitude}},
-                             formula(fmt::format("$A$ = {}", amplitude)),
-                             amplitude_colours[k % amplitude_colours.size()],
-                             curve_symbol(k)},
+    all.push_back({.title = formula(fmt::format("$A$ = {}", amplitude)),
+                   .look = amplitude_look(amplitude, k),
                    .amplitude = amplitude,
                    .published = &published,
                    .all_runs = members,
@@ -130,27 +128,27 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
       .lines = {{.at = 0, .title = "growth as probable as shrinking"}},
       .note = fmt::format("curves are smoothed over {} in ln(size)", GrowthCurve::bandwidth)};
   for (const AmplitudeGrowth& one : all) {
-    chart.series.push_back({.colour = one.style.colour,
+    chart.series.push_back({.colour = one.look.colour,
                             .point = 0,
                             .join = Join::line,
                             .band = true,
                             .points = smooth_points(one)});
     Series& data = chart.series.emplace_back(
-        Series{.title = one.style.title, .colour = one.style.colour, .point = one.style.point});
+        Series{.title = one.title, .colour = one.look.colour, .point = one.look.point});
     for (const GrowthRate& bin : growth_rates(one.published_bin().runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
     ReferenceLine& line =
-        chart.lines.emplace_back(critical_line(one.published->critical_size, one.style.colour));
+        chart.lines.emplace_back(critical_line(one.published->critical_size, one.look.colour));
     line.vertical = line.stub = true;
   }
   return chart;
 }
 
-FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table{.name = "C",
-                    .columns = {"amplitude_rad", "size_grains", "grew", "absorbed", "shrank",
-                                "vanished", "delta_rho", "delta_rho_standard_error", "runs"}};
+Table rates_table(std::span<const AmplitudeGrowth> all) {
+  Table table{.name = "C",
+              .columns = {"amplitude_rad", "size_grains", "grew", "absorbed", "shrank", "vanished",
+                          "delta_rho", "delta_rho_standard_error", "runs"}};
   for (const AmplitudeGrowth& one : all) {
     for (const GrowthRate& rate : growth_rates(one.published_bin().runs)) {
       const GrowthCount& count = rate.count;
@@ -163,9 +161,9 @@ FigureTable rates_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table{.name = "C_critical_size",
-                    .columns = {"amplitude_rad", "cycles_followed", "onset_median_cycle"}};
+Table critical_table(std::span<const AmplitudeGrowth> all) {
+  Table table{.name = "C_critical_size",
+              .columns = {"amplitude_rad", "cycles_followed", "onset_median_cycle"}};
   for (const char* name : {"critical_size", "monotone", "without_absorbed", "without_vanished"}) {
     add_size_columns(name, table.columns);
   }
@@ -200,8 +198,8 @@ FigureTable critical_table(std::span<const AmplitudeGrowth> all) {
 
 /// The critical size against the number of cycles over which crystallites are followed, with the
 /// supplement's for its own number of cycles.
-FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
-  FigureTable table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
+Table followed_table(std::span<const AmplitudeGrowth> all) {
+  Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
   table.columns.insert(table.columns.end(), {"supplement_grains", "runs"});
   table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
@@ -213,21 +211,21 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
       if (after.runs.empty() && !is_published) continue;
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles});
       add_size(after.critical, row);
-      row.emplace_back(is_published ? TableValue(one.published->critical_size) : TableValue());
+      row.emplace_back(is_published ? TableCell(one.published->critical_size) : TableCell());
       row.emplace_back(after.runs.size());
     }
     const RowFilter rows = {"amplitude_rad", one.amplitude};
-    table.chart.series.push_back({.title = one.style.title,
-                                  .colour = one.style.colour,
-                                  .point = one.style.point,
+    table.chart.series.push_back({.title = one.title,
+                                  .colour = one.look.colour,
+                                  .point = one.look.point,
                                   .join = Join::line,
                                   .columns = {.x = "cycles_followed",
                                               .y = "critical_size_grains",
                                               .y_error = "critical_size_standard_error_grains",
                                               .runs = "runs"},
                                   .filter = rows});
-    table.chart.series.push_back({.colour = one.style.colour,
-                                  .point = one.style.point - 1,
+    table.chart.series.push_back({.colour = one.look.colour,
+                                  .point = one.look.point - 1,
                                   .large = true,
                                   .columns = {.x = "cycles_followed", .y = "supplement_grains"},
                                   .filter = rows});
@@ -237,25 +235,33 @@ FigureTable followed_table(std::span<const AmplitudeGrowth> all) {
 
 /// Fig. 4(b) of the main text: with method 1 of section C the onset is the phi at which a curve
 /// reaches its critical size. No crystallite counts as one grain, as in method 2.
-FigureTable largest_table(std::span<const FigureRun> runs, std::span<const AmplitudeGrowth> all) {
-  std::vector<CurveStyle> styles;
-  for (const AmplitudeGrowth& one : all) styles.push_back(one.style);
-  const MeasureColumn largest{"largest_crystallite", "grains", "largest_crystallite", 1};
-  FigureTable table = against_phi("C_largest", curves_of(runs, styles), largest,
-                                  {.name = "largest crystallite", .unit = "grains", .log = true});
+Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
+  PlotSpec plot{.name = "C_largest",
+                .y = "max(1,largest_crystallite)",
+                .x = "phi",
+                .log = LogAxes::y,
+                .ylabel = "largest crystallite [grains]",
+                .column = "largest_crystallite"};
   for (const AmplitudeGrowth& one : all) {
-    table.chart.lines.push_back(critical_line(one.published->critical_size, one.style.colour));
+    plot.series.push_back({.where = {{"amplitude_rad", one.amplitude}},
+                           .label = fmt::format("$A$ = {}", one.amplitude),
+                           .colour = one.look.colour});
+  }
+  FigureResult drawn = plot_figure(plot).make(frame);
+  if (drawn.tables.empty()) return {.name = plot.name};
+  Table table = std::move(drawn.tables.front());
+  for (const AmplitudeGrowth& one : all) {
+    table.chart.lines.push_back(critical_line(one.published->critical_size, one.look.colour));
   }
   return table;
 }
 
 /// The counts that give a critical size, of each run.
-FigureTable growth_entered(std::span<const AmplitudeGrowth* const> amplitudes,
-                           std::int64_t cycles) {
-  FigureTable entered =
+Table growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
+  Table entered =
       entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
   for (const AmplitudeGrowth* one : amplitudes) {
-    for (const FigureRun* run : one->all_runs) {
+    for (const FrameRun* run : one->all_runs) {
       for (const auto& [size, count] : growth_of(*run, cycles)) {
         if (size > GrowthCurve::largest) break;
         enter(
@@ -314,7 +320,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   Verdict verdict =
       decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
                           published),
-              margin_critical_size},
+              margin_critical_size, Relation::same,
+              fmt::format("C.critical_size@amplitude_rad={}", one.amplitude)},
              fmt::format("critical size, relative difference from {} grains", published), relative,
              runs.size(), note, growth_entered({&alone, 1}, one.published->n_bin));
   if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
@@ -340,19 +347,20 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
     growth = mapped(ratio(size(1), size(0)), [](double r) { return r - 1; });
   }
   if (!growth) sized.clear();
-  return decide({.text = "C: the critical size grows with A", .claimed = Relation::higher},
-                "critical size at the largest amplitude relative to that at the smallest, "
-                "less 1",
-                growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
-                Counted::runs_per_variant);
+  return decide(
+      {.text = "C: the critical size grows with A", .claimed = Relation::higher, .id = "C.growth"},
+      "critical size at the largest amplitude relative to that at the smallest, "
+      "less 1",
+      growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
+      Counted::runs_per_variant);
 }
 
 }  // namespace
 
-FigureResult figure_c(std::span<const FigureRun> runs) {
-  const std::vector<AmplitudeGrowth> all = growth_by_amplitude(runs);
+FigureResult figure_c(const Frame& frame) {
+  const std::vector<AmplitudeGrowth> all = growth_by_amplitude(frame.runs);
   FigureResult result{
-      {rates_table(all), critical_table(all), largest_table(runs, all), followed_table(all)}, {}};
+      {rates_table(all), critical_table(all), largest_table(frame, all), followed_table(all)}, {}};
   for (const AmplitudeGrowth& one : all) {
     result.verdicts.push_back(critical_size_is_published(one));
   }

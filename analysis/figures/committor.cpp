@@ -9,12 +9,13 @@
 #include <map>
 #include <utility>
 
-#include "analysis/claims.hpp"
+#include "analysis/axes.hpp"
 #include "analysis/committor.hpp"
-#include "analysis/figures/curves.hpp"
+#include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
+#include "analysis/styles.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -50,14 +51,15 @@ using FatesByRule = std::array<Fates, cycles_without.size()>;
 /// A crystallite of a state, or, with size 0, a state without crystallites, whose clones are grown
 /// or gone.
 struct Subject {
-  const FigureRun* run;  ///< the first clone
+  const FrameRun* run;  ///< the first clone
   std::int32_t size;
   FatesByRule fates = {};
 };
 
 struct Amplitude {
   double amplitude = 0;
-  CurveStyle style;
+  Text title;
+  Look look;
   double published = 0;  ///< the supplement's critical size
   std::vector<Subject> crystallites = {}, controls = {};
   std::size_t states = 0;
@@ -65,7 +67,7 @@ struct Amplitude {
 };
 
 /// The maps of whole cycles from 0 on, up to the first that is missing.
-std::vector<const CrystalliteMap*> maps_of(const FigureRun& run) {
+std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   std::vector<const CrystalliteMap*> maps;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
     if (checkpoint.cycle != static_cast<double>(maps.size())) continue;
@@ -82,7 +84,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
 /// Adds the clones of one state.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
-  for (const FigureRun* clone : clones) maps.push_back(maps_of(*clone));
+  for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
   std::erase_if(maps, [](const auto& of_clone) { return of_clone.empty(); });
   if (maps.empty()) return;
   const CrystalliteMap& start = *maps.front().front();
@@ -111,19 +113,17 @@ void add_state(RunGroup clones, Amplitude& to) {
   }
 }
 
-std::vector<Amplitude> amplitudes_of(std::span<const FigureRun> runs) {
+std::vector<Amplitude> amplitudes_of(std::span<const FrameRun> runs) {
   std::vector<Amplitude> all;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
     const std::size_t k = all.size();
     Amplitude& one =
         all.emplace_back(Amplitude{.amplitude = amplitude,
-                                   .style = {.where = {},
-                                             .title = formula(fmt::format("$A$ = {}", amplitude)),
-                                             .colour = safe_colours[k % safe_colours.size()],
-                                             .point = curve_symbol(k)},
+                                   .title = formula(fmt::format("$A$ = {}", amplitude)),
+                                   .look = amplitude_look(amplitude, k),
                                    .published = published_nearest(amplitude).critical_size});
-    std::map<std::pair<std::string, std::string>, std::vector<const FigureRun*>> states;
-    for (const FigureRun* run : members)
+    std::map<std::pair<std::string, std::string>, std::vector<const FrameRun*>> states;
+    for (const FrameRun* run : members)
       states[{run->place.variant, run->stage.parent}].push_back(run);
     for (const auto& [state, clones] : states) add_state(clones, one);
   }
@@ -194,10 +194,10 @@ std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
 /// At least so many clones that are grown or gone make a point of the drawing. [choice]
 constexpr std::size_t least_drawn = 8;
 
-FigureTable probability_table(std::span<const Amplitude> all) {
-  FigureTable table{.name = "committor",
-                    .columns = {"amplitude_rad", "size_grains", "crystallites", "grown", "gone",
-                                "merged", "undecided", "revived", "grown_share"}};
+Table probability_table(std::span<const Amplitude> all) {
+  Table table{.name = "committor",
+              .columns = {"amplitude_rad", "size_grains", "crystallites", "grown", "gone", "merged",
+                          "undecided", "revived", "grown_share"}};
   table.chart = {
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 21},
       .y = {.name = "share that grows", .low = 0, .high = 1, .clip = true},
@@ -213,7 +213,7 @@ FigureTable probability_table(std::span<const Amplitude> all) {
     }
     const std::vector<GrowthBySize> growth = by_packing_and_size(one, chosen_rule);
     const GrowthCurve curve(growth);
-    Series smooth{.colour = one.style.colour, .point = 0, .join = Join::line, .band = true};
+    Series smooth{.colour = one.look.colour, .point = 0, .join = Join::line, .band = true};
     for (const auto& [size, entry] : sizes) {
       const auto& [count, fates] = entry;
       table.rows.push_back({one.amplitude, std::int64_t{size}, count, fates.of(Fate::grown),
@@ -223,21 +223,21 @@ FigureTable probability_table(std::span<const Amplitude> all) {
           ChartPoint{static_cast<double>(size), (1 + curve.delta_rho(size)) / 2});
       if (const auto error = curve.delta_rho_error(size)) at.y_error = *error / 2;
     }
-    Series data{.title = one.style.title, .colour = one.style.colour, .point = one.style.point};
+    Series data{.title = one.title, .colour = one.look.colour, .point = one.look.point};
     for (const GrowthRate& bin : growth_rates(growth, least_drawn)) {
       data.points.push_back({bin.size, (1 + bin.delta) / 2, std::nullopt, bin.delta_error / 2});
     }
     table.chart.series.insert(table.chart.series.end(), {std::move(smooth), std::move(data)});
     if (const auto q = background(one)) {
       table.chart.lines.push_back(
-          {.at = *q, .colour = one.style.colour, .title = "states without crystallites"});
+          {.at = *q, .colour = one.look.colour, .title = "states without crystallites"});
     }
   }
   return table;
 }
 
-FigureTable sizes_table(std::span<const Amplitude> all) {
-  FigureTable table{.name = "committor_sizes", .columns = {"amplitude_rad", "cycles_without"}};
+Table sizes_table(std::span<const Amplitude> all) {
+  Table table{.name = "committor_sizes", .columns = {"amplitude_rad", "cycles_without"}};
   add_size_columns("half_size", table.columns);
   for (const char* name :
        {"not_corrected_grains", "undecided_as_grown_grains", "undecided_as_gone_grains", "states",
@@ -254,7 +254,7 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
       add_size(half_size(one, rule), row);
       for (const Fate undecided : {Fate::undecided, Fate::grown, Fate::gone}) {
         const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
-        row.push_back(size ? TableValue(size->value) : TableValue());
+        row.push_back(size ? TableCell(size->value) : TableCell());
       }
       const Fates sum = sum_of(one.crystallites, rule);
       row.insert(row.end(), {one.states, one.left_out, by_packing_and_size(one, rule).size(),
@@ -262,23 +262,23 @@ FigureTable sizes_table(std::span<const Amplitude> all) {
                              sum.of(Fate::merged), sum.of(Fate::undecided), sum.revived,
                              one.controls.size(), background(one), one.published});
     }
-    table.chart.series.push_back({.title = one.style.title,
-                                  .colour = one.style.colour,
-                                  .point = one.style.point,
+    table.chart.series.push_back({.title = one.title,
+                                  .colour = one.look.colour,
+                                  .point = one.look.point,
                                   .join = Join::line,
                                   .columns = {.x = "cycles_without",
                                               .y = "half_size_grains",
                                               .y_error = "half_size_standard_error_grains"},
                                   .filter = {"amplitude_rad", one.amplitude},
                                   .shift = 0.04 * static_cast<double>(table.chart.series.size())});
-    table.chart.lines.push_back(critical_line(one.published, one.style.colour));
+    table.chart.lines.push_back(critical_line(one.published, one.look.colour));
   }
   return table;
 }
 
 /// What enters a verdict: a row for each crystallite, one of size 0 for each control.
-FigureTable fates_of(std::initializer_list<const Amplitude*> amplitudes) {
-  FigureTable entered =
+Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
+  Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
   for (const Amplitude* one : amplitudes) {
     for (const auto* subjects : {&one->crystallites, &one->controls}) {
@@ -316,7 +316,8 @@ Verdict size_is_published(const Amplitude& one) {
   return decide(
       {fmt::format("C: at A = {} rad half of the crystallites of {} grains grow", one.amplitude,
                    one.published),
-       margin_critical_size},
+       margin_critical_size, Relation::same,
+       fmt::format("committor.size@amplitude_rad={}", one.amplitude)},
       fmt::format("size of which half grow, relative difference from {} grains", one.published),
       size, packings, note, fates_of({&one}));
 }
@@ -329,7 +330,8 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   if (before && after) growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
   return decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
                                      high.amplitude, low.amplitude),
-                 .claimed = Relation::higher},
+                 .claimed = Relation::higher,
+                 .id = "committor.growth"},
                 "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
                 note_on(low, before) + "; " + note_on(high, after), fates_of({&low, &high}),
                 Counted::runs_per_variant);
@@ -337,8 +339,8 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
 
 }  // namespace
 
-FigureResult figure_committor(std::span<const FigureRun> runs) {
-  const std::vector<Amplitude> all = amplitudes_of(runs);
+FigureResult figure_committor(const Frame& frame) {
+  const std::vector<Amplitude> all = amplitudes_of(frame.runs);
   FigureResult result{{probability_table(all), sizes_table(all)}, {}};
   for (const Amplitude& one : all) result.verdicts.push_back(size_is_published(one));
   if (all.size() > 1) result.verdicts.push_back(size_grows(all[all.size() - 2], all.back()));

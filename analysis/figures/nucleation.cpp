@@ -8,21 +8,23 @@
 #include <map>
 #include <utility>
 
-#include "analysis/figures/curves.hpp"
+#include "analysis/axes.hpp"
+#include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/statistics.hpp"
+#include "analysis/styles.hpp"
 
 namespace shearcell {
 namespace {
 
 using Group = std::pair<double, double>;  // amplitude, grains
-using Groups = std::map<Group, std::vector<const FigureRun*>>;
+using Groups = std::map<Group, std::vector<const FrameRun*>>;
 
-Groups grouped(std::span<const FigureRun> runs) {
+Groups grouped(std::span<const FrameRun> runs) {
   Groups groups;
   for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    for (const FigureRun* run : members) {
+    for (const FrameRun* run : members) {
       groups[{amplitude, number_of(*run, "grains")}].push_back(run);
     }
   }
@@ -49,8 +51,8 @@ std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns
   return series;
 }
 
-FigureTable survival_table(const Groups& groups) {
-  FigureTable table{
+Table survival_table(const Groups& groups) {
+  Table table{
       .name = "nucleation_a",
       .columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"}};
   for (const auto& [group, runs] : groups) {
@@ -77,21 +79,21 @@ FigureTable survival_table(const Groups& groups) {
 }
 
 /// Error of a Poisson count. None for one event: its bar would reach zero on a logarithmic axis.
-TableValue error_of(const NucleationRate& bin) {
+TableCell error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
 }
 
-FigureTable rate_table(const Groups& groups, Region region, const std::string& name) {
-  FigureTable table{.name = name,
-                    .columns = {"group", "amplitude_rad", "grains", "phi_low", "phi_high", "onsets",
-                                "grain_cycles", "rate_per_grain_cycle", "rate_standard_error",
-                                "rate_low", "rate_high"}};
+Table rate_table(const Groups& groups, Region region, const std::string& name) {
+  Table table{.name = name,
+              .columns = {"group", "amplitude_rad", "grains", "phi_low", "phi_high", "onsets",
+                          "grain_cycles", "rate_per_grain_cycle", "rate_standard_error", "rate_low",
+                          "rate_high"}};
   for (const auto& [group, runs] : groups) {
     for (const NucleationRate& bin : nucleation_rates(runs, region)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
                             bin.events, bin.grain_cycles,
-                            bin.events > 0 ? TableValue(bin.rate) : TableValue(), error_of(bin),
+                            bin.events > 0 ? TableCell(bin.rate) : TableCell(), error_of(bin),
                             bin.interval.low, bin.interval.high});
     }
   }
@@ -110,7 +112,7 @@ FigureTable rate_table(const Groups& groups, Region region, const std::string& n
 /// The exponent a of n^a, n the grains of the region, for a rate proportional to the area of the
 /// walls, N^(2/3), between the smallest and the largest cells. It is less than 2/3, since the share
 /// n / N grows with N. Not a number where those cells have no such grains.
-double exponent_of_walls(std::span<const FigureRun> runs, Region region) {
+double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
   const auto& [largest, in_largest] = *sizes.rbegin();
@@ -122,17 +124,18 @@ double exponent_of_walls(std::span<const FigureRun> runs, Region region) {
 
 /// The claim that the exponent is 1. The margin is half of the distance from 1 of the exponent for
 /// the area of the walls. None with cells of one size.
-std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region region,
-                                         const std::string& claim, const std::string& grains) {
+std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
+                                         const std::string& id, const std::string& claim,
+                                         const std::string& grains) {
   if (runs_by(runs, "grains").size() < 2) return {};
   const double walls = exponent_of_walls(runs, region);
   if (!(walls < 1)) return {};
-  const std::vector<const FigureRun*> all = pointers(runs);
+  const std::vector<const FrameRun*> all = pointers(runs);
   std::optional<Estimate> excess = size_exponent(all, region);
   if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  FigureTable entered =
+  Table entered =
       entered_with({"amplitude_rad", "grains", "phi", "cycles", "grain_cycles", "onsets"});
-  for (const FigureRun* run : all) {
+  for (const FrameRun* run : all) {
     for (const auto& [step, one] : exposures_of(*run, region, rate_step)) {
       enter(*run,
             {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi, one.cycles,
@@ -140,8 +143,9 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
             entered);
     }
   }
-  return {decide({claim, (1 - walls) / 2}, "exponent of the rate against " + grains + " less 1",
-                 excess, excess ? excess->runs : all.size(),
+  return {decide({claim, (1 - walls) / 2, Relation::same, id},
+                 "exponent of the rate against " + grains + " less 1", excess,
+                 excess ? excess->runs : all.size(),
                  excess
                      ? fmt::format("maximum likelihood; walls would give {:.2f}", walls - 1)
                      : "three runs, and runs of two sizes with onsets at the same phi, are needed",
@@ -150,18 +154,20 @@ std::vector<Verdict> rate_follows_volume(std::span<const FigureRun> runs, Region
 
 }  // namespace
 
-FigureResult figure_nucleation(std::span<const FigureRun> runs) {
+FigureResult figure_nucleation(const Frame& frame) {
+  const std::span<const FrameRun> runs = frame.runs;
   const Groups groups = grouped(runs);
   return {{survival_table(groups), rate_table(groups, Region::interior, "nucleation_b")},
-          rate_follows_volume(runs, Region::interior,
+          rate_follows_volume(runs, Region::interior, "nucleation.volume",
                               "title: the rate of nucleation is proportional to the volume, not to "
                               "the area of the walls",
                               "N_inves")};
 }
 
-FigureResult figure_nucleation_core(std::span<const FigureRun> runs) {
+FigureResult figure_nucleation_core(const Frame& frame) {
+  const std::span<const FrameRun> runs = frame.runs;
   return {{rate_table(grouped(runs), Region::core, "nucleation_core")},
-          rate_follows_volume(runs, Region::core,
+          rate_follows_volume(runs, Region::core, "nucleation_core.volume",
                               "title: at least 4 d from the walls the rate of nucleation is "
                               "proportional to the volume",
                               "core_grains")};

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
@@ -32,7 +33,7 @@ struct Places {
 Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   Places places;
   std::map<std::string, std::vector<double>> of_packing;
-  for (const FigureRun* run : runs) {
+  for (const FrameRun* run : runs) {
     const std::vector<double> found = nucleus_places(*run, axis, seen);
     if (found.empty()) continue;
     places.count += found.size();
@@ -47,7 +48,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
 /// The smallest cell among the runs, for which the inaccessible layer is the largest share.
 double smallest_width(RunGroup runs) {
   double width = infinite;
-  for (const FigureRun* run : runs) {
+  for (const FrameRun* run : runs) {
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       if (checkpoint.measures.crystallite_map)
         width = std::min(width, checkpoint.measures.crystallite_map->width);
@@ -58,18 +59,18 @@ double smallest_width(RunGroup runs) {
 
 /// One curve of a panel.
 struct Profile {
-  TableValue key;  ///< in the first column
+  TableCell key;  ///< in the first column
   Text title;
   Places places;
 };
 
 /// Probability density over [0, 1] of one or more distributions.
-FigureTable density_table(std::string name, std::string first_column, Text x,
-                          std::span<const Profile> profiles) {
+Table density_table(std::string name, std::string first_column, Text x,
+                    std::span<const Profile> profiles) {
   static const std::array<const char*, 4> colours = {"#000000", "#d55e00", "#0072b2", "#009e73"};
-  FigureTable table{.name = std::move(name),
-                    .columns = {std::move(first_column), "low", "high", "probability_density",
-                                "standard_error", "crystallites", "runs"}};
+  Table table{.name = std::move(name),
+              .columns = {std::move(first_column), "low", "high", "probability_density",
+                          "standard_error", "crystallites", "runs"}};
   table.chart = {.x = {.name = "position", .symbol = std::move(x), .low = 0, .high = 1},
                  .y = {.name = "probability density", .symbol = formula("$P$"), .low = 0},
                  .errors = "bars are standard errors over packings"};
@@ -86,7 +87,7 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
                                               .y = "probability_density",
                                               .y_error = "standard_error",
                                               .x_high = "high"},
-                                  .filter = {table.columns.front(), profile.key}});
+                                  .filter = {table.columns.front().name, profile.key}});
   }
   return table;
 }
@@ -97,18 +98,13 @@ FigureTable density_table(std::string name, std::string first_column, Text x,
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
-  const auto difference = [&](std::span<const std::size_t> selection) {
-    double sum = 0, all = 0;
-    for (const std::size_t packing : selection) {
-      for (const double place : places.packings[packing]) {
-        const std::optional<int> counted = side(place);
-        if (!counted) continue;
-        sum += *counted;
-        ++all;
-      }
+  std::vector<std::vector<double>> sides;  // of each packing
+  for (const std::vector<double>& packing : places.packings) {
+    std::vector<double>& own = sides.emplace_back();
+    for (const double place : packing) {
+      if (const std::optional<int> counted = side(place)) own.push_back(*counted);
     }
-    return sum / all;
-  };
+  }
   const std::size_t packings = places.packings.size();
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
                                  nucleus_smallest, nucleus_largest, places.runs, runs.size());
@@ -119,23 +115,24 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   if (packings < least_bootstrap_runs) {
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
   }
-  FigureTable entered = entered_with({"place", "value"});
-  for (const FigureRun* run : runs) {
+  Table entered = entered_with({"place", "value"});
+  for (const FrameRun* run : runs) {
     for (const double place : nucleus_places(*run, axis, Seen::first)) {
       const std::optional<int> counted = side(place);
       if (!counted) continue;
       enter(*run, {place, std::int64_t{*counted}}, entered);
     }
   }
-  return decide(claim, std::move(quantity), bootstrapped(packings, difference), packings,
-                std::move(note), std::move(entered));
+  return decide(claim, std::move(quantity), share(sides), packings, std::move(note),
+                std::move(entered));
 }
 
 /// The inner half of the accessible width is compared with the outer half.
 Verdict uniform_in_the_middle(RunGroup runs) {
   const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
   return share_verdict(
-      {"E: crystallites are equally probable over the accessible central x", margin_share},
+      {"E: crystallites are equally probable over the accessible central x", margin_share,
+       Relation::same, "S7.inner"},
       "share of nuclei in the inner half of the accessible width less that in the outer half", runs,
       CellAxis::x, [half](double x) -> std::optional<int> {
         const double away = std::abs(x - 0.5);
@@ -152,7 +149,8 @@ Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
 
 }  // namespace
 
-FigureResult figure_s7(std::span<const FigureRun> runs) {
+FigureResult figure_s7(const Frame& frame) {
+  const std::span<const FrameRun> runs = frame.runs;
   // The panels of the supplement are for the softest springs; a manifest may sweep the stiffness.
   const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
   const auto softest = by_stiffness.empty() ? pointers(runs) : by_stiffness.begin()->second;
@@ -172,14 +170,14 @@ FigureResult figure_s7(std::span<const FigureRun> runs) {
       upper_less_lower(softest, {fmt::format("E: crystallites are more probable near the top wall "
                                              "than near the bottom wall, by more than {} of all",
                                              margin_share),
-                                 margin_share, Relation::higher})};
+                                 margin_share, Relation::higher, "S7.top"})};
   if (by_stiffness.size() > 1) {
     const auto& [k, members] = *by_stiffness.rbegin();
     verdicts.push_back(upper_less_lower(
         members, {fmt::format("E: at k = {} N/m crystallites are as probable near the top wall as "
                               "near the bottom wall",
                               k),
-                  margin_share}));
+                  margin_share, Relation::same, "S7.stiff"}));
   }
   const std::span all(places);
   return {

@@ -11,7 +11,7 @@
 
 #include "analysis/expression.hpp"
 #include "analysis/figures/figures.hpp"
-#include "analysis/own_figure.hpp"
+#include "analysis/plots.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
@@ -69,12 +69,13 @@ struct Found {
   }
 };
 
-using RunList = std::vector<const FigureRun*>;
+using RunList = std::vector<const FrameRun*>;
 
 Found found_in(const RunList& runs, const Parameter& parameter) {
   Found found;
-  for (const FigureRun* run : runs) {
-    const double value = number_of(*run, parameter.value);
+  const NumberColumn column(parameter.value);
+  for (const FrameRun* run : runs) {
+    const double value = column(*run);
     if (!std::isfinite(value)) continue;
     ++found.runs;
     found.take(value);
@@ -128,17 +129,14 @@ const char* colour_of(std::string_view comparison) {
 
 }  // namespace
 
-FigureResult figure_table1(std::span<const FigureRun> given) {
-  std::vector<std::string> values;
-  for (const Parameter& parameter : parameters()) values.push_back(parameter.value);
-  const std::vector<FigureRun> runs = with_values(given, values);
+FigureResult figure_table1(const Frame& frame) {
   std::map<std::string, RunList> experiments;
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : frame.runs) {
     if (!run.checkpoints.empty()) experiments[run.place.experiment].push_back(&run);
   }
-  FigureTable table{.name = "table1",
-                    .columns = {"experiment", "parameter", "supplement", "smallest", "largest",
-                                "runs", "comparison"}};
+  Table table{.name = "table1",
+              .columns = {"experiment", "parameter", "supplement", "smallest", "largest", "runs",
+                          "comparison"}};
   if (!experiments.empty()) table.text = heading();
   for (const auto& [experiment, members] : experiments) {
     auto& row = table.text.rows.emplace_back();

@@ -197,8 +197,8 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
-    const Frame frame = frame_of(store.load_checkpoint(record), record,
-                                 {shown_place(run), {}, run.stage}, &sources, every);
+    const ExportedState frame = frame_of(store.load_checkpoint(record), record,
+                                         {shown_place(run), {}, run.stage}, &sources, every);
     unread += frame.unread;
     for (const FrameWriter& write : writers) write(frame);
   }

@@ -90,12 +90,22 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
       return std::ranges::count(figures, wanted.figure.name, &ComputedFigure::name) > 0;
     };
     if (!std::ranges::all_of(wanted_figures(store, {}, {experiment}).figures, is_drawn)) continue;
-    std::vector<std::string> said;
+    std::vector<std::string_view> said;
     for (const ComputedFigure& figure : figures) {
-      for (const Verdict& verdict : figure.verdicts) said.push_back(verdict.claim);
+      for (const Verdict& verdict : figure.verdicts) {
+        said.insert(said.end(), {verdict.id, verdict.claim});
+      }
     }
-    for (const std::string& problem : unsaid(primary, said)) {
-      print_stderr("warning: {}: {}\n", experiment, problem);
+    for (const Figure& figure : all_figures()) {
+      if (!figure.of.empty()) said.insert(said.end(), figure.claims.begin(), figure.claims.end());
+    }
+    for (const std::string& claim : primary) {
+      const auto is_it = [&](std::string_view one) {
+        return one == claim || one.substr(0, one.find('@')) == claim;
+      };
+      if (std::ranges::any_of(said, is_it)) continue;
+      print_stderr("warning: {}: {}\n", experiment,
+                   with_nearest(fmt::format("primary: no claim is '{}'", claim), claim, said));
     }
   }
 }
@@ -176,7 +186,7 @@ manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.capti
 NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
 DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. Figures of all experiments go into
 DIR/SCALE; without names, table1 is drawn if a manifest lists any of these figures, and summary if
-several experiments have its parts. Where the number of runs of a mean changes along a curve, the key
+the store has two of its experiments. Where the number of runs of a mean changes along a curve, the key
 of the drawing names the fewest and the most (the caption, if all curves have the same). Caches
 measures in the store's derived.sqlite. If you delete that file, they are measured again, except those
 of pruned checkpoints (see `regenerate`). A store that cannot be written to, such as an archive, is

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "analysis/estimators.hpp"
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/run_table.hpp"
@@ -92,6 +93,18 @@ stand in `plots` and `claims` of a manifest, those marked *until* also in `until
   return text;
 }
 
+std::string estimator_reference() {
+  std::string text =
+      "\n## Estimators\n\n"
+      "Of a claim's `estimator`; a key in the second column implies it.\n\n"
+      "| estimator | key | number |\n|---|---|---|\n";
+  for (const Estimator& one : all_estimators()) {
+    const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);
+    text += fmt::format("| `{}` | {} | {} |\n", one.name, key, cell(std::string(one.meaning)));
+  }
+  return text;
+}
+
 std::string figure_reference() {
   std::string text =
       "\n## Figures\n\n"
@@ -137,7 +150,7 @@ std::string reference(const CLI::App& program) {
       "# Reference\n\n"
       "`shearcell manual` prints this file from the program's own tables; a test "
       "compares them.\n\n" +
-      manifest_reference() + measure_reference() + figure_reference() +
+      manifest_reference() + measure_reference() + estimator_reference() + figure_reference() +
       "\n## Commands\n\n"
       "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not, "
       "`SHEARCELL_LAMMPS`\nthe LAMMPS program to use instead of `lmp` on PATH; `NO_COLOR` turns "

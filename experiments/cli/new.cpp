@@ -66,7 +66,7 @@ question: What is to be found out?
 # plots:
 #   - {{name: compaction, y: phi, x: cycle, show: traces}}
 # claims:
-#   - {{name: same, compare: phi, at_cycle: 10, between: [{{fluid: still}}, {{fluid: cell}}], margin: 0.001}}
+#   - {{id: same, compare: phi, at_cycle: 10, between: [{{fluid: still}}, {{fluid: cell}}], margin: 0.001}}
 # labels: {{"fluid=still": "fluid at rest"}}
 
 base:

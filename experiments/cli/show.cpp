@@ -64,7 +64,8 @@ Facts measures_at(const Store& store, const CheckpointRecord& record, Context& c
   print_problems(measure_checkpoints(store, {&todo, 1}, table_providers(), {}), "not measured",
                  context);
   Facts facts;
-  for (const auto& [column, value] : facts_of(record, one.measures)) {
+  for (const auto& [column, known] : facts_of(record, one.measures)) {
+    const nlohmann::json value = json_of(known);
     Fact& fact = facts.emplace_back(Fact{column.name, value});
     if (!value.is_number()) continue;
     fact.heading = column.name;

@@ -33,17 +33,17 @@ void table(const TableOptions& options, Context& context) {
                                    how, options.simulated);
   const std::string text = context.json               ? to_json(made, true)
                            : options.format == "json" ? to_json(made)
-                                                      : to_csv(made);
+                                                      : to_csv(made.table, Digits::all);
   if (to_stdout) {
     // Only a terminal gets escaped text.
     fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
   } else {
     write_output(options.out, text);
-    print_stderr("{} rows of {} columns in {}\n", made.rows.size(), made.columns.size(),
+    print_stderr("{} rows of {} columns in {}\n", made.table.rows.size(), made.table.columns.size(),
                  options.out);
   }
   for (const std::string& note : made.notes) print_stderr("{}\n", note);
-  if (made.rows.empty()) print_stderr("no checkpoint of a run fits all of these options\n");
+  if (made.table.rows.empty()) print_stderr("no checkpoint of a run fits all of these options\n");
   print_problems(made, "not measured", context);
 }
 

@@ -7,26 +7,26 @@
 #include <filesystem>
 #include <functional>
 
-#include "experiments/export/frame.hpp"
+#include "experiments/export/exported_state.hpp"
 #include "experiments/manifest/packing_file.hpp"
 
 namespace shearcell {
 
 /// Writes a frame. Throws std::runtime_error if it cannot be written.
-using FrameWriter = std::function<void(const Frame&)>;
+using FrameWriter = std::function<void(const ExportedState&)>;
 
-/// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as Frame::type),
-/// mass, radius and the measures of each grain; observables with every scalar; the run and its
-/// parameters as attributes of the group parameters. Lengths are in nm, since MDAnalysis does not
-/// know metres. `frames`: the number of frames that will be written.
+/// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species (as
+/// ExportedState::type), mass, radius and the measures of each grain; observables with every
+/// scalar; the run and its parameters as attributes of the group parameters. Lengths are in nm,
+/// since MDAnalysis does not know metres. `frames`: the number of frames that will be written.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
 /// Extended XYZ in one file; the comment line of each frame holds the run, its parameters and the
 /// scalars. Readers require chemical symbols: species H is a grain, He a wall grain. The column
-/// `wall_side` is Frame::type, which OVITO would take for a second species if it were called
-/// `type`. A text that ASE or OVITO would read as a number or a logical value is in single quotes:
-/// the experiment T is 'T'. Lengths in metres, or in grain diameters, since OVITO and ASE expect
-/// numbers of order 1 (the radius is 0.5); d_m is then d in metres.
+/// `wall_side` is ExportedState::type, which OVITO would take for a second species if it were
+/// called `type`. A text that ASE or OVITO would read as a number or a logical value is in single
+/// quotes: the experiment T is 'T'. Lengths in metres, or in grain diameters, since OVITO and ASE
+/// expect numbers of order 1 (the radius is 0.5); d_m is then d in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
@@ -41,8 +41,8 @@ FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, a row for each contact. The particles are
 /// numbered as in the other formats; `other` is 0 for a wall's plane. `wall_side` is the side of a
-/// wall contact, as Frame::type, and 0 between grains. The force on `grain` is force_N along the
-/// normal; the force on `other` is opposite.
+/// wall contact, as ExportedState::type, and 0 between grains. The force on `grain` is force_N
+/// along the normal; the force on `other` is opposite.
 FrameWriter contacts_writer(const std::filesystem::path& folder);
 
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",

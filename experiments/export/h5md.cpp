@@ -37,7 +37,7 @@ class Trajectory {
   Trajectory(const std::filesystem::path& path, std::size_t frames)
       : path_(path), frames_(frames), file_(create(path)) {}
 
-  void add(const Frame& frame) {
+  void add(const ExportedState& frame) {
     const hdf5::Library library;
     if (next_ == 0) begin(frame);
     if (frame.particles() != particles_) {
@@ -57,7 +57,7 @@ class Trajectory {
     Eigen::Matrix3Xi image = Eigen::Matrix3Xi::Zero(3, static_cast<Eigen::Index>(particles_));
     image.row(2) = Eigen::Map<const Eigen::RowVectorXi>(frame.image.data(), image.cols());
     element("particles/all/image", H5T_STD_I32LE, {particles_, 3}, image.data());
-    for (const FrameColumn& column : frame.columns) {
+    for (const ExportedColumn& column : frame.columns) {
       const std::string path = "particles/all/" + column.name;
       if (column.whole) {
         const std::vector<std::int32_t> whole(column.values.begin(), column.values.end());
@@ -104,7 +104,7 @@ class Trajectory {
     put(path + "/value", type, shape, data, unit);
   }
 
-  void begin(const Frame& frame) {
+  void begin(const ExportedState& frame) {
     particles_ = frame.particles();
     hdf5::put_h5md(file_, "1");
     const Handle particles = make_group(file_, "particles");
@@ -173,7 +173,8 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
   // Must precede other calls. Otherwise HDF5 would repeat a write that a full disk refused when the
   // process ends, and crash.
   H5dont_atexit();
-  return [out = std::make_shared<Trajectory>(file, frames)](const Frame& f) { out->add(f); };
+  return
+      [out = std::make_shared<Trajectory>(file, frames)](const ExportedState& f) { out->add(f); };
 }
 
 }  // namespace shearcell

@@ -38,7 +38,7 @@ std::string quoted(std::string text) {
 }
 
 /// `length`: the unit of lengths [m].
-std::string xyz_comment(const Frame& f, LengthUnit unit, double length) {
+std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) {
   const Checkpoint& c = f.checkpoint;
   const Eigen::Matrix3d e = f.edges / length;
   const Eigen::Vector3d o = f.origin / length;
@@ -46,7 +46,7 @@ std::string xyz_comment(const Frame& f, LengthUnit unit, double length) {
       "Lattice=\"{:.17g}\" Origin=\"{:.17g}\" pbc=\"F F T\" Time={:.17g} step={} cycle={:.17g} "
       "theta={:.17g} Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:radius:R:1:wall_side:I:1",
       fmt::join(e.reshaped(), " "), fmt::join(o, " "), c.time_s, c.state.step, c.cycle, c.theta);
-  for (const FrameColumn& column : f.columns) {
+  for (const ExportedColumn& column : f.columns) {
     line += fmt::format(":{}:{}:1", column.name, column.whole ? 'I' : 'R');
   }
   line += fmt::format(" length_unit={0} velocity_unit={0}/s d_m={1:.17g} checkpoint={2}",
@@ -65,7 +65,7 @@ std::string xyz_comment(const Frame& f, LengthUnit unit, double length) {
 }
 
 // The planes of the cell are not those of the box; a start from the file needs them.
-std::string lammps_title(const Frame& f) {
+std::string lammps_title(const ExportedState& f) {
   const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(
       "LAMMPS data file by shearcell, units si, atom_style sphere, step {}, cycle {:.17g}, run "
@@ -77,7 +77,7 @@ std::string lammps_title(const Frame& f) {
 }  // namespace
 
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
-  return [unit, out = std::make_shared<NewFile>(file)](const Frame& f) {
+  return [unit, out = std::make_shared<NewFile>(file)](const ExportedState& f) {
     const double length = unit == LengthUnit::m ? 1 : 2 * f.radius;
     std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, unit, length));
     for (std::size_t i = 0; i < f.particles(); ++i) {
@@ -86,7 +86,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
       const auto line = std::back_inserter(text);
       fmt::format_to(line, "{} {:.17g} {:.17g} {} {:.17g} {}", f.type[i] == 0 ? "H" : "He",
                      fmt::join(r, " "), fmt::join(v, " "), i + 1, f.radius / length, f.type[i]);
-      for (const FrameColumn& column : f.columns) {
+      for (const ExportedColumn& column : f.columns) {
         fmt::format_to(line, " {:.17g}", column.values[i]);
       }
       text += '\n';
@@ -96,7 +96,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
 }
 
 FrameWriter lammps_writer(const std::filesystem::path& folder) {
-  return [folder](const Frame& f) {
+  return [folder](const ExportedState& f) {
     const std::string name = "frame_" + frame_name(f);
     NewFile(folder / (name + ".data")).add(lammps_data(f, lammps_title(f)));
     if (!f.continued) return;
@@ -105,7 +105,7 @@ FrameWriter lammps_writer(const std::filesystem::path& folder) {
 }
 
 FrameWriter contacts_writer(const std::filesystem::path& folder) {
-  return [folder](const Frame& f) {
+  return [folder](const ExportedState& f) {
     std::string text = "grain,other,wall_side,overlap_d,force_N,normal_x,normal_y,normal_z\n";
     const Checkpoint& c = f.checkpoint;
     for_each_contact(c.cell, c.state.position, pose_of(c), [&](const Contact& one) {
@@ -123,7 +123,7 @@ FrameWriter contacts_writer(const std::filesystem::path& folder) {
 
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t count) {
   using Json = nlohmann::ordered_json;
-  return [folder, count, frames = std::make_shared<Json>(Json::array())](const Frame& f) {
+  return [folder, count, frames = std::make_shared<Json>(Json::array())](const ExportedState& f) {
     const Checkpoint& c = f.checkpoint;
     Json frame = {{"cycle", c.cycle}, {"time_s", c.time_s}, {"checkpoint", f.sha256}};
     for (const auto& [name, value] : f.scalars) frame[name] = value;  // NaN as null

@@ -52,7 +52,7 @@ std::vector<std::int64_t> count_from(std::int64_t first, std::size_t count) {
   return numbers;
 }
 
-void write_grains(const Frame& f, const std::filesystem::path& file) {
+void write_grains(const ExportedState& f, const std::filesystem::path& file) {
   PolyData out;
   std::string piece = "<FieldData>\n";
   const auto add_field = [&](const std::string& name, double value) {
@@ -71,7 +71,7 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
            out.array("velocity", "Float64", 3, flat(f.velocity)) +
            out.array("radius", "Float64", 1, std::vector<double>(f.particles(), f.radius));
   piece += out.array("type", "Int32", 1, f.type);
-  for (const FrameColumn& column : f.columns) {
+  for (const ExportedColumn& column : f.columns) {
     const std::vector<double>& all = column.values;
     piece += column.whole ? out.array(column.name, "Int32", 1,
                                       std::vector<std::int32_t>(all.begin(), all.end()))
@@ -83,7 +83,7 @@ void write_grains(const Frame& f, const std::filesystem::path& file) {
   out.write(file, piece);
 }
 
-void write_cell(const Frame& f, const std::filesystem::path& file) {
+void write_cell(const ExportedState& f, const std::filesystem::path& file) {
   Eigen::Matrix3Xd corners(3, 8);
   for (int k = 0; k < 8; ++k) {
     corners.col(k) = f.origin + f.edges * Eigen::Vector3d(k & 1, (k >> 1) & 1, (k >> 2) & 1);
@@ -103,7 +103,7 @@ void write_cell(const Frame& f, const std::filesystem::path& file) {
 }  // namespace
 
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames) {
-  return [folder, left = frames, sets = std::string()](const Frame& f) mutable {
+  return [folder, left = frames, sets = std::string()](const ExportedState& f) mutable {
     const std::string grains = fmt::format("grains_{}.vtp", frame_name(f));
     const std::string cell = fmt::format("cell_{}.vtp", frame_name(f));
     write_grains(f, folder / grains);

@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "analysis/figures/figures.hpp"
 #include "core/named.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/shipped.hpp"
@@ -30,7 +29,7 @@ namespace {
 constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
 
 /// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-Ask ask_for(const Figure& figure, const FigureRun& run) {
+Ask ask_for(const Figure& figure, const FrameRun& run) {
   Ask ask = run.ask;
   if (!figure.within) ask.checkpoint_phases.clear();
   return ask;
@@ -42,13 +41,13 @@ double first_cycle(const Figure& figure) {
 }
 
 /// The last cycle that the figure takes of the run.
-double last_cycle(const Figure& figure, const FigureRun& run) {
+double last_cycle(const Figure& figure, const FrameRun& run) {
   return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
 }
 
 /// Adds the checkpoints that the figure takes, up to the run's end. A figure that measures nothing
 /// takes only the last one.
-void add_checkpoints(const Store& store, const Figure& figure, FigureRun& run) {
+void add_checkpoints(const Store& store, const Figure& figure, FrameRun& run) {
   const Ask ask = ask_for(figure, run);
   const std::vector<CheckpointRecord> found =
       checkpoints_for(store, run.stage, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
@@ -60,7 +59,7 @@ void add_checkpoints(const Store& store, const Figure& figure, FigureRun& run) {
 
 /// The number of checkpoints that the figure asks for, before the run's last one, and that are
 /// missing.
-std::size_t missing_for(const Figure& figure, const FigureRun& run) {
+std::size_t missing_for(const Figure& figure, const FrameRun& run) {
   std::size_t missing = 0;
   for (const std::uint64_t step :
        asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last_cycle(figure, run))) {
@@ -79,7 +78,7 @@ void note_never_made(const Figure& figure, CollectedRuns& collected) {
     std::set<std::string> runs;
   };
   std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
-  for (const FigureRun& run : collected.runs) {
+  for (const FrameRun& run : collected.runs) {
     const std::size_t missing = missing_for(figure, run);
     if (missing == 0) continue;
     Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
@@ -99,7 +98,7 @@ void note_never_made(const Figure& figure, CollectedRuns& collected) {
 
 /// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
 /// or can still be made.
-bool asks_for_one(const Figure& figure, const FigureRun& run) {
+bool asks_for_one(const Figure& figure, const FrameRun& run) {
   if (!figure.within || run.stage.kind != name_of(StageKind::shear)) return true;
   double last = last_cycle(figure, run);
   if (run.stage.state == StageState::completed) last = std::min(last, run.stage.cycle);
@@ -109,7 +108,7 @@ bool asks_for_one(const Figure& figure, const FigureRun& run) {
 /// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
 void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
   std::set<std::string> not_begun, never, going_on;
-  for (const FigureRun& run : collected.runs) {
+  for (const FrameRun& run : collected.runs) {
     const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
     const std::string name =
         fmt::format("{} seed {}{}", run.name, run.place.seed, failed ? " (failed)" : "");
@@ -120,7 +119,7 @@ void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns
       going_on.insert(name);
     }
   }
-  std::erase_if(collected.runs, [](const FigureRun& run) { return run.checkpoints.empty(); });
+  std::erase_if(collected.runs, [](const FrameRun& run) { return run.checkpoints.empty(); });
   for (const auto* names : {&not_begun, &never}) {
     if (names->empty()) continue;
     const auto [first, last] = figure.within.value_or(whole_run);
@@ -158,10 +157,10 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
-/// Sets FigureRun::core_time_s. Notes if the runs were computed by different processors.
+/// Sets FrameRun::core_time_s. Notes if the runs were computed by different processors.
 void add_core_times(const Store& store, CollectedRuns& collected) {
   std::set<std::string> processors;
-  for (FigureRun& run : collected.runs) {
+  for (FrameRun& run : collected.runs) {
     ComputingTime time = computing_time(store, run.stage.id, run.end);
     run.core_time_s = time.core_seconds;
     processors.merge(time.processors);
@@ -171,20 +170,45 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
       fmt::format("core times are of different processors: {}", some_of(processors)));
 }
 
-/// Sets Run::name and Run::named of the runs, which are all of this experiment.
+/// Sets Run::name and Run::named of the runs of this experiment.
 void name_variants(const std::vector<RegisteredManifest>& manifests, const std::string& experiment,
                    CollectedRuns& collected) {
   const auto manifest = std::ranges::find(manifests, experiment, &RegisteredManifest::experiment);
   if (manifest == manifests.end()) return;
   const std::vector<VariantLabel> labels = recorded_manifest(manifest->text).labels;
   std::vector<nlohmann::json> variants;
-  for (const FigureRun& run : collected.runs) variants.push_back(run.place.swept);
+  for (const FrameRun& run : collected.runs) {
+    if (run.place.experiment == experiment) variants.push_back(run.place.swept);
+  }
   const auto names = variant_names(variants, labels);
-  for (FigureRun& run : collected.runs) {
+  for (FrameRun& run : collected.runs) {
+    if (run.place.experiment != experiment) continue;
     run.name = names.at(run.place.swept);
     run.named = std::ranges::any_of(
         labels, [&](const VariantLabel& label) { return selects(label, run.place.swept); });
   }
+}
+
+/// Makes one list of the runs of several experiments: the experiment is a swept value of each, and
+/// a stage that two of them share is a run of the first. Notes experiments without runs.
+void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
+  std::set<std::string> known;
+  std::vector<FrameRun> joined;
+  for (const std::string& experiment : experiments) {
+    bool any = false;
+    for (FrameRun& run : collected.runs) {
+      if (run.place.experiment != experiment) continue;
+      any = true;
+      if (!known.insert(run.stage.id).second) continue;
+      run.place.swept["experiment"] = experiment;
+      run.place.variant = fmt::format("experiment={}{}{}", experiment,
+                                      run.place.variant.empty() ? "" : ",", run.place.variant);
+      run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
+      joined.push_back(std::move(run));
+    }
+    if (!any) collected.notes.push_back("left out: experiment without runs: " + experiment);
+  }
+  collected.runs = std::move(joined);
 }
 
 /// The selected runs of any version of the manifest, at least one. Throws NotFound.
@@ -192,6 +216,9 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
                          const RunSelection& selection) {
   std::vector<Run> found = select_runs(store, selection);
   std::erase_if(found, [&](const Run& s) {
+    if (!wanted.figure.of.empty()) {
+      return std::ranges::count(wanted.figure.of, s.place.experiment) == 0;
+    }
     return !wanted.experiment.empty() && s.place.experiment != wanted.experiment;
   });
   if (found.empty()) {
@@ -231,26 +258,26 @@ void share_needs(std::vector<WantedFigure>& figures) {
 
 }  // namespace
 
-FigureRun figure_run(Run run) {
-  FigureRun made{std::move(run)};
+FrameRun figure_run(Run run) {
+  FrameRun made{std::move(run)};
   made.parameters = effective_parameters(made.stage.resolved);
   made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
   return made;
 }
 
-void leave_out_unmeasured(FigureRun& run) {
+void leave_out_unmeasured(FrameRun& run) {
   std::erase_if(run.checkpoints, [](const CheckpointMeasures& one) {
     return std::ranges::count(one.lacking, "scalars") > 0;
   });
   run.end = std::min(run.end, run.stage.cycle);
 }
 
-void measure_runs(const Store& store, std::vector<FigureRun>& runs,
+void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome,
-                  const std::function<bool(const FigureRun&, std::size_t)>& wanted) {
+                  const std::function<bool(const FrameRun&, std::size_t)>& wanted) {
   std::vector<ToMeasure> chosen;
-  for (FigureRun& run : runs) {
+  for (FrameRun& run : runs) {
     for (std::size_t k = 0; k < run.checkpoints.size(); ++k) {
       if (wanted && !wanted(run, k)) continue;
       chosen.push_back({&run.checkpoints[k], run.ask.checkpoint_every});
@@ -279,6 +306,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   std::erase_if(manifests, [&](const auto& m) { return !among(experiments, m.experiment); });
   const auto asked = [&](const std::string& name) { return among(names, name); };
   const bool named = !experiments.empty() && !names.empty();
+  const std::vector<std::string> registered_names(registered.begin(), registered.end());
   WantedFigures wanted;
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
@@ -287,7 +315,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     std::vector<Figure> stated = stated_figures(recorded_manifest(manifest.text));
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
-      if (figure.form == FigureForm::table || !asked(figure.name) || !(named || lists)) continue;
+      const bool across = figure.form == FigureForm::table || !figure.of.empty();
+      if (across || !asked(figure.name) || !(named || lists)) continue;
       if (find_named(std::span<const Figure>(stated), figure.name) != nullptr) continue;
       wanted.figures.push_back({figure, manifest.experiment});
     }
@@ -304,15 +333,15 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   // Without names, table1 is drawn only if a manifest lists figures of the supplement.
   const bool lists_any = std::ranges::any_of(
       manifests, [](const RegisteredManifest& manifest) { return !manifest.figures.empty(); });
-  // The summary of one experiment would say what its figures say.
-  std::set<std::string> with_parts;
-  for (const WantedFigure& one : wanted.figures) {
-    if (std::ranges::count(summary_parts(), one.figure.name) > 0) with_parts.insert(one.experiment);
-  }
-  const bool has_parts = with_parts.size() > 1;
   for (const Figure& figure : all_figures()) {
-    if (figure.form != FigureForm::table || manifests.empty() || !asked(figure.name)) continue;
-    if (names.empty() && !(figure.make ? lists_any : has_parts)) continue;
+    if (manifests.empty() || !asked(figure.name)) continue;
+    const auto registers = [&](const std::string& of) { return among(registered_names, of); };
+    // A comparison of several experiments is drawn if the store has two of them.
+    const bool wanted_without_name = figure.of.empty()
+                                         ? figure.form == FigureForm::table && lists_any
+                                         : std::ranges::count_if(figure.of, registers) > 1;
+    if (figure.form != FigureForm::table && figure.of.empty()) continue;
+    if (names.empty() && !wanted_without_name) continue;
     if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
   }
   for (const std::string& name : names) {
@@ -350,24 +379,28 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   std::ranges::move(newest.notes, std::back_inserter(collected.notes));
   std::map<std::string, std::string> packings;  // by the stage before
   for (Run& run : newest.runs) {
-    FigureRun& one = collected.runs.emplace_back(figure_run(std::move(run)));
+    FrameRun& one = collected.runs.emplace_back(figure_run(std::move(run)));
     const auto [packing, fresh] = packings.try_emplace(one.stage.parent);
     if (fresh) packing->second = packing_of(store, one.stage);
     one.packing = packing->second;
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
-    name_variants(manifests, wanted.experiment, collected);
-    std::erase_if(collected.runs, [&](const FigureRun& run) {
+    std::set<std::string> experiments;
+    for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
+    for (const std::string& one : experiments) name_variants(manifests, one, collected);
+    if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
+    for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
+    std::erase_if(collected.runs, [&](const FrameRun& run) {
       return wanted.figure.uses && !wanted.figure.uses(run);
     });
   } else {
     std::set<std::pair<std::string, std::string>> known;
-    std::erase_if(collected.runs, [&](const FigureRun& run) {
+    std::erase_if(collected.runs, [&](const FrameRun& run) {
       return !known.emplace(run.place.experiment, run.stage.id).second;
     });
   }
-  for (FigureRun& run : collected.runs) {
+  for (FrameRun& run : collected.runs) {
     run.end = measured ? end_for(store, run.stage, run.ask, measuring)
                        : static_cast<double>(run.ask.target_cycles);
     add_checkpoints(store, wanted.figure, run);
@@ -377,7 +410,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
     note_never_made(wanted.figure, collected);
   }
-  for (const FigureRun& run : collected.runs) {
+  for (const FrameRun& run : collected.runs) {
     const nlohmann::json& resolved = run.stage.resolved;
     if (resolved.is_object() &&
         resolved.value("parameters", nlohmann::json::object()).is_object()) {

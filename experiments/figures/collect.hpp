@@ -42,21 +42,20 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 
 /// The run without checkpoints. Its parameters say `pressure_at: top` where P acts equally on both
 /// walls.
-FigureRun figure_run(Run run);
+FrameRun figure_run(Run run);
 
 /// Removes the checkpoints that lack "scalars"; the run ends where its stage has ended so far.
-void leave_out_unmeasured(FigureRun& run);
+void leave_out_unmeasured(FrameRun& run);
 
 /// Measures the checkpoints of the runs (those for which `wanted(run, place)` holds), with the
 /// cadence that each run's experiment asks for. Adds what could not be read to the outcome.
-void measure_runs(const Store& store, std::vector<FigureRun>& runs,
+void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome,
-                  const std::function<bool(const FigureRun&, std::size_t)>& wanted = {});
+                  const std::function<bool(const FrameRun&, std::size_t)>& wanted = {});
 
-struct CollectedRuns {
+struct CollectedRuns : Frame {
   std::string scale;  ///< one figure never mixes scales
-  std::vector<FigureRun> runs;
   /// Runs that were left out or are not finished, checkpoints that were never made.
   std::vector<std::string> notes;
 };

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "analysis/error.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -31,7 +30,7 @@ namespace {
 /// The checkpoints of the run that the figure was made of, those of earlier cycles from which it
 /// measured changes included; by step.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
-                                               const FigureRun& run) {
+                                               const FrameRun& run) {
   std::set<std::string> own;
   for (const CheckpointMeasures& c : run.checkpoints) own.insert(c.sha256);
   std::vector<CheckpointRecord> records = store.checkpoints(run.stage.id, Listed::and_pruned);
@@ -43,9 +42,9 @@ std::vector<CheckpointRecord> used_checkpoints(const Store& store, const Compute
 
 /// What the figure was made of.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
-                         const std::vector<FigureRun>& runs) {
+                         const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     const States states = states_of(used_checkpoints(store, figure, run));
     list.push_back({{"run", run.stage.id},
                     {"parent", run.stage.parent},
@@ -97,9 +96,9 @@ std::string place_of(const ComputedFigure& figure) {
 }
 
 /// Gives the panels of a figure letters.
-void lay_out(std::vector<FigureTable>& tables, bool wide) {
+void lay_out(std::vector<Table>& tables, bool wide) {
   char letter = 'a';
-  for (FigureTable& table : tables) {
+  for (Table& table : tables) {
     if (table.chart.series.empty()) continue;
     table.chart.wide = wide;
     if (tables.size() > 1 && letter <= 'z') table.chart.letter = std::string(1, letter++);
@@ -108,7 +107,7 @@ void lay_out(std::vector<FigureTable>& tables, bool wide) {
 
 /// Whether the runs have no value that the table can draw. Series that are neither traces nor
 /// columns of the table hold published points.
-bool has_no_value(const FigureTable& table) {
+bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
   // Points that are stated beside columns are published ones.
@@ -167,7 +166,7 @@ std::string verdict_text(const ComputedFigure& figure) {
 }
 
 /// The figure's title; if it is about other parameters than the runs differ in, it names those too.
-std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
+std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
   const std::vector<std::string> varied = varied_keys(runs);
   const bool of_its_keys = std::ranges::any_of(
       varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
@@ -176,57 +175,29 @@ std::string title_of(const Figure& figure, const std::vector<FigureRun>& runs) {
 }
 
 /// Sets ComputedFigure::primary and Verdict::primary as the newest manifest states at the scale, of
-/// a figure of all experiments as any of them does.
+/// a figure of all experiments as any of them does. A manifest names a claim by its id, by its id
+/// without the value of `for_each`, or, if it is older, by its statement.
 void mark_primary(const Store& store, ComputedFigure& figure) {
   for (const RegisteredManifest& registered : newest_manifests(store)) {
     if (!figure.experiment.empty() && registered.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(recorded_manifest(registered.text))) {
-      if (scale.name != figure.scale) continue;
+      if (scale.name != figure.scale && !scale.name.empty()) continue;
       std::ranges::copy(scale.primary, std::back_inserter(figure.primary));
     }
   }
   for (Verdict& verdict : figure.verdicts) {
-    verdict.primary = std::ranges::count(figure.primary, verdict.claim) > 0;
+    verdict.primary = std::ranges::any_of(figure.primary, [&](const std::string& one) {
+      return one == verdict.id || one == verdict.claim ||
+             one == verdict.id.substr(0, verdict.id.find('@'));
+    });
   }
-}
-
-/// Makes the figure of others, which the manifests of the store list: those that have runs at its
-/// scale and can be made.
-void make_of_parts(const Store& store, const FigureOptions& options, ComputedFigure& made) {
-  FigureOptions of_part = options;
-  of_part.runs.scales = {scale_name(made.scale)};
-  const std::vector<std::string>& experiments = options.runs.experiments;
-  std::vector<FigurePart> parts;
-  std::set<nlohmann::json> inputs;
-  std::set<std::pair<std::string, std::string>> runs;  // of each experiment
-  for (const WantedFigure& part : wanted_figures(store, summary_parts()).figures) {
-    if (!experiments.empty() && std::ranges::count(experiments, part.experiment) == 0) continue;
-    try {
-      ComputedFigure one = compute_figure(store, part, of_part);
-      for (const nlohmann::json& input : one.lineage.at("inputs")) {
-        inputs.insert(input);
-        if (runs.emplace(part.experiment, input.at("run")).second) {
-          ++made.runs_by_variant[part.experiment];
-        }
-      }
-      made.checkpoints += one.checkpoints;
-      made += one;
-      parts.push_back({part.experiment, part.figure.name, std::move(one)});
-    } catch (const NotFound&) {
-      continue;  // no run at this scale
-    } catch (const UsageError& problem) {
-      made.notes.push_back(fmt::format("left out: {}: {}", part.path(), problem.what()));
-    }
-  }
-  made.runs = runs.size();
-  static_cast<FigureResult&>(made) = figure_summary(parts);
-  made.lineage = lineage_of(made, inputs);
 }
 
 /// Makes the figure of these runs.
 void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOptions& options,
-                  std::vector<FigureRun> runs, ComputedFigure& made) {
+                  Frame frame, ComputedFigure& made) {
   const Figure& figure = wanted.figure;
+  std::vector<FrameRun>& runs = frame.runs;
   MeasureOptions measuring = options;
   measuring.also = wanted.also;
   measuring.simulated = figure.simulated;
@@ -245,11 +216,11 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   made.title = title_of(figure, runs);
   made.runs = runs.size();
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     made.checkpoints += run.checkpoints.size();
     ++made.runs_by_variant[run.name];
   }
-  static_cast<FigureResult&>(made) = figure.make(runs);
+  static_cast<FigureResult&>(made) = figure.make(frame);
   for (Verdict& verdict : made.verdicts) {
     // The runs that it compares may be among those that were not selected.
     if (verdict.estimate || options.runs.variants.empty()) continue;
@@ -257,7 +228,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
         fmt::format("only runs with {} are selected{}{}", fmt::join(options.runs.variants, ", "),
                     verdict.note.empty() ? "" : ": ", verdict.note);
   }
-  for (FigureTable& table : made.tables) {
+  for (Table& table : made.tables) {
     name_run_counts(table);
     if (has_no_value(table)) made.empty.push_back(table.name);
   }
@@ -274,11 +245,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   made.experiment = wanted.experiment;
   made.scale = collected.scale;
   made.notes = std::move(collected.notes);
-  if (wanted.figure.make) {
-    make_of_runs(store, wanted, options, std::move(collected.runs), made);
-  } else {
-    make_of_parts(store, options, made);
-  }
+  make_of_runs(store, wanted, options, std::move(collected), made);
   mark_primary(store, made);
   return made;
 }
@@ -292,7 +259,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     throw UsageError(fmt::format("{}: cannot make this folder: {}. Name another with --out.",
                                  folder.string(), failed.message()));
   }
-  for (const FigureTable& table : made.tables) require_own_files(table, folder);
+  for (const Table& table : made.tables) require_own_files(table, folder);
   const std::string base = folder / made.name;
   const auto require = [&](const char* ending, const std::string& start, const std::string& part) {
     require_ours(base + ending, [&](std::string_view beginning) {
@@ -311,7 +278,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     made.files.emplace_back(base + ending);
     write_output(made.files.back(), text);
   };
-  for (const FigureTable& table : made.tables) {
+  for (const Table& table : made.tables) {
     made.files.push_back(folder / (table.name + ".csv"));
     write_output(made.files.back(), to_csv(table));
     try {

@@ -63,11 +63,11 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
   std::map<std::string, std::vector<Figure>> simulating = simulating_figures(store);
   MeasureOutcome outcome;
   std::set<std::string> unmeasured;  // SHA-256
-  std::vector<FigureRun> batch;
+  std::vector<FrameRun> batch;
   const auto measure_batch = [&] {
     measure_runs(store, batch, analyses, options, outcome);
     MeasureSources sources(store);
-    for (const FigureRun& run : batch) {
+    for (const FrameRun& run : batch) {
       sources.read_run(run.stage.id);
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
@@ -87,7 +87,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       stage.memberships.emplace_back();  // no experiment of a damaged store has it
     std::set<std::uint64_t> cadences;
     for (const auto& [place, ask, newest] : stage.memberships) {
-      FigureRun run{{place, ask, stage}};
+      FrameRun run{{place, ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
@@ -97,7 +97,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), "scalars");
-        std::vector<FigureRun> alone = {run};
+        std::vector<FrameRun> alone = {run};
         measure_runs(store, alone, names, some, outcome);
       }
       if (!cadences.insert(ask.checkpoint_every).second) continue;

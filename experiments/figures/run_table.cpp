@@ -29,29 +29,29 @@ using nlohmann::ordered_json;
 
 /// The source of the cells of a row.
 struct Row {
-  const FigureRun* run = nullptr;
+  const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  const FigureRun* history = nullptr;              // for onsets; null for a run that is not a shear
+  const FrameRun* history = nullptr;               // for onsets; null for a run that is not a shear
 };
 
 struct Column : TableColumn {
-  std::function<json(const Row&)> cell;
+  std::function<TableCell(const Row&)> cell;
 };
 
-json number(double value) {
-  return std::isfinite(value) ? json(value) : json();
+TableCell number(double value) {
+  return std::isfinite(value) ? TableCell(value) : TableCell();
 }
 
 template <class Value>
 Column of_run(std::string_view name, std::string_view meaning, Value value) {
   return {{std::string(name), std::string(meaning)},
-          [value](const Row& row) -> json { return value(*row.run); }};
+          [value](const Row& row) { return TableCell(value(*row.run)); }};
 }
 
 template <class Value>
 Column of_checkpoint(std::string_view name, std::string_view meaning, Value value) {
-  return {{std::string(name), std::string(meaning)}, [value](const Row& row) -> json {
-            return row.checkpoint == nullptr ? json() : json(value(*row.checkpoint));
+  return {{std::string(name), std::string(meaning)}, [value](const Row& row) {
+            return row.checkpoint == nullptr ? TableCell() : TableCell(value(*row.checkpoint));
           }};
 }
 
@@ -86,7 +86,7 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
         of_checkpoint(measure->name, measure->meaning, [measure](const CheckpointMeasures& c) {
           const double value = c.measures.number(measure->name);
           const bool count = measure->kind == MeasureKind::count && std::isfinite(value);
-          return count ? json(static_cast<std::uint64_t>(value)) : number(value);
+          return count ? TableCell(static_cast<std::int64_t>(value)) : number(value);
         }));
   }
   return columns;
@@ -95,9 +95,9 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
 /// Whether and when a method observed the onset.
 Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
   return {{name, std::string("observed, never, before_start or unclear: outcome of ") + meaning},
-          [find](const Row& row) -> json {
+          [find](const Row& row) -> TableCell {
             if (row.history == nullptr || row.history->checkpoints.empty()) return {};
-            return name_of(find(*row.history).observed);
+            return std::string(name_of(find(*row.history).observed));
           }};
 }
 
@@ -106,7 +106,7 @@ std::vector<Column> ends() {
   for (const Measure* measure : all_measures(MeasureKind::run)) {
     columns.push_back(
         {{std::string(measure->name), std::string(measure->meaning)}, [measure](const Row& row) {
-           if (row.history == nullptr) return json();
+           if (row.history == nullptr) return TableCell();
            return number(measure->of_run(*row.history).or_nan());
          }});
   }
@@ -115,7 +115,7 @@ std::vector<Column> ends() {
   columns.insert(
       columns.end(),
       {of_run("state", "declared, running, interrupted, failed or completed",
-              [](const Run& s) { return name_of(s.stage.state); }),
+              [](const Run& s) { return std::string(name_of(s.stage.state)); }),
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
        of_run("target_cycles", "length that the experiment asks for",
@@ -140,22 +140,23 @@ json swept_value(const Field& field, const Run& run) try {
 }
 
 /// The columns that distinguish runs.
-std::vector<Column> columns_of_runs(const std::vector<FigureRun>& runs,
+std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs,
                                     const VariantNames& variants) {
   std::set<std::string> swept = {"grains"};  // a column of every table
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
   std::vector<Column> columns = names(variants);
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
-    columns.push_back(of_run(field.name, field.doc,
-                             [&field](const Run& run) { return swept_value(field, run); }));
+    columns.push_back(of_run(field.name, field.doc, [&field](const Run& run) {
+      return cell_of(swept_value(field, run));
+    }));
   }
   return columns;
 }
 
-std::vector<Column> columns_for(const std::vector<FigureRun>& runs, RowPer per,
+std::vector<Column> columns_for(const std::vector<FrameRun>& runs, RowPer per,
                                 const VariantNames& variants,
                                 std::span<const std::string> simulated) {
   std::vector<Column> columns = columns_of_runs(runs, variants);
@@ -164,13 +165,13 @@ std::vector<Column> columns_for(const std::vector<FigureRun>& runs, RowPer per,
   return columns;
 }
 
-std::vector<FigureRun> select(const Store& store, const RunSelection& selection,
-                              const MeasureOptions& options, RunTable& table) {
+std::vector<FrameRun> select(const Store& store, const RunSelection& selection,
+                             const MeasureOptions& options, RunTable& table) {
   NewestRuns newest = newest_runs(select_runs(store, selection));
   table.notes = std::move(newest.notes);
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   for (Run& selected : newest.runs) {
-    FigureRun& run = runs.emplace_back(figure_run(std::move(selected)));
+    FrameRun& run = runs.emplace_back(figure_run(std::move(selected)));
     for (CheckpointRecord& record : checkpoints_for(store, run.stage, run.ask, options)) {
       run.checkpoints.push_back({std::move(record)});
     }
@@ -179,9 +180,9 @@ std::vector<FigureRun> select(const Store& store, const RunSelection& selection,
 }
 
 /// Notes how many measures of checkpoints with a file need another file, which is gone.
-void note_lacking(const std::vector<FigureRun>& runs, RunTable& table) {
+void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     for (const CheckpointMeasures& one : run.checkpoints) {
       if (one.state == CheckpointState::pruned) continue;
       for (const std::string& name : one.lacking) ++lacking[name];
@@ -217,25 +218,25 @@ std::vector<std::string> simulating_providers() {
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated) {
-  RunTable table;
-  std::vector<FigureRun> runs = select(store, selection, options, table);
+  RunTable made;
+  std::vector<FrameRun> runs = select(store, selection, options, made);
   std::vector<std::string> names = table_providers();
   const std::vector<std::string> scalars = {names.front()};
   names.insert(names.end(), simulated.begin(), simulated.end());
-  const auto has_row = [per](const FigureRun& run, std::size_t k) {
+  const auto has_row = [per](const FrameRun& run, std::size_t k) {
     return per == RowPer::checkpoint || k + 1 == run.checkpoints.size();
   };
-  measure_runs(store, runs, names, options, table, has_row);
+  measure_runs(store, runs, names, options, made, has_row);
   // Onsets need only the scalars of the other checkpoints.
-  measure_runs(store, runs, scalars, options, table, std::not_fn(has_row));
-  note_lacking(runs, table);
+  measure_runs(store, runs, scalars, options, made, std::not_fn(has_row));
+  note_lacking(runs, made);
   const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), simulated);
-  table.columns.assign(columns.begin(), columns.end());
+  made.table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
-    std::vector<json>& cells = table.rows.emplace_back();
+    TableRow& cells = made.table.rows.emplace_back();
     for (const Column& column : columns) cells.push_back(column.cell(row));
   };
-  for (FigureRun& run : runs) {
+  for (FrameRun& run : runs) {
     if (per == RowPer::checkpoint) {
       for (const CheckpointMeasures& checkpoint : run.checkpoints) add({&run, &checkpoint});
       continue;
@@ -243,40 +244,40 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     const auto* last = run.checkpoints.empty() ? nullptr : &run.checkpoints.back();
     const double end = last == nullptr ? 0 : last->cycle;
     run.core_time_s = computing_time(store, run.stage.id, end).core_seconds;
-    FigureRun& history = table.histories.emplace_back(run);
+    FrameRun& history = made.histories.emplace_back(run);
     leave_out_unmeasured(history);
     std::erase_if(history.checkpoints,
                   [](const CheckpointMeasures& one) { return one.cycle != std::floor(one.cycle); });
     add({&run, last, run.stage.kind == name_of(StageKind::shear) ? &history : nullptr});
   }
-  return table;
+  return made;
 }
 
 RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options) {
   const std::string provider = provider_of(measure).name;
-  RunTable table;
-  std::vector<FigureRun> runs = select(store, selection, options, table);
-  measure_runs(store, runs, {&provider, 1}, options, table);
-  note_lacking(runs, table);
+  RunTable made;
+  std::vector<FrameRun> runs = select(store, selection, options, made);
+  measure_runs(store, runs, {&provider, 1}, options, made);
+  note_lacking(runs, made);
   std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
-  table.columns.assign(columns.begin(), columns.end());
-  table.columns.push_back({std::string(measure.x), ""});
-  table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
-  for (FigureRun& run : runs) {
+  made.table.columns.assign(columns.begin(), columns.end());
+  made.table.columns.push_back(std::string(measure.x));
+  made.table.columns.push_back({std::string(measure.name), std::string(measure.meaning)});
+  for (FrameRun& run : runs) {
     for (CheckpointMeasures& checkpoint : run.checkpoints) {
       const MeasuredCurve& curve = checkpoint.measures.curves[std::string(measure.name)];
-      std::vector<json> cells;
+      TableRow cells;
       for (const Column& column : columns) cells.push_back(column.cell({&run, &checkpoint}));
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        table.rows.push_back(cells);
-        table.rows.back().push_back(number(curve.x[i]));
-        table.rows.back().push_back(number(curve.y[i]));
+        made.table.rows.push_back(cells);
+        made.table.rows.back().push_back(number(curve.x[i]));
+        made.table.rows.back().push_back(number(curve.y[i]));
       }
     }
   }
-  return table;
+  return made;
 }
 
 std::vector<TableColumn> table_columns() {
@@ -285,39 +286,23 @@ std::vector<TableColumn> table_columns() {
   return {columns.begin(), columns.end()};
 }
 
-std::vector<std::pair<TableColumn, json>> facts_of(const CheckpointRecord& record,
-                                                   const Measures& found) {
+std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& record,
+                                                        const Measures& found) {
   const CheckpointMeasures checkpoint{record, found};
-  std::vector<std::pair<TableColumn, json>> facts;
+  std::vector<std::pair<TableColumn, TableCell>> facts;
   for (const Column& column : measures({})) {
     facts.emplace_back(column, column.cell({nullptr, &checkpoint}));
   }
   return facts;
 }
 
-std::string to_csv(const RunTable& table) {
-  std::string text = fmt::format("{}\n", fmt::join(names_of(table.columns), ","));
-  for (const std::vector<json>& row : table.rows) {
-    std::vector<std::string> cells;
-    for (const json& value : row) {
-      cells.push_back(value.is_null() ? "" : csv_field(value_text(value)));
-    }
-    text += fmt::format("{}\n", fmt::join(cells, ","));
-  }
-  return text;
-}
-
-std::string to_json(const RunTable& table, bool notes) {
-  ordered_json value = ordered_json::array();
-  for (const std::vector<json>& row : table.rows) {
-    ordered_json& object = value.emplace_back(ordered_json::object());
-    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].name] = row[c];
-  }
+std::string to_json(const RunTable& made, bool notes) {
+  ordered_json value = to_json(made.table);
   if (notes) {
     value = {{"rows", std::move(value)},
-             {"notes", table.notes},
-             {"damage", table.damage},
-             {"pruned", table.pruned}};
+             {"notes", made.notes},
+             {"damage", made.damage},
+             {"pruned", made.pruned}};
   }
   return value.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }

@@ -14,27 +14,15 @@
 
 namespace shearcell {
 
-/// A column. Its name ends in the unit, except for counts and pure numbers.
-struct TableColumn {
-  std::string name;
-  std::string meaning;
-};
-
 enum class RowPer { checkpoint, run };
 template <>
 inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run");
 
+/// A table of runs, and what is missing in it.
 struct RunTable : MeasureOutcome {
-  std::vector<TableColumn> columns;
-  std::vector<std::vector<nlohmann::json>> rows;  ///< null: not applicable or unknown
-  std::vector<std::string> notes;                 ///< of newest_runs()
-  std::vector<FigureRun> histories;               ///< with RowPer::run: each row's whole cycles
-
-  /// The index of a column; the number of columns if there is none of that name.
-  std::size_t place(std::string_view name) const {
-    return static_cast<std::size_t>(std::ranges::find(columns, name, &TableColumn::name) -
-                                    columns.begin());
-  }
+  Table table;                      ///< a cell is empty if it is unknown or does not apply
+  std::vector<std::string> notes;   ///< of newest_runs()
+  std::vector<FrameRun> histories;  ///< with RowPer::run: each row's whole cycles
 };
 
 /// The table of the selected newest_runs(), in their order, then by cycle, with their
@@ -57,15 +45,12 @@ std::vector<std::string> simulating_providers();
 std::vector<TableColumn> table_columns();
 
 /// The columns of one checkpoint and their values.
-std::vector<std::pair<TableColumn, nlohmann::json>> facts_of(const CheckpointRecord& record,
-                                                             const Measures& measures);
+std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& record,
+                                                        const Measures& measures);
 
-/// RFC 4180 with a header row; numbers have the shortest digits that read back to the same double.
-std::string to_csv(const RunTable& table);
-/// An array of objects, one for each row, keys in the order of the columns. With `notes` an object:
-/// `rows`, that array; `notes` on runs that were left out; `damage` and `pruned`, the checkpoints
-/// that were not measured.
-std::string to_json(const RunTable& table, bool notes = false);
+/// The rows of to_json(). With `notes` an object: `rows`, those rows; `notes` on runs that were
+/// left out; `damage` and `pruned`, the checkpoints that were not measured.
+std::string to_json(const RunTable& made, bool notes = false);
 
 /// Whether a file begins like the CSV or the JSON.
 bool is_table(std::string_view beginning);

@@ -14,8 +14,7 @@
 
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
-#include "analysis/figures/figures.hpp"
-#include "analysis/own_figure.hpp"
+#include "analysis/plots.hpp"
 #include "analysis/statistics.hpp"
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
@@ -420,7 +419,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;
-  std::vector<FigureRun> runs = {};
+  std::vector<FrameRun> runs = {};
 };
 
 ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const Variant> variants,
@@ -431,7 +430,7 @@ ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const 
   ScaleRuns made{scale, seeds};
   for (const Variant& variant : variants) {
     const Parameters& p = variant.parameters;
-    FigureRun& run = made.runs.emplace_back();
+    FrameRun& run = made.runs.emplace_back();
     run.place.variant = variant.name;
     run.place.swept = variant.swept;
     run.name = names.at(variant.swept);
@@ -467,7 +466,7 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and one `back` cycles
 // before it. Whether a multiple of the cadence has the earlier one depends on `back` alone, so the
 // first multiple and the last cycle decide.
-bool has_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end,
+bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
   const std::uint64_t begin = std::max(first, back);
@@ -479,15 +478,15 @@ bool has_checkpoint(const FigureRun& run, std::uint64_t first, std::uint64_t end
 }
 
 /// Why no run has a value that the plot draws; "" if one may have.
-string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureRun> runs) {
+string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRun> runs) {
   const auto [shortest, longest] = std::ranges::minmax(
-      std::views::transform(runs, [](const FigureRun& run) { return run.ask.target_cycles; }));
+      std::views::transform(runs, [](const FrameRun& run) { return run.ask.target_cycles; }));
   std::array<std::uint64_t, 2> cycles = {0, longest};
   string where;
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && !is_parameter(plot.y)) {
+  } else if (!draws_every_cycle(plot) && !is_of_run(plot.y)) {
     if (!plot.cycle && scale.until.until) return "";  // not known where the runs end
     cycles.fill(plot.cycle.value_or(shortest));
     where = format(" at cycle {}", cycles[0]);
@@ -497,9 +496,8 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureR
   }
   for (const string& measure : {plot.y, plot.x}) {
     const std::uint64_t back = cycles_back(measure);
-    const bool any = std::ranges::any_of(runs, [&](const FigureRun& run) {
-      return has_checkpoint(run, cycles[0], cycles[1], back);
-    });
+    const bool any = std::ranges::any_of(
+        runs, [&](const FrameRun& run) { return has_checkpoint(run, cycles[0], cycles[1], back); });
     if (any) continue;
     return format(
         "no run has {}, so {} has no value. Ask for more checkpoints (`every_cycles`) or cycles.",
@@ -509,7 +507,7 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FigureR
 }
 
 /// Why the run will have no value for the claim; "" if it may have one.
-string lack_of(const ClaimSpec& claim, const FigureRun& run) {
+string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
   const std::uint64_t back = cycles_back(claim.compare);
@@ -527,11 +525,11 @@ string lack_of(const ClaimSpec& claim, const FigureRun& run) {
 }
 
 /// Which variants have other packings than the one that the plot subtracts; "" if none has.
-string lack_of_partner(const PlotSpec& plot, std::span<const FigureRun> runs) {
-  const std::vector<const FigureRun*> others = runs_with(plot.minus, runs);
+string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
+  const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
   std::vector<string> alone;
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     if (run.packing != others.front()->packing) alone.push_back(run.place.variant);
   }
   if (alone.empty()) return "";
@@ -544,9 +542,9 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FigureRun> runs) {
 
 /// The number of the plot's curves that the entry of `series` fits.
 std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
-                      std::span<const FigureRun> runs) {
+                      std::span<const FrameRun> runs) {
   std::set<json> curves;
-  for (const FigureRun& run : runs) {
+  for (const FrameRun& run : runs) {
     if (!has_parameters(run, series.where)) continue;
     json curve = run.place.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
@@ -593,7 +591,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                              words_of(one.where)));
     }
   }
-  if (plot.cycle && is_parameter(plot.y)) {
+  if (plot.cycle && is_of_run(plot.y)) {
     found.push_back(
         format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
@@ -602,6 +600,11 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   found.push_back(lack_of(plot, scale, runs));
   return found;
 }
+
+/// A claim of the plan.
+struct Said {
+  string id, text;
+};
 
 struct ClaimProblems {
   std::vector<string> refusals;  // why `figures` will refuse the claim
@@ -613,7 +616,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   if (claim.optional && sides.lacks_one) return {};
   ClaimProblems found = {problems_of_sides(claim, sides, true), {}};
   for (const auto& side : sides.runs) {
-    for (const FigureRun* run : side) {
+    for (const FrameRun* run : side) {
       string lack = lack_of(claim, *run);
       if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
@@ -628,36 +631,36 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
 /// Warns of the plots and claims that `source` states: of its own ones if `figure` is "", else of
 /// those of a figure that the manifest lists. Adds to `said` what the claims say.
 void warn_of_stated(const Manifest& source, const string& figure, const Manifest& manifest,
-                    const ScaleRuns& here, std::span<const ScaleRuns> all,
-                    std::vector<string>& said, std::vector<string>& warnings) {
-  const auto is_of = [&](const auto& one) {
-    return figure.empty() || (one.figure.empty() ? one.name : one.figure) == figure;
-  };
-  const auto warn_of = [&](const char* kind, const auto& one, const std::vector<string>& problems) {
+                    const ScaleRuns& here, std::span<const ScaleRuns> all, std::vector<Said>& said,
+                    std::vector<string>& warnings) {
+  const auto is_of = [&](const auto& one) { return figure.empty() || figure_of(one) == figure; };
+  const auto warn_of = [&](const char* kind, const auto& one, const string& name,
+                           const std::vector<string>& problems) {
     const string place = figure.empty()
                              ? format("{}:{}:{}", manifest.file, one.at.line, one.at.column)
                              : format("{}: figure {}", manifest.file, figure);
     for (const string& problem : problems) {
-      if (!problem.empty())
-        warnings.push_back(format("{}: {} {}: {}", place, kind, one.name, problem));
+      if (!problem.empty()) warnings.push_back(format("{}: {} {}: {}", place, kind, name, problem));
     }
   };
   for (const auto& plot : source.plots) {
-    if (is_of(plot)) warn_of("plot", plot, problems_of(plot, here, all));
+    if (is_of(plot)) warn_of("plot", plot, plot.name, problems_of(plot, here, all));
   }
-  for (const auto& claim : source.claims) {
-    if (!is_of(claim)) continue;
-    said.push_back(stated(claim, sides_of(claim, here.runs).names).text);
-    const ClaimProblems found = problems_of(claim, here);
-    if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
-    warn_of("claim", claim, found.refusals);
-    // A small scale is for trying: nothing is said where another one can decide the claim.
-    const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
-      if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
-      const ClaimProblems there = problems_of(claim, other);
-      return there.refusals.empty() && there.lacks.empty();
-    });
-    if (!decided) warn_of("claim", claim, found.lacks);
+  for (const auto& stated_claim : source.claims) {
+    if (!is_of(stated_claim)) continue;
+    for (const ClaimSpec& claim : each_of(stated_claim, here.runs)) {
+      said.push_back({claim.id, stated(claim, sides_of(claim, here.runs).names).text});
+      const ClaimProblems found = problems_of(claim, here);
+      if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
+      warn_of("claim", stated_claim, claim.id, found.refusals);
+      // A small scale is for trying: nothing is said where another one can decide the claim.
+      const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
+        if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
+        const ClaimProblems there = problems_of(claim, other);
+        return there.refusals.empty() && there.lacks.empty();
+      });
+      if (!decided) warn_of("claim", stated_claim, claim.id, found.lacks);
+    }
   }
 }
 
@@ -678,18 +681,23 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const Scale& one : scales) {
     all.push_back(runs_of(manifest, one, variants_of(one), one.seeds.values.size()));
   }
-  std::vector<string> said;
-  bool known = true;  // what is said; what computed figures claim depends on the runs
+  std::vector<Said> said;
   for (const string& figure : manifest.figures) {
-    known = known && find_named(computed_figures(), figure) == nullptr;
     for (const Manifest& shipped : shipped_manifests()) {
       warn_of_stated(shipped, figure, manifest, here, all, said, warnings);
     }
   }
   warn_of_stated(manifest, "", manifest, here, all, said, warnings);
-  if (!known) return;
-  for (const string& problem : unsaid(here.scale.primary, said)) {
-    warnings.push_back(format("{}: {}", manifest.file, problem));
+  for (const string& primary : here.scale.primary) {
+    if (primary.find(' ') == string::npos) continue;  // an id, which the reader has found
+    const auto found = std::ranges::find(said, primary, &Said::text);
+    warnings.push_back(
+        found != said.end()
+            ? format("{}: primary: '{}' is a statement; write the claim's id, {}.", manifest.file,
+                     primary, found->id)
+            : format("{}: primary: no claim has the statement '{}'; write the id of a claim: {}.",
+                     manifest.file, primary,
+                     fmt::join(std::views::transform(said, &Said::id), ", ")));
   }
 }
 
@@ -699,19 +707,6 @@ string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
   if (p.engine != EngineKind::lammps) return "";
   if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
   return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
-}
-
-std::vector<string> unsaid(const std::vector<string>& primary, std::vector<string> said) {
-  // The summary is of all experiments: the manifest of any of them may list its claims.
-  for (const Verdict& verdict : figure_summary({}).verdicts) said.push_back(verdict.claim);
-  const std::vector<string_view> known(said.begin(), said.end());
-  std::vector<string> problems;
-  for (const string& claim : primary) {
-    if (std::ranges::count(said, claim) > 0) continue;
-    problems.push_back(
-        with_nearest(format("primary: no claim has the statement '{}'", claim), claim, known));
-  }
-  return problems;
 }
 
 void check_variants(const Manifest& manifest) {

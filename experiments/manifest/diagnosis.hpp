@@ -19,15 +19,10 @@ void check_variants(const Manifest& manifest);
 /// Why LAMMPS cannot compute such a run; "" if it can, or if the engine is another one.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// A message for each statement in `primary` that neither a claim in `said` nor a claim of the
-/// figure summary makes.
-std::vector<std::string> unsaid(const std::vector<std::string>& primary,
-                                std::vector<std::string> said);
-
 /// Warnings for a plan of the `planned` variants, one line each: parameters that make settling
 /// fail, lie outside of advised ranges or have no effect on any variant; figures, plots and claims
-/// that `shearcell figures` would refuse, leave without data or not decide; `primary` claims that
-/// nothing states. `all`: the variants of the scale.
+/// that `shearcell figures` would refuse, leave without data or not decide; claims that `primary`
+/// names by their statements. `all`: the variants of the scale.
 std::vector<std::string> warnings_of(const Manifest& manifest, const Scale& scale,
                                      std::span<const Variant> all, std::span<const Variant> planned,
                                      std::size_t seeds);

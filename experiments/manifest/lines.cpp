@@ -66,7 +66,7 @@ std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view
   }
   const auto add_figure = [&](const char* key, const auto& own_figures) {
     for (const auto& one : own_figures) {
-      if (one.name == figure || (!figure.empty() && one.figure == figure)) add(key, one.at);
+      if (figure_of(one) == figure) add(key, one.at);
     }
   };
   add_figure("plots", manifest.plots);

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/own_figure.hpp"
+#include "analysis/plots.hpp"
 #include "core/named.hpp"
 #include "experiments/manifest/packing_file.hpp"
 #include "provenance/errors.hpp"
@@ -181,7 +181,8 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
-  /// Statements of the claims that the runs of this scale are made to decide.
+  /// Ids, or in older manifests statements, of the claims that the runs of this scale are made to
+  /// decide.
   std::vector<std::string> primary = {};
   std::set<std::string> own = {};  ///< keys that an entry of `scales` states itself
 };
@@ -192,6 +193,8 @@ struct Manifest {
   std::string experiment;
   Position experiment_at;
   std::string question;
+  /// The experiments whose runs the plots and claims are of; empty: its own.
+  std::vector<std::string> of;
   std::vector<std::string> figures;
   std::vector<VariantLabel> labels;
   std::vector<Placed<PlotSpec>> plots;
@@ -210,6 +213,10 @@ inline constexpr std::size_t kLongestName = 64;
 /// Whether the text can name an experiment, its folder and its figures: 1 to kLongestName letters,
 /// digits, '-' and '_', the first not a '-'.
 bool is_name(std::string_view text);
+
+/// Whether the text can be the id of a claim: names (is_name()) joined by dots, at most
+/// kLongestName bytes.
+bool is_claim_id(std::string_view text);
 
 /// The bytes of a file, at most the first `limit` + 1. Throws ManifestError.
 std::string read_text(const std::filesystem::path& path, std::size_t limit);

@@ -61,7 +61,7 @@ struct Column {
   string_view count_text = {};  ///< of extended XYZ
 };
 
-struct Table {
+struct GrainTable {
   string_view header = {};  ///< the line that names the columns
   const char* remedy = "";  ///< if columns are missing
   std::vector<Column> columns = {};
@@ -630,7 +630,7 @@ class PackingReader {
   }
 
   /// Decides which columns are read, and names the others.
-  std::vector<Use> interpret(const Table& table) {
+  std::vector<Use> interpret(const GrainTable& table) {
     constexpr std::size_t most = 1000;
     if (table.columns.size() > most) {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
@@ -699,7 +699,7 @@ class PackingReader {
   }
 
   /// The grains of a table; wall grains are left out.
-  std::vector<GrainRow> rows_of(const Table& table, const std::vector<Use>& uses) {
+  std::vector<GrainRow> rows_of(const GrainTable& table, const std::vector<Use>& uses) {
     std::size_t columns = 0;
     for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
     std::vector<GrainRow> rows;
@@ -923,7 +923,7 @@ class PackingReader {
 
   // What the reader of the format found.
   std::optional<Box> box_;
-  Table grains_, moving_;
+  GrainTable grains_, moving_;
   bool units_in_names_ = false;  ///< of columns
   std::vector<string> not_read_;
 

@@ -16,9 +16,10 @@
 #include <span>
 #include <utility>
 
+#include "analysis/estimators.hpp"
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
-#include "analysis/figures/curves.hpp"
+#include "analysis/styles.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -152,11 +153,12 @@ void fields(Scale& scale, const auto& visit) {
          .besides = ", or `none`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}",
          .wanted = "a measure with its value"});
-  visit(scale.primary, {.name = "primary",
-                        .doc = "statements of the claims that these runs are made to decide; all "
-                               "others are exploratory",
-                        .example = "[\"B.6: phi is the same\"]",
-                        .longest = 300});
+  visit(scale.primary,
+        {.name = "primary",
+         .doc = "ids of the claims that these runs are made to decide; all others are "
+                "exploratory",
+         .example = "[S5a.onset@amplitude_rad=0.05]",
+         .longest = 300});
 }
 
 void fields(SeriesSpec& series, const auto& visit) {
@@ -175,19 +177,27 @@ void fields(PublishedSpec& published, const auto& visit) {
   visit(published.points, {.name = "points", .range = any, .example = "[[0.05, 0.646, 0.001]]"});
 }
 
+void fields(MarkSpec& mark, const auto& visit) {
+  static const Names runs = measures(MeasureKind::run);
+  visit(mark.x, {.name = "x", .names = runs, .required = true});
+  visit(mark.y, {.name = "y", .names = runs, .required = true});
+  visit(mark.label, {.name = "label", .longest = kLongestLabel});
+}
+
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names scalars = measures(MeasureKind::number);
   static const Names runs = measures(MeasureKind::run);
-  static const Names can_be_by = parameters(),
+  static const Names can_be_by = joined({"experiment"}, parameters()),
                      can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
   static const Names can_be_y = joined(scalars, measures(MeasureKind::curve), runs);
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
-  visit(plot.y,
+  visit(plot.also,
         {.name = "y",
          .doc = "required; a [measure](#measures), a number of each run such as `onset_size_phi`, "
                 "or an expression of measures and parameters: `stress_xy_Pa/contact_pressure_Pa`. "
-                "Runs that end before their onset are counted in the caption",
+                "Runs that end before their onset are counted in the caption. A list draws several "
+                "columns, a map also names them: `{phi_u: phi_uncorrected, phi: phi}`",
          .names = can_be_y,
          .terms = terms,
          .required = true});
@@ -198,6 +208,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "`core_time_s`, gives a point for each variant, at its mean over the runs",
          .names = can_be_x,
          .terms = terms});
+  visit(plot.where,
+        {.name = "where",
+         .doc = "selects runs by swept values, lists of values, or ranges `{min: 5200}`",
+         .example = "{fluid: [still, cell]}"});
   visit(plot.minus,
         {.name = "minus",
          .doc = "swept values that single out a variant: `y` is less that of this variant's run "
@@ -243,10 +257,14 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "y] or [x, y, error], each with its `source`",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
-                    .doc = "further measures in the CSV of a plot of means against the cycle; as a "
-                           "map, with names for their columns: `{phi_u: phi_uncorrected}`",
-                    .names = scalars,
+                    .doc = "further columns in the CSV of a plot of means; as a map, with names: "
+                           "`{phi_u: phi_uncorrected}`",
+                    .names = can_be_y,
+                    .terms = terms,
                     .example = "[phi_uncorrected]"});
+  visit(plot.mark, {.name = "mark",
+                    .doc = "a black point on each curve, at the means of two numbers of the run",
+                    .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle,
         {.name = "at_cycle",
          .range = kCycles,
@@ -263,14 +281,40 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   static const Names can_be_compared =
       joined(measures(MeasureKind::number), measures(MeasureKind::run));
+  static const Names can_be_by = joined({"experiment"}, parameters()),
+                     estimators = names_of(all_estimators());
   static const Names terms = joined({"cycle"}, can_be_compared, numbers());
-  visit(claim.name, {.name = "name", .doc = "required", .required = true});
-  visit(claim.figure, {.name = "figure", .doc = "as of a plot"});
+  visit(claim.id,
+        {.name = "id",
+         .doc = "required: letters, digits, -, _ and dots; `primary` and verdicts name the "
+                "claim by it. What stands before the first dot is its figure",
+         .example = "S2.phi",
+         .longest = kLongestName});
+  visit(claim.id, {.name = "name", .doc = "the older name of `id`"});
+  visit(claim.figure, {.name = "figure", .doc = "as of a plot; default: from `id`"});
   visit(claim.compare, {.name = "compare",
                         .doc = "required; as `y` of a plot, but no curve",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
+  visit(claim.estimator, {.name = "estimator",
+                          .doc = "what is estimated; default: as the other keys imply",
+                          .names = estimators});
+  visit(
+      claim.against,
+      {.name = "against",
+       .doc = "of `estimator: slope`: the column on the other axis, at each run's first checkpoint",
+       .names = can_be_compared,
+       .terms = terms});
+  visit(claim.where,
+        {.name = "where",
+         .doc = "selects runs of all sides: values, lists of values, or ranges `{min: 5200}`",
+         .example = "{amplitude_rad: [0.04, 0.05]}"});
+  visit(claim.for_each,
+        {.name = "for_each",
+         .doc = "a parameter: one claim for each of its values, `ID@KEY=VALUE`. `{KEY}` in "
+                "`statement` is the value",
+         .names = can_be_by});
   visit(claim.between,
         {.name = "between",
          .doc = "swept values that single out a variant, for the first and for the second. The "
@@ -326,6 +370,12 @@ void fields(Manifest& manifest, const auto& visit) {
                             .doc = "what the experiment is to find out, for people",
                             .example = "Does the fluid matter?",
                             .longest = 2'000});
+  visit(manifest.of,
+        {.name = "of",
+         .doc = "in place of `base`, `sweep` and the like: the experiments of the store "
+                "whose runs the plots and claims are of. In selections, `experiment` is "
+                "a key",
+         .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
   visit(manifest.labels,
@@ -420,7 +470,19 @@ const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
 // Reads values into members of their types. Problems are reported, and reading continues.
 struct Reader {
   ProblemList& problems;
-  const Scale& base;  // what is stated for all scales
+  const Scale& base;                             // what is stated for all scales
+  std::span<const Figure> figures_to_list = {};  // that the manifest may list
+
+  // Reports what a manifest of other experiments' runs cannot state.
+  void check_of(const Node& document) {
+    if (document.find("of") == nullptr) return;
+    for (const char* key :
+         {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "scales"}) {
+      if (const Node* own = document.find(key)) {
+        reject_key(*own, "does not go with of", "A manifest with `of` has no runs of its own.");
+      }
+    }
+  }
 
   // Reports a problem with the value, and quotes it.
   void reject_value(const Node& in, const string& problem, const string& remedy) {
@@ -520,7 +582,7 @@ struct Reader {
         return false;
       }
       of_run = of_run || find_measure(name, MeasureKind::run) != nullptr;
-      of_checkpoint = of_checkpoint || !is_parameter(name);
+      of_checkpoint = of_checkpoint || !is_of_run(name);
     }
     if (of_run && of_checkpoint) {
       reject_value(in, "combines a number of the whole run with one of its checkpoints",
@@ -538,19 +600,48 @@ struct Reader {
 
   // Reads a parameter and its value into `where`.
   void read_where(const Node& in, json& where) {
-    const Field* field = find_field(in.key);
+    static const Field experiment = {.name = "experiment", .longest = kLongestName};
+    if (in.key == experiment.name) {
+      std::vector<string> any;
+      if (in.kind == Node::Kind::list) {
+        read(in, {.name = "of", .longest = kLongestName}, any);
+      } else {
+        read(in, experiment, any.emplace_back());
+      }
+      where[in.key] = any;
+      return;
+    }
+    static const Field cycle = {.name = "cycle", .range = kCycles};  // of a plot
+    const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
     if (field == nullptr) return reject_unknown(in, parameters());
-    if (!field->identity.distinguishes_runs()) {
+    if (field != &cycle && !field->identity.distinguishes_runs()) {
       return reject_key(in, "does not distinguish runs", "Name a parameter that does.");
     }
     if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
-    if (auto read = read_scalar(in, *field)) where[in.key] = std::move(*read);
+    if (in.kind == Node::Kind::list) {
+      json& any = where[in.key] = json::array();
+      for (const Node& item : items_of(in, "[1, 2]")) {
+        if (auto read = read_scalar(item, *field)) any.push_back(std::move(*read));
+      }
+    } else if (in.kind == Node::Kind::map) {
+      json& range = where[in.key] = json::object();
+      for (const Node& end : in.parts) {
+        if (field->is_choice() || (end.key != "min" && end.key != "max")) {
+          reject_key(end, "is no end of a range", "It takes `{min: 1, max: 2}` of a number.");
+        } else if (auto read = read_scalar(end, *field)) {
+          range[end.key] = std::move(*read);
+        }
+      }
+      if (range.empty()) reject_value(in, "is not a range", "It takes `{min: 1, max: 2}`.");
+    } else if (auto read = read_scalar(in, *field)) {
+      where[in.key] = std::move(*read);
+    }
   }
 
-  // Reads the key "fluid=still,amplitude_rad=0.05".
-  json read_selector(const Node& in) {
+  // Reads the key, or with `text` the value, "fluid=still,amplitude_rad=0.05".
+  json read_selector(const Node& in, bool text = false) {
     json where = json::object();
-    for (string_view rest = in.key; !rest.empty();) {
+    for (string_view rest = text ? in.text : in.key; !rest.empty();) {
       const string_view part = trimmed(rest.substr(0, rest.find(',')));
       rest.remove_prefix(std::min(rest.find(','), rest.size() - 1) + 1);
       const std::size_t equal = part.find('=');
@@ -663,6 +754,7 @@ struct Reader {
   // Measures, or names of columns and their measures.
   void read(const Node& in, const Field& about, std::vector<ColumnSpec>& columns) {
     const bool named = in.is_map();
+    if (in.is_scalar() && about.name == "y") return read(in, about, columns.emplace_back().measure);
     for (const Node& one : named ? std::span(in.parts) : items_of(in, about.example)) {
       ColumnSpec& column = columns.emplace_back();
       if (named) {
@@ -707,9 +799,13 @@ struct Reader {
     }
   }
 
-  // Parameters and their values.
+  // Parameters and their values, as a map or as "fluid=still,amplitude_rad=0.05".
   void read(const Node& in, const Field& about, json& where) {
     where = json::object();
+    if (in.is_scalar() && in.text.find('=') != string::npos) {
+      where = read_selector(in, true);
+      return;
+    }
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
   }
@@ -739,10 +835,12 @@ struct Reader {
       if (name.empty()) continue;
       if (std::ranges::find(names, name) != names.end()) {
         reject_value(item,
-                     fmt::format("names a {} twice", about.name == "primary" ? "claim" : "figure"),
+                     fmt::format("names {} twice", about.name == "primary" ? "a claim"
+                                                   : about.name == "of"    ? "an experiment"
+                                                                           : "a figure"),
                      "Keep one of them.");
-      } else if (about.name != "primary" && find_figure(name) == nullptr) {
-        reject_value(item, with_nearest("names an unknown figure", name, names_of(all_figures())),
+      } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
+        reject_value(item, with_nearest("names an unknown figure", name, names_of(figures_to_list)),
                      "`shearcell figures --help` lists them.");
       }
       names.push_back(name);
@@ -764,7 +862,7 @@ struct Reader {
     const std::size_t problems_before = problems.size();
     const auto sides = items_of(in, about.example);
     for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
-      if (sides[k].is_map()) read(sides[k], about, between[k]);
+      if (sides[k].is_map() || sides[k].is_scalar()) read(sides[k], about, between[k]);
     }
     const bool two = sides.size() == 2 && !between[0].empty() && !between[1].empty();
     if (!two && problems.size() == problems_before) {
@@ -1026,6 +1124,20 @@ struct Reader {
   void check(const Node&, const Field&, const auto&) {}
 
   void check(const Node& in, const Field&, Placed<PlotSpec>& plot) {
+    if (const Node* y = in.find("y"); y != nullptr && !plot.also.empty()) {
+      // The columns of `y` stand before those of `also`.
+      const std::size_t drawn = y->is_scalar() ? 1 : y->parts.size();
+      if (in.find("also") != nullptr) {
+        const auto also = std::ranges::find(in.parts, "also", &Node::key);
+        if (also < std::ranges::find(in.parts, "y", &Node::key)) {
+          std::ranges::rotate(plot.also, plot.also.end() - static_cast<std::ptrdiff_t>(drawn));
+        }
+      }
+      plot.y = plot.also.front().measure;
+      plot.column = plot.also.front().name;
+      plot.also.erase(plot.also.begin());
+      plot.drawn = drawn - 1;
+    }
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     if (curve != nullptr && x != nullptr) {
@@ -1035,7 +1147,7 @@ struct Reader {
     if (x != nullptr && plot.y == plot.x) {
       reject_value(*x, "is also the y of this plot", "Name another one.");
     }
-    if (!plot.y.empty() && is_parameter(plot.y) && !is_parameter(plot.x)) {
+    if (!plot.y.empty() && is_of_run(plot.y) && !is_of_run(plot.x)) {
       reject(in, fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     }
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
@@ -1043,19 +1155,19 @@ struct Reader {
       reject_key(*minus, fmt::format("does not go with {}", curve->name),
                  "Take a number as y: curves are not subtracted.");
     }
-    if (plot.show == Show::rms && curve == nullptr && plot.x != "cycle" && !is_parameter(plot.x)) {
+    if (plot.show == Show::rms && curve == nullptr && plot.x != "cycle" && !is_of_run(plot.x)) {
       reject_value(*in.find("show"), fmt::format("does not go with {} as x", plot.x),
                    "Take `cycle` or a number of the run as x.");
     }
-    if (cycles != nullptr && (!of_runs || is_parameter(plot.x))) {
+    if (cycles != nullptr && (!of_runs || is_of_run(plot.x))) {
       reject(*cycles, "draws each run along its cycles",
              "It takes `show: traces`, and `cycle` or a measure as x.");
     }
     if (cycles != nullptr && !plot.figure.empty()) {
       reject(*cycles, "does not go with figure", "Give the plot a figure of its own.");
     }
-    if (also != nullptr && (plot.x != "cycle" || plot.show != Show::mean)) {
-      reject(*also, "goes with means against the cycle", "Leave it out.");
+    if (also != nullptr && (curve != nullptr || plot.show != Show::mean)) {
+      reject(*also, "goes with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
              "Give one another name: `also: {NAME: measure}`.");
@@ -1090,6 +1202,10 @@ struct Reader {
       const Node value = {
           .kind = Node::Kind::scalar, .at = part.key_at, .text = part.key, .path = part.path};
       where = json::object();
+      if (plot.by == "experiment") {
+        where[plot.by] = part.key;
+        continue;
+      }
       if (auto read = read_scalar(value, *find_field(plot.by))) where[plot.by] = std::move(*read);
     }
   }
@@ -1120,19 +1236,29 @@ struct Reader {
         reject(in, fmt::format("lacks {}", lacking), remedy_of(about));
       }
     };
-    require_one("between", {"between", "published"});
+    require_one("id", {"id", "name"});
+    if (!is_claim_id(claim.id)) {
+      reject(in, "has no id", "It takes letters, digits, -, _ and dots: `id: S2.phi`.");
+    }
+    const bool is_slope = claim.estimator == slope_against.name;
+    const bool of_all = is_slope || claim.estimator == spread_of_variants.name;
+    require_one(of_all ? nullptr : "between", {"between", "published"});
+    require_one(is_slope ? "against" : nullptr, {"against"});
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
     if (published != nullptr && claim.published && !claim.published->value) {
       reject(*published, "lacks value", "State the published number.");
     }
-    if (of != nullptr && published == nullptr) {
+    if (claim.where.contains("cycle")) {
+      reject(*in.find("where"), "selects checkpoints", "State `at_cycle` or `cycles`.");
+    }
+    if (of != nullptr && published == nullptr && !of_all) {
       reject(*of, "goes with published", "Take `between` for two variants.");
     }
     claim.relative = relative != nullptr;
     if (claim.compare.empty()) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
-    if (!is_parameter(claim.compare)) {
+    if (!is_of_run(claim.compare)) {
       require_one("at_cycle or cycles", times);
     } else {
       for (const char* key : times) {
@@ -1153,6 +1279,30 @@ struct Reader {
     if (relative != nullptr && claim.published && claim.published->value == 0.0) {
       reject(*relative, "does not go with a published 0", "Take `margin`.");
     }
+  }
+
+  // The ids in `primary` are those of claims that are stated here, or of figures that are listed.
+  void check_primary(const Node& document, const Manifest& manifest) {
+    std::vector<string> known;
+    for (const ClaimSpec& claim : manifest.claims) known.push_back(claim.id);
+    for (const Figure& figure : all_figures()) {
+      const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
+      if (listed || !figure.of.empty()) std::ranges::copy(figure.claims, std::back_inserter(known));
+    }
+    const auto check = [&](const Node* primary) {
+      for (const Node& item : primary == nullptr ? std::span<const Node>() : primary->parts) {
+        const string id = item.text.substr(0, item.text.find('@'));
+        const bool statement = item.text.find(' ') != string::npos;  // of an older manifest
+        if (statement || std::ranges::count(known, id) > 0) continue;
+        reject_value(item,
+                     with_nearest("is the id of no claim", id, Names(known.begin(), known.end())),
+                     "State the `id` of a claim of this manifest or of its figures.");
+      }
+    };
+    check(document.find("primary"));
+    const Node* scales = document.find("scales");
+    if (scales == nullptr) return;
+    for (const Node& scale : scales->parts) check(scale.find("primary"));
   }
 
   // Names of plots and claims, of their figures and of the panels of a plot differ from each other
@@ -1177,10 +1327,13 @@ struct Reader {
     };
     for (const char* key : {"name", "figure"}) {
       for (const Node* item : items) {
-        const Node *own = item->find(key), *its_figure = item->find("figure");
-        if (own == nullptr || !is_name(own->text)) continue;
+        const Node *its_figure = item->find("figure"), *id = item->find("id");
+        const Node* own = id != nullptr && key == string_view("name") ? id : item->find(key);
+        if (own == nullptr || !(is_name(own->text) || is_claim_id(own->text))) continue;
         const string& text = own->text;
-        const string of = its_figure == nullptr ? "" : its_figure->text;
+        const string of = its_figure != nullptr ? its_figure->text
+                          : id != nullptr       ? text.substr(0, text.find('.'))
+                                                : "";
         // A figure that another manifest states, and whether it is shown as it stands there.
         const bool is_stated = find_named(computed_figures(), of) == nullptr;
         const bool is_listed = std::ranges::count(listed, of) > 0;
@@ -1216,6 +1369,12 @@ bool is_name(string_view text) {
          std::ranges::all_of(text, allowed);
 }
 
+bool is_claim_id(string_view text) {
+  const std::size_t dot = text.find('.');
+  return text.size() <= kLongestName && is_name(text.substr(0, dot)) &&
+         (dot == text.npos || is_claim_id(text.substr(dot + 1)));
+}
+
 Manifest read_manifest(string_view text, string_view file, bool shipped) {
   Node root = read_document(text, file);
   ProblemList problems(file);
@@ -1223,7 +1382,8 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   manifest.file = file;
   manifest.text = text;
   manifest.base.at = root.at;
-  Reader reader{problems, manifest.base};
+  const std::span<const Figure> known = shipped ? computed_figures() : all_figures();
+  Reader reader{problems, manifest.base, known};
   if (root.kind != Node::Kind::map) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
@@ -1239,7 +1399,9 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
   }
   if (const Node* base = root.find("base")) manifest.base.at = base->key_at;
-  reader.check_own_names(root, shipped ? computed_figures() : all_figures(), manifest.figures);
+  if (!shipped) reader.check_primary(root, manifest);
+  reader.check_of(root);
+  reader.check_own_names(root, known, manifest.figures);
   problems.raise();
   return manifest;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "analysis/own_figure.hpp"
+#include "analysis/plots.hpp"
 #include "core/named.hpp"
 #include "experiments/manifest/shipped_texts.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -17,7 +17,9 @@ std::vector<Figure> stated_figures(const Manifest& manifest) {
   };
   const std::vector<PlotSpec> plots(manifest.plots.begin(), manifest.plots.end());
   const std::vector<ClaimSpec> claims(manifest.claims.begin(), manifest.claims.end());
-  return own_figures(plots, claims, names, manifest.question);
+  std::vector<Figure> figures = own_figures(plots, claims, names, manifest.question);
+  for (Figure& figure : figures) figure.of = manifest.of;
+  return figures;
 }
 
 std::span<const Manifest> shipped_manifests() {

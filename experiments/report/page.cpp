@@ -116,7 +116,7 @@ json text_table(const TextTable& table) {
   return {{"head", head}, {"rows", rows}, {"note", text_html(table.note)}};
 }
 
-std::string draw(const FigureTable& table) {
+std::string draw(const Table& table) {
   const TemporaryFolder folder;
   constexpr std::size_t most = 64'000'000;
   std::optional<std::string> svg = read_plain(draw_svg(table, folder.path()), most);
@@ -125,7 +125,7 @@ std::string draw(const FigureTable& table) {
 }
 
 /// `id`: in the page, "drag.S2a".
-json panel_json(const FigureTable& table, const std::string& id, const WantedFigure& figure,
+json panel_json(const Table& table, const std::string& id, const WantedFigure& figure,
                 Content& content) {
   const bool interactive = content.report.interactive;
   const bool chart = interactive && !table.chart.series.empty();
@@ -219,7 +219,7 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
     content.manifests.try_emplace(manifest.sha256, manifest);
   }
   json panels = json::array(), claims = json::array(), warnings = json::array();
-  for (const FigureTable& table : figure.tables) {
+  for (const Table& table : figure.tables) {
     panels.push_back(panel_json(table, prefix + table.name, wanted, content));
   }
   for (const Verdict& verdict : figure.verdicts) {
@@ -355,7 +355,7 @@ struct RunColumn {
 
 /// The columns that are shown at first: what distinguishes the runs, then their state and results.
 std::vector<RunColumn> columns_of(const Experiment& experiment) {
-  const RunTable& table = experiment.table;
+  const Table& table = experiment.table.table;
   const std::size_t seed = table.place("seed"), cycle = table.place("cycle");
   std::vector<RunColumn> shown = {{table.place("run"), "run", false}};
   const auto differs = [&](std::size_t at) {
@@ -395,7 +395,8 @@ std::vector<RunColumn> columns_of(const Experiment& experiment) {
   return shown;
 }
 
-json cell_json(const Packings& packings, const TableColumn& column, const json& value) {
+json cell_json(const Packings& packings, const TableColumn& column, const TableCell& known) {
+  const json value = json_of(known);
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   json cell = {{"known", !value.is_null()}, {"value", text},  {"run", false},
                {"packed", false},           {"state", false}, {"text", ""}};
@@ -415,7 +416,7 @@ json cell_json(const Packings& packings, const TableColumn& column, const json& 
 }
 
 json run_rows(const Packings& packings, const Experiment& experiment) {
-  const RunTable& table = experiment.table;
+  const Table& table = experiment.table.table;
   if (table.rows.empty()) return false;
   json columns = json::array(), rows = json::array();
   const std::vector<RunColumn> shown = columns_of(experiment);
@@ -426,7 +427,7 @@ json run_rows(const Packings& packings, const Experiment& experiment) {
                        {"heading", column.heading},
                        {"numeric", column.numeric}});
   }
-  for (const std::vector<json>& row : table.rows) {
+  for (const TableRow& row : table.rows) {
     json cells = json::array();
     for (std::size_t c = 0; c < shown.size(); ++c) {
       json& cell = cells.emplace_back(
@@ -475,24 +476,34 @@ json parts_of(const Content& content) {
 
 /// The runs in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi, ...}]. The
 /// cycle and each scalar measure are arrays over the checkpoints, null where a value is unknown.
-json traces_of(const RunTable& runs, const RunLineages& lineages) {
+json traces_of(const RunTable& made, const RunLineages& lineages) {
+  const Table& runs = made.table;
   constexpr int significant = 6;
   json all = json::array();
   for (std::size_t k = 0; k < runs.rows.size(); ++k) {
     json& run = all.emplace_back(json::object());
-    for (const CheckpointMeasures& checkpoint : runs.histories[k].checkpoints) {
+    for (const CheckpointMeasures& checkpoint : made.histories[k].checkpoints) {
       run["cycle"].push_back(checkpoint.cycle);
       for (const Measure& measure : provider(table_providers().front()).measures) {
         run[std::string(measure.name)].push_back(
             rounded(checkpoint.measures.number(measure.name), significant));
       }
     }
-    const std::vector<json>& row = runs.rows[k];
-    for (const char* key : {"scale", "variant", "seed"}) run[key] = row[runs.place(key)];
-    run["id"] = row[runs.place("run")];
+    const TableRow& row = runs.rows[k];
+    for (const char* key : {"scale", "variant", "seed"}) run[key] = json_of(row[runs.place(key)]);
+    run["id"] = json_of(row[runs.place("run")]);
     run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
   }
   return all;
+}
+
+json rows_json(const Table& table) {
+  json rows = json::array();
+  for (const TableRow& row : table.rows) {
+    json& cells = rows.emplace_back(json::array());
+    for (const TableCell& cell : row) cells.push_back(json_of(cell));
+  }
+  return rows;
 }
 
 /// What the front end reads.
@@ -500,7 +511,7 @@ json script_data(const Content& content) {
   json experiments = json::array();
   for (const Experiment& experiment : content.experiments) {
     json columns = json::array();
-    for (const TableColumn& column : experiment.table.columns) {
+    for (const TableColumn& column : experiment.table.table.columns) {
       const Field* field = find_field(column.name);
       columns.push_back({{"key", column.name},
                          {"meaning", column.meaning},
@@ -508,7 +519,7 @@ json script_data(const Content& content) {
     }
     experiments.push_back({{"experiment", experiment.manifest.experiment},
                            {"columns", std::move(columns)},
-                           {"rows", experiment.table.rows},
+                           {"rows", rows_json(experiment.table.table)},
                            {"runs", traces_of(experiment.table, content.runs)}});
   }
   return {{"charts", content.charts},
@@ -613,7 +624,7 @@ void add_run_tables(Content& content) {
     try {
       experiment.table = run_table(content.store, selection, RowPer::run, measuring);
       // Another program may have declared runs since they were listed.
-      for (const FigureRun& run : experiment.table.histories)
+      for (const FrameRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
       content.report += experiment.table;
     } catch (const StoreDamaged& damage) {

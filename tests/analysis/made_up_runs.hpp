@@ -41,10 +41,9 @@ inline RunStatistic mean_over(std::vector<double> values) {
 }
 
 /// Cycles 0 .. cycles, each filled by `fill`.
-inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value,
-                             std::uint64_t seed, int cycles,
-                             const std::function<void(int, Measures&)>& fill) {
-  FigureRun run;
+inline FrameRun made_up_run(const std::string& key, const nlohmann::json& value, std::uint64_t seed,
+                            int cycles, const std::function<void(int, Measures&)>& fill) {
+  FrameRun run;
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   run.place.variant = key + "=" + text;
   run.stage.id = run.place.variant + "/" + std::to_string(seed);
@@ -65,8 +64,7 @@ inline FigureRun made_up_run(const std::string& key, const nlohmann::json& value
 }
 
 /// phi and the percentage rise from cycle to cycle, and are higher by `shift`.
-inline FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles,
-                            double shift) {
+inline FrameRun rising_run(const std::string& fluid, std::uint64_t seed, int cycles, double shift) {
   return made_up_run("fluid", fluid, seed, cycles, [shift](int n, Measures& m) {
     m.numbers["phi"] = 0.6005 + 0.01 * n + shift;
     m.numbers["phi_uncorrected"] = 0.61 + 0.01 * n + shift;
@@ -76,13 +74,13 @@ inline FigureRun rising_run(const std::string& fluid, std::uint64_t seed, int cy
 }
 
 /// One run with a moving fluid and two in a fluid at rest.
-inline std::vector<FigureRun> two_variants() {
+inline std::vector<FrameRun> two_variants() {
   return {rising_run("cell", 1, 2, 0), rising_run("still", 1, 1, 0),
           rising_run("still", 2, 1, 0.02)};
 }
 
 /// Figure S2 of these runs.
-inline std::vector<FigureTable> s2(std::span<const FigureRun> runs) {
+inline std::vector<Table> s2(std::span<const FrameRun> runs) {
   return find_figure("S2")->make(runs).tables;
 }
 

@@ -18,7 +18,7 @@
 namespace shearcell::test {
 namespace {
 
-FigureTable table_with(std::vector<TableRow> rows, Chart chart) {
+Table table_with(std::vector<TableRow> rows, Chart chart) {
   return {.name = "t",
           .columns = {"variant", "cycle", "phi", "error"},
           .rows = std::move(rows),
@@ -29,12 +29,12 @@ const SeriesColumns phi_columns{.x = "cycle", .y = "phi", .y_error = "error"};
 
 TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const FigureTable table = table_with({{std::string("a"), std::int64_t{1}, 0.5, 0.1},
-                                        {std::string("b"), std::int64_t{1}, 0.6, {}},
-                                        {std::string("a"), std::int64_t{2}, {}, 0.1},
-                                        {std::string("a"), std::int64_t{3}, nan, 0.1},
-                                        {std::string("a"), std::int64_t{4}, 0.7, nan}},
-                                       {});
+  const Table table = table_with({{std::string("a"), std::int64_t{1}, 0.5, 0.1},
+                                  {std::string("b"), std::int64_t{1}, 0.6, {}},
+                                  {std::string("a"), std::int64_t{2}, {}, 0.1},
+                                  {std::string("a"), std::int64_t{3}, nan, 0.1},
+                                  {std::string("a"), std::int64_t{4}, 0.7, nan}},
+                                 {});
   const Series of_a{.columns = phi_columns, .filter = {"variant", std::string("a")}};
   const auto points = points_of(table, of_a);
   ASSERT_EQ(points.size(), 2U) << "without a y there is no point";
@@ -52,7 +52,7 @@ TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
 }
 
 TEST(Chart, HasFifteenDigits) {
-  const FigureTable table = table_with(
+  const Table table = table_with(
       {}, {.x = {.name = "x", .symbol = formula("$n$"), .unit = "s", .low = 0},
            .y = {.name = "y", .log = true},
            .series = {{.title = "t", .colour = "#123456", .points = {{1.0 / 3, 2, {}, 0.25}}}},
@@ -88,8 +88,7 @@ TEST(Chart, PrintsDigitsThatShowTheSpread) {
       table.push_back({std::string("a"), std::int64_t{k}, value(k),
                        0.1 + (k % 2) * std::numeric_limits<double>::epsilon() / 8});
     }
-    const FigureTable figure =
-        table_with(table, {.series = {{.columns = {.x = "cycle", .y = "phi"}}}});
+    const Table figure = table_with(table, {.series = {{.columns = {.x = "cycle", .y = "phi"}}}});
     const nlohmann::json points = chart_json(figure)["series"][0]["points"];
     const std::string script = gnuplot_script(figure);
     std::istringstream csv(to_csv(figure)), data(script.substr(script.find("EOD\n") + 4));
@@ -111,7 +110,7 @@ TEST(Chart, PrintsDigitsThatShowTheSpread) {
 
 // The script and the chart come from one description: what one shows, the other shows too.
 TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
-  const FigureTable table = table_with(
+  const Table table = table_with(
       {{std::string("it's"), std::int64_t{1}, 0.5, 0.1},
        {std::string("b"), std::int64_t{2}, 0.6, {}}},
       {.x = {.name = "shear cycle", .symbol = formula("$n$"), .whole = true},
@@ -225,16 +224,15 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
               .series = {{.band = true, .points = {{1, 2, {}, 0.5}}}},
               .lines = {{.at = 1, .title = "the limit"}, {.at = 2, .title = "the limit"}},
               .letter = "b"};
-  const FigureTable table{.name = "t", .columns = {}, .rows = {}, .chart = std::move(chart)};
+  const Table table{.name = "t", .columns = {}, .rows = {}, .chart = std::move(chart)};
   EXPECT_EQ(caption_of("A title", std::span(&table, 1)),
             "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Reference "
             "lines: the limit.");
 }
 
 TEST(Chart, TheCaptionSaysWhichPanelANoteIsOf) {
-  FigureTable a{
-      .name = "a", .columns = {}, .rows = {}, .chart = {.series = {{.points = {{1, 2}}}}}};
-  FigureTable b = a;
+  Table a{.name = "a", .columns = {}, .rows = {}, .chart = {.series = {{.points = {{1, 2}}}}}};
+  Table b = a;
   a.chart.letter = "a";
   b.chart.letter = "b";
   b.chart.note = "Means over 2 runs each";
@@ -244,7 +242,7 @@ TEST(Chart, TheCaptionSaysWhichPanelANoteIsOf) {
 }
 
 TEST(Chart, TheCaptionCountsWhatALogarithmicAxisLeavesOut) {
-  const FigureTable table{
+  const Table table{
       .name = "t",
       .columns = {},
       .rows = {},
@@ -254,14 +252,14 @@ TEST(Chart, TheCaptionCountsWhatALogarithmicAxisLeavesOut) {
 }
 
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     runs.push_back(rising_run("still", seed, 4, 0.03));
   }
   for (const Figure& figure : all_figures()) {
     if (figure.form == FigureForm::table) continue;  // a table, not a chart
     if (!figure.make) continue;                      // summary, which is made of others
-    for (const FigureTable& table : figure.make(runs).tables) {
+    for (const Table& table : figure.make(runs).tables) {
       for (const Axis* axis : {&table.chart.x, &table.chart.y}) {
         EXPECT_FALSE(axis->name.empty() && axis->symbol.empty()) << table.name;
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers per run, pairs, missing checkpoints: comparisons with known answers.
-#include "analysis/claims.hpp"
+#include "analysis/estimators.hpp"
+#include "analysis/onset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +24,9 @@ Scalar percentage_over_phi() {
 
 /// phi = start + 0.001 n + gain from cycle 1 on; the percentage rises by 1 per 0.001 of phi above
 /// 0.646, plus `excess`.
-FigureRun rising(std::uint64_t seed, double start, double gain = 0, double excess = 0,
-                 int cycles = 60) {
-  FigureRun run = made_up_run("fluid", "still", seed, cycles, [=](int n, Measures& m) {
+FrameRun rising(std::uint64_t seed, double start, double gain = 0, double excess = 0,
+                int cycles = 60) {
+  FrameRun run = made_up_run("fluid", "still", seed, cycles, [=](int n, Measures& m) {
     m.numbers["phi"] = start + 0.001 * n + (n > 0 ? gain : 0);
     m.numbers["crystalline_percent"] = 1000 * (m.numbers["phi"] - 0.646) + excess;
     m.numbers["mean_overlap_d"] = 0.002 * (1 + excess);
@@ -39,7 +40,7 @@ constexpr double start(std::uint64_t seed) {
   return 0.62 + 0.001 * static_cast<double>(seed);
 }
 
-using Runs = std::vector<FigureRun>;
+using Runs = std::vector<FrameRun>;
 
 Runs group(std::size_t runs, double gain, double excess = 0, std::uint64_t first_seed = 1) {
   Runs all;
@@ -52,14 +53,14 @@ Runs group(std::size_t runs, double gain, double excess = 0, std::uint64_t first
 const Claim equal = {"equal", 0.001};
 
 TEST(Scalars, AtOneCycleOrOverSeveral) {
-  const FigureRun run = rising(1, 0.62);
+  const FrameRun run = rising(1, 0.62);
   EXPECT_NEAR(over_cycles("phi", "phi", 10, 10).of(run).value, 0.63, 1e-12);
   EXPECT_NEAR(early_phi().of(run).value, 0.628, 1e-12);
   EXPECT_EQ(over_cycles("phi", "phi", 10, 10).name, "phi at cycle 10");
 }
 
 TEST(Scalars, ReportWhyARunHasNone) {
-  FigureRun run = rising(1, 0.62, 0, 0, 14);
+  FrameRun run = rising(1, 0.62, 0, 0, 14);
   EXPECT_EQ(early_phi().of(run).missing, Missing::too_short);
   run = rising(1, 0.62, 0, 0, 16);
   run.checkpoints.erase(run.checkpoints.begin() + 3);
@@ -68,7 +69,10 @@ TEST(Scalars, ReportWhyARunHasNone) {
   EXPECT_EQ(early_phi().of(run).missing, Missing::undefined);
   EXPECT_EQ(percentage_over_phi().of(rising(1, 0.62, 0, 0, 30)).missing, Missing::too_short);
   EXPECT_EQ(percentage_over_phi().of(rising(1, 0.66)).missing, Missing::too_late);
-  EXPECT_EQ(onset_phi().of(rising(1, 0.62, 0, 0, 10)).missing, Missing::too_short);
+  EXPECT_EQ(number_of_the_run.scalar({.id = "own", .compare = "onset_size_phi"})
+                .of(rising(1, 0.62, 0, 0, 10))
+                .missing,
+            Missing::too_short);
 }
 
 TEST(Scalars, PercentageIsTheMeanOverTheWindow) {
@@ -90,8 +94,8 @@ TEST(Compare, RunsThatShareAPackingArePaired) {
 
 TEST(Compare, RunsArePairedWithoutTheirFirstCheckpointAndWithoutInteriorGrains) {
   Runs a = group(4, 0.0002), b = group(4, 0);
-  for (FigureRun& run : a) run.checkpoints.erase(run.checkpoints.begin());
-  for (FigureRun& run : b) run.checkpoints.front().measures.numbers["phi"] = std::nan("");
+  for (FrameRun& run : a) run.checkpoints.erase(run.checkpoints.begin());
+  for (FrameRun& run : b) run.checkpoints.front().measures.numbers["phi"] = std::nan("");
   EXPECT_EQ(compare(equal, early_phi(), pointers(a), pointers(b)).note,
             "4 pairs of runs that share a packing");
 }
@@ -148,7 +152,7 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_FALSE(verdict.estimate.has_value()) << "3 of 8, though only 3 of all 16";
   EXPECT_TRUE(has(verdict.note, "more than a quarter of the runs are left out"));
-  for (FigureRun& run : a) run.checkpoints.resize(10);
+  for (FrameRun& run : a) run.checkpoints.resize(10);
   verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
   EXPECT_TRUE(has(verdict.note, "more than a quarter of the runs are left out"));
@@ -181,7 +185,7 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   a[0].checkpoints.resize(12);
   const Verdict verdict =
       compare_waits({"onset", 1}, "the onset", waits_for_onset, pointers(a), pointers(b));
-  const FigureTable entered = entered_table(std::span(&verdict, 1));
+  const Table entered = entered_table(std::span(&verdict, 1));
   EXPECT_EQ(entered.rows.size(), 8U);
   EXPECT_EQ(std::get<std::string>(entered.rows[0].back()), "ends before");
   EXPECT_EQ(std::get<std::string>(entered.rows[1].back()), "");

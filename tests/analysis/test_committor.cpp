@@ -114,16 +114,16 @@ class Clones {
     const std::string variant = fmt::format("{},{},{}", amplitude_, packing, size);
     for (std::uint32_t clone = 0; clone < 4; ++clone) {
       const double u = uniform_pair({packing, static_cast<std::uint32_t>(size), clone, 3}, 11)[0];
-      FigureRun run = made_up_run(
-          "state", variant, clone + 1, 3,
-          [&, of = fate(u)](int n, auto& m) { m.crystallite_map = map_of(state(size, of, n)); });
+      FrameRun run = made_up_run("state", variant, clone + 1, 3, [&, of = fate(u)](int n, auto& m) {
+        m.crystallite_map = map_of(state(size, of, n));
+      });
       run.packing = fmt::format("packing{}", packing);
       run.parameters["amplitude_rad"] = amplitude_;
       runs_.push_back(std::move(run));
     }
   }
 
-  const std::vector<FigureRun>& runs() const { return runs_; }
+  const std::vector<FrameRun>& runs() const { return runs_; }
 
  private:
   static State state(std::int32_t size, Fate fate, int cycle) {
@@ -138,7 +138,7 @@ class Clones {
   }
 
   double amplitude_;
-  std::vector<FigureRun> runs_;
+  std::vector<FrameRun> runs_;
 };
 
 double share_that_grows(std::int32_t size, double half, double slope = 2) {
@@ -165,18 +165,18 @@ void add_controls(Clones& clones, double grown) {
   }
 }
 
-FigureResult figure_of(std::vector<FigureRun> runs) {
+FigureResult figure_of(std::vector<FrameRun> runs) {
   return find_figure("committor")->make(runs);
 }
 
 /// A number of the row of that amplitude and rule.
 double number_at(const FigureResult& figure, double amplitude, std::int64_t rule,
                  const std::string& column) {
-  const FigureTable& table = figure.tables.at(1);
-  const auto k = std::ranges::find(table.columns, column) - table.columns.begin();
+  const Table& table = figure.tables.at(1);
+  const auto k = static_cast<std::ptrdiff_t>(table.place(column));
   for (const TableRow& row : table.rows) {
     if (std::get<double>(row[0]) != amplitude || std::get<std::int64_t>(row[1]) != rule) continue;
-    const TableValue& value = row.at(static_cast<std::size_t>(k));
+    const TableCell& value = row.at(static_cast<std::size_t>(k));
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
     return std::holds_alternative<double>(value) ? std::get<double>(value) : std::nan("");
   }
@@ -188,8 +188,8 @@ TEST(CommittorFigure, FindsTheSizeOfAKnownProbability) {
   Clones clones(0.0833);
   add_states(clones, [](auto size) { return share_that_grows(size, 8); });
   add_controls(clones, 0);
-  std::vector<FigureRun> others = clones.runs();  // seeds that settle packings of their own
-  for (FigureRun& run : others) run.stage.parent = fmt::format("packing of {}", run.stage.id);
+  std::vector<FrameRun> others = clones.runs();  // seeds that settle packings of their own
+  for (FrameRun& run : others) run.stage.parent = fmt::format("packing of {}", run.stage.id);
   EXPECT_EQ(number_at(figure_of(others), 0.0833, 2, "states"), 4 * 280) << "no clones";
   const FigureResult figure = figure_of(clones.runs());
   const auto at = [&](const char* column) { return number_at(figure, 0.0833, 2, column); };
@@ -255,7 +255,7 @@ TEST(CommittorFigure, ComparesTheTwoLargestAmplitudes) {
     add_states(high, [&](auto size) { return share_that_grows(size, half); });
     add_controls(low, 0);
     add_controls(high, 0);
-    std::vector<FigureRun> runs = low.runs();
+    std::vector<FrameRun> runs = low.runs();
     runs.insert(runs.end(), high.runs().begin(), high.runs().end());
     const FigureResult figure = figure_of(runs);
     ASSERT_EQ(figure.verdicts.size(), 3U);

@@ -47,7 +47,7 @@ TEST(Follow, BothOfTwoThatMergeGrow) {
 }
 
 TEST(GrowthOf, PairsAreTheStatedCyclesApart) {
-  FigureRun run = made_up_run("fluid", "still", 1, 3, [](int, Measures&) {});
+  FrameRun run = made_up_run("fluid", "still", 1, 3, [](int, Measures&) {});
   for (CheckpointMeasures& c : run.checkpoints) {
     c.measures.crystallite_map = map_of({grain_ids(0, 2 + static_cast<std::int32_t>(c.cycle))});
   }

@@ -32,8 +32,8 @@ CrystalliteMap one_crystallite(std::int32_t size, double x, double y, std::int32
   return map_with({grain_ids(first, size)}, {x, y, 0});
 }
 
-FigureRun run_with(std::span<const CrystalliteMap> maps) {
-  FigureRun run =
+FrameRun run_with(std::span<const CrystalliteMap> maps) {
+  FrameRun run =
       made_up_run("fluid", "still", 1, static_cast<int>(maps.size()) - 1, [](int, Measures&) {});
   for (std::size_t k = 0; k < maps.size(); ++k)
     run.checkpoints[k].measures.crystallite_map = maps[k];
@@ -41,9 +41,8 @@ FigureRun run_with(std::span<const CrystalliteMap> maps) {
 }
 
 TEST(NucleusPlaces, AreSharesOfTheCell) {
-  const FigureRun run =
-      run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(14, 1, 6),
-                           one_crystallite(25, 0, 25), one_crystallite(26, 3, 6)});
+  const FrameRun run = run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(14, 1, 6),
+                                            one_crystallite(25, 0, 25), one_crystallite(26, 3, 6)});
   EXPECT_EQ(nucleus_places(run, CellAxis::x), (std::vector<double>{0.5, 0.05}));
   EXPECT_EQ(nucleus_places(run, CellAxis::y), (std::vector<double>{0.25, 1}));
 }
@@ -51,7 +50,7 @@ TEST(NucleusPlaces, AreSharesOfTheCell) {
 TEST(NucleusBirths, CountAFollowedNucleusOnce) {
   // 20 grains that were seen, and 15 others.
   const CrystalliteMap two = map_with({grain_ids(0, 20), grain_ids(30, 15)}, {0, 20, 0});
-  const FigureRun run =
+  const FrameRun run =
       run_with(std::vector{one_crystallite(15, 9, 10), one_crystallite(3, 9, 10),
                            one_crystallite(29, 9, 11), one_crystallite(20, 9, 11), two, two});
   EXPECT_EQ(nucleus_places(run, CellAxis::y, Seen::first), (std::vector<double>{0.25, 0.75}));
@@ -80,9 +79,9 @@ TEST(Density, IntegratesToOneAndHasErrorsOverRuns) {
 
 /// Six runs of so many nuclei each, at x/w and y/h as two functions of random numbers in [0,
 /// 1) say.
-std::vector<FigureRun> runs_with_places(int count, const std::function<double(double)>& x,
-                                        const std::function<double(double)>& y) {
-  std::vector<FigureRun> runs;
+std::vector<FrameRun> runs_with_places(int count, const std::function<double(double)>& x,
+                                       const std::function<double(double)>& y) {
+  std::vector<FrameRun> runs;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     std::vector<CrystalliteMap> maps;
     for (std::uint32_t n = 0; n < static_cast<std::uint32_t>(count); ++n) {
@@ -97,9 +96,9 @@ std::vector<FigureRun> runs_with_places(int count, const std::function<double(do
 }
 
 /// Each run and a copy of it, under another id; `shared`: both begin with the packing of the first.
-std::vector<FigureRun> with_copies(std::vector<FigureRun> runs, double amplitude, bool shared) {
+std::vector<FrameRun> with_copies(std::vector<FrameRun> runs, double amplitude, bool shared) {
   for (std::size_t k = 0, count = runs.size(); k < count; ++k) {
-    FigureRun copy = runs[k];
+    FrameRun copy = runs[k];
     copy.stage.id += " again";
     copy.parameters["amplitude_rad"] = amplitude;
     if (shared) runs[k].packing = copy.packing = "packing of " + runs[k].stage.id;
@@ -108,7 +107,7 @@ std::vector<FigureRun> with_copies(std::vector<FigureRun> runs, double amplitude
   return runs;
 }
 
-std::vector<Ruling> rulings(std::span<const FigureRun> runs) {
+std::vector<Ruling> rulings(std::span<const FrameRun> runs) {
   std::vector<Ruling> all;
   for (const Verdict& verdict : figure_s7(runs).verdicts) all.push_back(verdict.ruling);
   return all;
@@ -132,7 +131,7 @@ TEST(FigureS7, DecidesCorrectlyForKnownPlaces) {
 // Another amplitude does not make independent runs of those that share a packing.
 TEST(FigureS7, CountsRunsOfOnePackingTogether) {
   const auto even = [](double u) { return u; };
-  const std::vector<FigureRun> runs = runs_with_places(10, even, even);
+  const std::vector<FrameRun> runs = runs_with_places(10, even, even);
   const Verdict once = figure_s7(runs).verdicts[1];
   const Verdict shared = figure_s7(with_copies(runs, 0.1, true)).verdicts[1];
   EXPECT_EQ(shared.estimate, once.estimate);
@@ -146,8 +145,8 @@ TEST(FigureS7, CountsRunsOfOnePackingTogether) {
 }
 
 /// Of `grains` interior grains, at one phi, with an onset just before cycle `onset` (0: none).
-FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double phi = 0.6451) {
-  FigureRun run = made_up_run("grains", grains, seed, cycles, [=](int n, Measures& m) {
+FrameRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double phi = 0.6451) {
+  FrameRun run = made_up_run("grains", grains, seed, cycles, [=](int n, Measures& m) {
     m.numbers["phi"] = phi;
     m.numbers["interior_grains"] = grains;
     m.numbers["largest_crystallite"] = onset > 0 && n >= onset ? 16 : 0;  // critical at A = 0.0833
@@ -157,8 +156,8 @@ FigureRun waiting(int grains, std::uint64_t seed, int onset, int cycles, double 
 }
 
 TEST(NucleationRate, IsEventsOverGrainCycles) {
-  const std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30), waiting(1000, 2, 20, 30),
-                                       waiting(1000, 3, 0, 30), waiting(1000, 4, 0, 30, 0.6401)};
+  const std::vector<FrameRun> runs = {waiting(1000, 1, 10, 30), waiting(1000, 2, 20, 30),
+                                      waiting(1000, 3, 0, 30), waiting(1000, 4, 0, 30, 0.6401)};
   const auto rates = nucleation_rates(pointers(runs), Region::interior);
   ASSERT_EQ(rates.size(), 2U);
   EXPECT_DOUBLE_EQ(rates[0].phi_low, 0.64);
@@ -175,14 +174,14 @@ TEST(NucleationRate, IsEventsOverGrainCycles) {
 }
 
 TEST(NucleationRate, LeavesOutRunsThatBeginWithACriticalCrystallite) {
-  std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
+  std::vector<FrameRun> runs = {waiting(1000, 1, 10, 30)};
   for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.numbers["largest_crystallite"] = 16;
   EXPECT_TRUE(nucleation_rates(pointers(runs), Region::interior).empty());
 }
 
 // With one stratum and two sizes the maximum is where each size has its own rate.
 TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   double cycles[2] = {}, events[2] = {};
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     for (const int size : {0, 1}) {
@@ -204,8 +203,8 @@ TEST(SizeExponent, OfTwoSizesIsTheSlopeBetweenTheirRates) {
 
 /// Runs of three sizes in which phi rises by 0.0004 in a cycle and the rate by a factor e in
 /// `rise`, twice as fast below 0.646 as above it: ln c is not a parabola.
-std::vector<FigureRun> nucleating_runs(std::uint32_t sample, double exponent, double rise) {
-  std::vector<FigureRun> runs;
+std::vector<FrameRun> nucleating_runs(std::uint32_t sample, double exponent, double rise) {
+  std::vector<FrameRun> runs;
   for (std::uint32_t seed = 1; seed <= 15; ++seed) {
     for (const int grains : {500, 1500, 4500}) {
       const double u = uniform_pair({sample, seed, static_cast<std::uint32_t>(grains), 0}, 7)[0];
@@ -236,7 +235,7 @@ TEST(SizeExponent, IsRightWhereTheRateIsSteep) {
       std::uint32_t covered = 0;
       double error = 0, squares = 0;
       for (std::uint32_t sample = 0; sample < samples; ++sample) {
-        const std::vector<FigureRun> runs = nucleating_runs(sample, exponent, rise);
+        const std::vector<FrameRun> runs = nucleating_runs(sample, exponent, rise);
         const auto found = size_exponent(pointers(runs), Region::interior);
         ASSERT_TRUE(found);
         const double off = found->value - exponent;
@@ -257,13 +256,13 @@ TEST(SizeExponent, IsRightWhereTheRateIsSteep) {
 }
 
 TEST(SizeExponent, NeedsTwoSizesAtOnePhi) {
-  const std::vector<FigureRun> one = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
-                                      waiting(1000, 3, 7, 30)};
+  const std::vector<FrameRun> one = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
+                                     waiting(1000, 3, 7, 30)};
   EXPECT_FALSE(size_exponent(pointers(one), Region::interior));
-  const std::vector<FigureRun> apart = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
-                                        waiting(3000, 3, 7, 30, 0.6501)};
+  const std::vector<FrameRun> apart = {waiting(1000, 1, 5, 30), waiting(1000, 2, 6, 30),
+                                       waiting(3000, 3, 7, 30, 0.6501)};
   EXPECT_FALSE(size_exponent(pointers(apart), Region::interior));
-  std::vector<FigureRun> seeds;
+  std::vector<FrameRun> seeds;
   for (const int interior : {990, 1010, 1000, 1005, 995}) {
     seeds.push_back(waiting(interior, seeds.size(), 3 + interior % 7, 30));
     seeds.back().place.swept["grains"] = seeds.back().parameters["grains"] = 2000;
@@ -276,7 +275,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
   constexpr std::uint32_t samples = 300, packings = 15;
   std::uint32_t covered = 0, narrower = 0;
   for (std::uint32_t sample = 0; sample < samples; ++sample) {
-    std::vector<FigureRun> runs;
+    std::vector<FrameRun> runs;
     for (const int grains : {1000, 3000}) {
       const auto key = static_cast<std::uint32_t>(grains);
       const std::vector<double> scatter = normal_numbers(2 * sample + key / 3000, packings);
@@ -292,7 +291,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
       }
     }
     const auto apart = size_exponent(pointers(runs), Region::interior);
-    for (FigureRun& run : runs)
+    for (FrameRun& run : runs)
       run.packing = fmt::format("{} {}", run.parameters["grains"].dump(), run.place.seed);
     const auto shared = size_exponent(pointers(runs), Region::interior);
     ASSERT_TRUE(apart && shared);
@@ -306,7 +305,7 @@ TEST(SizeExponent, TheIntervalCoversTheTruthWithRunsOfOnePacking) {
 
 // By one onset of six small runs, and none.
 TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     runs.push_back(waiting(1000, seed, seed == 1 ? 9 : 0, 30));
     runs.push_back(waiting(3000, seed, static_cast<int>(3 + seed), 30));
@@ -318,7 +317,7 @@ TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
       << "one onset says less of how rare they are in small cells than of how frequent";
   runs[0] = waiting(1000, 1, 0, 30);
   EXPECT_FALSE(size_exponent(pointers(runs), Region::interior)) << "none in the small ones";
-  for (FigureRun& run : runs) {  // sizes are those of N, whatever number of grains is interior
+  for (FrameRun& run : runs) {  // sizes are those of N, whatever number of grains is interior
     for (CheckpointMeasures& c : run.checkpoints)
       c.measures.numbers["interior_grains"] += 5 * static_cast<double>(run.place.seed);
   }
@@ -326,7 +325,7 @@ TEST(SizeExponent, IsMissingWithOnsetsInLargeCellsAlone) {
 }
 
 TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     runs.push_back(waiting(1000, seed, static_cast<int>(1 + seed * 7 % 60), 60));
     runs.push_back(waiting(3000, seed, static_cast<int>(1 + seed * 7 % 60) / 3 + 1, 60));
@@ -339,9 +338,9 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   ASSERT_TRUE(result.verdicts[0].estimate);
   EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
   EXPECT_NEAR(result.verdicts[0].margin, 1.0 / 6, 1e-12) << "all grains are interior ones here";
-  EXPECT_TRUE(find_figure("nucleation")->make(std::span(runs.data(), 1)).verdicts.empty());
+  EXPECT_TRUE(find_figure("nucleation")->make(std::vector{runs.front()}).verdicts.empty());
   const auto set_interior_of_small = [&](double interior) {
-    for (FigureRun& run : runs) {
+    for (FrameRun& run : runs) {
       if (number_of(run, "grains") > 1000) continue;
       for (CheckpointMeasures& c : run.checkpoints)
         c.measures.numbers["interior_grains"] = interior;
@@ -356,13 +355,13 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
 
 // In the core the small cells are denser and have a smaller share of the grains.
 TEST(FigureNucleationCore, UsesTheGrainsAndThePhiOfTheCore) {
-  std::vector<FigureRun> runs;
+  std::vector<FrameRun> runs;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const int onset = static_cast<int>(1 + seed * 7 % 60);
     runs.push_back(waiting(1000, seed, onset, 60, 0.6401));
     runs.push_back(waiting(3000, seed, onset / 9 + 1, 60, 0.6421));
   }
-  for (FigureRun& run : runs) {
+  for (FrameRun& run : runs) {
     for (CheckpointMeasures& c : run.checkpoints) {
       c.measures.numbers["core_phi"] = 0.6451;
       c.measures.numbers["core_grains"] = number_of(run, "grains") > 1000 ? 1800 : 200;
@@ -380,7 +379,7 @@ TEST(FigureNucleationCore, UsesTheGrainsAndThePhiOfTheCore) {
 
 // A cell of 1000 grains has next to no core.
 TEST(NucleationRate, LeavesOutTimeWithoutPhi) {
-  std::vector<FigureRun> runs = {waiting(1000, 1, 10, 30)};
+  std::vector<FrameRun> runs = {waiting(1000, 1, 10, 30)};
   EXPECT_TRUE(nucleation_rates(pointers(runs), Region::core).empty()) << "it was not measured";
   for (CheckpointMeasures& c : runs[0].checkpoints) {
     c.measures.numbers["core_grains"] = 0;

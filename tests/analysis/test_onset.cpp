@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Onsets of analytic curves, and runs that do not show theirs.
 #include "analysis/onset.hpp"
+#include "analysis/plots.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 /// phi rises by 0.0005 a cycle from 0.63; ln(largest) is a step of width 0.002 around `onset`, from
 /// 2 to 2000 grains.
-FigureRun logistic(double onset, int cycles = 100) {
+FrameRun logistic(double onset, int cycles = 100) {
   return made_up_run("fluid", "still", 1, cycles, [onset](int n, Measures& m) {
     m.numbers["phi"] = 0.63 + 0.0005 * n;
     const double rise = 1 / (1 + std::exp(-(m.numbers["phi"] - onset) / 0.002));
@@ -23,7 +24,7 @@ FigureRun logistic(double onset, int cycles = 100) {
 }
 
 TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
-  FigureRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
+  FrameRun run = made_up_run("fluid", "still", 1, 4, [](int n, Measures& m) {
     m.numbers["phi"] = 0.64 + 0.001 * n;
     m.numbers["largest_crystallite"] = 4 * n;
   });
@@ -36,7 +37,7 @@ TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
 
 TEST(OnsetBySize, IsTheFirstPassage) {
   const std::vector<double> sizes = {2, 16, 3, 40};
-  const FigureRun run = made_up_run("fluid", "still", 1, 3, [&](int n, Measures& m) {
+  const FrameRun run = made_up_run("fluid", "still", 1, 3, [&](int n, Measures& m) {
     m.numbers["phi"] = 0.64 + 0.001 * n;
     m.numbers["largest_crystallite"] = sizes[static_cast<std::size_t>(n)];
   });
@@ -61,7 +62,7 @@ TEST(OnsetBySlope, IsTheSteepestPoint) {
 
 // Two checkpoints are too few for a slope, though the largest crystallite is critical in one.
 TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
-  FigureRun run = logistic(0.646);
+  FrameRun run = logistic(0.646);
   run.checkpoints = {run.checkpoints[0], run.checkpoints[60]};
   const RunOnset found = onset_by_slope(run);
   EXPECT_EQ(found.observed, Observed::unclear);
@@ -69,20 +70,21 @@ TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
 }
 
 TEST(Onset, CountsCensoredRuns) {
-  std::vector<FigureRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
-                                 logistic(0.66, 10)};
-  for (FigureRun& run : runs) run.packing = fmt::format("of run {}", &run - runs.data());
-  const Onset found = onset(pointers(runs), onset_by_slope);
-  EXPECT_EQ(found.phi.runs, 3U);
-  EXPECT_EQ(found.never, 1U);
-  EXPECT_NEAR(found.phi.mean.value(), 0.646, 0.0006);
-  ASSERT_TRUE(found.phi_error.has_value());
-  EXPECT_NEAR(*found.phi_error, found.phi.standard_error.value(), 0.1 * *found.phi_error);
-  for (FigureRun& run : runs) run.packing = "of all";
-  const Onset of_clones = onset(pointers(runs), onset_by_slope);
-  EXPECT_EQ(of_clones.phi.runs, 1U);
-  EXPECT_EQ(of_clones.cycle.runs, 1U);
-  EXPECT_FALSE(of_clones.phi_error);
+  std::vector<FrameRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
+                                logistic(0.66, 10)};
+  for (FrameRun& run : runs) run.packing = fmt::format("of run {}", &run - runs.data());
+  const PlotSpec plot{.name = "own", .y = "onset_slope_phi", .x = "amplitude_rad"};
+  const auto cell = [&](const char* column) {
+    const Table table = plot_figure(plot).make(runs).tables.at(0);
+    return table.rows.at(0).at(table.place(column));
+  };
+  EXPECT_EQ(cell("runs"), TableCell(std::size_t{3}));
+  EXPECT_EQ(cell("runs_ended_before"), TableCell(std::size_t{1}));
+  EXPECT_NEAR(std::get<double>(cell("onset_slope_phi_mean")), 0.646, 0.0006);
+  EXPECT_GT(std::get<double>(cell("onset_slope_phi_standard_error")), 0);
+  for (FrameRun& run : runs) run.packing = "of all";
+  EXPECT_EQ(cell("runs"), TableCell(std::size_t{1}));
+  EXPECT_EQ(cell("onset_slope_phi_standard_error"), TableCell()) << "of one packing";
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analysis/expression.hpp"
-#include "analysis/own_figure.hpp"
 #include "analysis/plot.hpp"
+#include "analysis/plots.hpp"
 #include "provenance/errors.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"
@@ -20,12 +20,12 @@ namespace shearcell::test {
 namespace {
 
 /// Three amplitudes and two periods with three seeds each; phi = amplitude + period/1000.
-std::vector<FigureRun> runs_of_sweep() {
-  std::vector<FigureRun> runs;
+std::vector<FrameRun> runs_of_sweep() {
+  std::vector<FrameRun> runs;
   for (const double amplitude : {0.02, 0.04, 0.08}) {
     for (const double period : {0.5, 2.0}) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        FigureRun run = made_up_run("amplitude_rad", amplitude, seed, 3, [&](int n, Measures& m) {
+        FrameRun run = made_up_run("amplitude_rad", amplitude, seed, 3, [&](int n, Measures& m) {
           m.numbers["phi"] = amplitude + period / 1000 + 1e-6 * static_cast<double>(seed);
           m.numbers["mean_overlap_d"] = n;
         });
@@ -40,11 +40,11 @@ std::vector<FigureRun> runs_of_sweep() {
   return runs;
 }
 
-FigureTable drawing_of(const PlotSpec& plot) {
+Table drawing_of(const PlotSpec& plot) {
   return plot_figure(plot).make(runs_of_sweep()).tables.at(0);
 }
 
-std::vector<std::string> titles_of(const FigureTable& table) {
+std::vector<std::string> titles_of(const Table& table) {
   std::vector<std::string> titles;
   for (const Series& one : table.chart.series) titles.push_back(plain_text(one.title));
   return titles;
@@ -146,20 +146,20 @@ TEST(Formula, IsItalicWithLoweredAndRaisedText) {
 }
 
 TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
-  const FigureTable by_frequency = drawing_of(
+  const Table by_frequency = drawing_of(
       {.name = "own", .y = "phi", .x = "1/period_s", .xlabel = "frequency $f$ [Hz]", .cycle = 2});
   EXPECT_EQ(by_frequency.chart.series.size(), 3U) << "a curve for each amplitude";
   EXPECT_EQ(plain_text(by_frequency.chart.x.name), "frequency f [Hz]");
   EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,0.5,0.022002,"))
       << to_csv(by_frequency);
   EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,2,0.020502,"));
-  const FigureTable both =
+  const Table both =
       drawing_of({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
   EXPECT_EQ(both.chart.series.size(), 6U);
   for (const Series& series : both.chart.series) {
     for (const ChartPoint& p : points_of(both, series)) EXPECT_NEAR(p.y, 1, 0.005);
   }
-  const FigureTable strange = drawing_of(
+  const Table strange = drawing_of(
       {.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
   ASSERT_EQ(strange.chart.series.size(), 18U) << "every run";
   EXPECT_EQ(strange.chart.series[0].points.size(), 3U) << "1/0 at cycle 2";
@@ -170,7 +170,8 @@ TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
 
 TEST(OwnPlot, TakesTheNeedsOfItsExpression) {
   const Figure figure = plot_figure({.name = "own", .y = "stress_xy_Pa/msd_1_cycle_d2"});
-  EXPECT_EQ(figure.needs, needs_of({"stress_xy_Pa", "msd_1_cycle_d2"}));
+  const std::vector<std::string> names = {"stress_xy_Pa", "msd_1_cycle_d2"};
+  EXPECT_EQ(figure.needs, providers_of(names));
   EXPECT_EQ(figure.needs.size(), 2U);
 }
 
@@ -183,7 +184,7 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
       .series = {
           {.where = {{"amplitude_rad", 0.08}}, .label = "large $A$", .colour = "vermilion"},
           {.where = {{"amplitude_rad", 0.02}}, .colour = "#123456", .marker = "open_diamond"}}};
-  const FigureTable table = drawing_of(plot);
+  const Table table = drawing_of(plot);
   EXPECT_EQ(titles_of(table),
             (std::vector<std::string>{"large A", "amplitude_rad=0.02", "amplitude_rad=0.04"}))
       << "in the order of the series, then the others";
@@ -200,7 +201,7 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
 }
 
 TEST(OwnPlot, ShowsPublishedNumbers) {
-  const FigureTable table = drawing_of(
+  const Table table = drawing_of(
       {.name = "own",
        .y = "phi",
        .x = "amplitude_rad",
@@ -219,10 +220,10 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
   for (const char* entry : {"title 'Jin'", "title 'Smith'", "0.03,,0.001", "first 0.04"}) {
     EXPECT_TRUE(has(script, entry)) << script;
   }
-  const std::vector<FigureTable> tables = {table};
+  const std::vector<Table> tables = {table};
   EXPECT_TRUE(
       has(caption_of("A title", tables), " Published: Jin 0.05 ± 0.01: S C; Smith: a book."));
-  const std::vector<FigureTable> twice = {table, table};
+  const std::vector<Table> twice = {table, table};
   const std::string caption = caption_of("A title", twice);
   EXPECT_EQ(caption.find("Published"), caption.rfind("Published")) << caption;
   EXPECT_EQ(drawing_of({.name = "own",
@@ -249,8 +250,8 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
                                       "<amplitude_rad=0.08>"}));
   EXPECT_EQ(result.tables[0].rows.size(), 12U);
   EXPECT_TRUE(to_csv(result.tables[1]).starts_with("variant,period_s,cycle,phi_mean,")) << "CSV";
-  EXPECT_EQ(result.tables[1].rows.at(0).at(1), TableValue(2.0));
-  for (const FigureTable& table : result.tables) {  // from 0.0205 to 0.082, and some room
+  EXPECT_EQ(result.tables[1].rows.at(0).at(1), TableCell(2.0));
+  for (const Table& table : result.tables) {  // from 0.0205 to 0.082, and some room
     const double low = table.chart.y.low.value(), high = table.chart.y.high.value();
     EXPECT_TRUE(low < 0.0205 && low > 0.015) << low;
     EXPECT_TRUE(high > 0.082 && high < 0.087) << high;
@@ -266,7 +267,7 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
           .make(runs_of_sweep()));
   PlotSpec compared = plot;
   compared.published = {{.label = "Jin", .source = "S C", .value = 0.74}};
-  for (const FigureTable& table : plot_figure(compared).make(runs_of_sweep()).tables) {
+  for (const Table& table : plot_figure(compared).make(runs_of_sweep()).tables) {
     EXPECT_GT(table.chart.y.high, 0.74) << "published lines are in the range";
   }
 }
@@ -276,7 +277,7 @@ TEST(OwnPlot, OfOneFigureAreItsPanels) {
                                        {.name = "alone", .y = "phi"},
                                        {.name = "b", .y = "mean_overlap_d", .figure = "pair"}};
   const std::vector<ClaimSpec> claims = {
-      {.name = "c",
+      {.id = "c",
        .figure = "pair",
        .compare = "phi",
        .cycles = {{1, 2}},
@@ -297,7 +298,7 @@ TEST(OwnPlot, OfOneFigureAreItsPanels) {
 
 TEST(OwnClaim, ComparesWithAPublishedNumber) {
   ClaimSpec claim{
-      .name = "own",
+      .id = "own",
       .compare = "1000*phi",
       .cycles = {{2, 2}},
       .between = {{{{"amplitude_rad", 0.02}, {"period_s", 2.0}}, nlohmann::json::object()}},
@@ -338,7 +339,7 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
 }
 
 TEST(OwnPlot, HasFurtherColumnsWithNamesOfTheirOwn) {
-  const FigureTable table = drawing_of(
+  const Table table = drawing_of(
       {.name = "own",
        .y = "phi",
        .also = {{"phi_uncorrected", "phi_u"}, {"mean_overlap_d", "overlap"}, {"time_s"}}});
@@ -357,7 +358,7 @@ TEST(OwnPlot, HasColumnsWithoutSpecialCharacters) {
         {"msd_1_cycle_d2", "msd_1_cycle_mean_d2", "msd 1 cycle", "d²"},
         {"shear_rate_per_s", "shear_rate_mean_per_s", "shear rate", "1/s"},
         {"raised_stiffness_N_per_m", "raised_stiffness_mean_N_per_m", "raised stiffness", "N/m"}}) {
-    const FigureTable table = drawing_of({.name = "own", .y = measure});
+    const Table table = drawing_of({.name = "own", .y = measure});
     EXPECT_EQ(table.columns.at(2), column);
     EXPECT_EQ(plain_text(table.chart.y.name), name);
     EXPECT_EQ(plain_text(table.chart.y.unit), unit);
@@ -367,13 +368,13 @@ TEST(OwnPlot, HasColumnsWithoutSpecialCharacters) {
 /// Packings 1 to 3 with 100 (the reference), 10 and 20 steps of our engine and 20 of LAMMPS. phi of
 /// the reference depends on the packing; that of other steps differs from it by 0.4/steps^2, in
 /// packing 2 in the other direction. A run takes a second for each step and packing.
-std::vector<FigureRun> runs_of_steps() {
-  std::vector<FigureRun> runs;
+std::vector<FrameRun> runs_of_steps() {
+  std::vector<FrameRun> runs;
   for (const auto& [engine, steps] :
        {std::pair("shearcell", 100), {"shearcell", 10}, {"shearcell", 20}, {"lammps", 20}}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const double error = steps == 100 ? 0 : (seed == 2 ? -0.4 : 0.4) / (steps * steps);
-      FigureRun run =
+      FrameRun run =
           made_up_run("steps_per_cycle", steps, seed, 2, [&, of = steps](int n, Measures& m) {
             m.numbers["phi"] = 0.6 + 0.01 * static_cast<double>(seed) + n * error;
             m.numbers["mean_overlap_d"] = of;
@@ -399,15 +400,15 @@ const PlotSpec kErrors = {.name = "own",
                           .log = LogAxes::xy,
                           .cycle = 1};
 
-FigureTable errors_of(const std::vector<FigureRun>& runs, const PlotSpec& plot = kErrors) {
+Table errors_of(const std::vector<FrameRun>& runs, const PlotSpec& plot = kErrors) {
   return plot_figure(plot).make(runs).tables.at(0);
 }
 
 /// Expects a row of the table: the variant, x, y with its error (none of one run), and the number
 /// of runs.
-void expect_row(const FigureTable& table, const std::string& variant, double x, double y,
-                double error, std::size_t runs) {
-  const auto number = [](const TableValue& value) {
+void expect_row(const Table& table, const std::string& variant, double x, double y, double error,
+                std::size_t runs) {
+  const auto number = [](const TableCell& value) {
     const auto* whole = std::get_if<std::int64_t>(&value);
     const auto* real = std::get_if<double>(&value);
     return whole != nullptr ? static_cast<double>(*whole) : real != nullptr ? *real : 0;
@@ -423,7 +424,7 @@ void expect_row(const FigureTable& table, const std::string& variant, double x, 
 }
 
 TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
-  const FigureTable table = errors_of(runs_of_steps());
+  const Table table = errors_of(runs_of_steps());
   EXPECT_TRUE(to_csv(table).starts_with(
       "variant,core_time_s,phi_difference_rms,phi_difference_standard_error,runs,cycle\n"));
   EXPECT_EQ(table.rows.size(), 3U) << "without the reference";
@@ -456,7 +457,7 @@ TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
   PlotSpec of_costs = kErrors;
   of_costs.y = "core_time_s";
   of_costs.x = "steps_per_cycle";
-  const FigureTable costs = errors_of(runs_of_steps(), of_costs);
+  const Table costs = errors_of(runs_of_steps(), of_costs);
   EXPECT_EQ(costs.columns[2], "core_time_difference_rms_s");
   bool found = false;  // 90, 180 and 270 s less
   for (const Series& series : costs.chart.series) {
@@ -469,8 +470,8 @@ TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
 
 // Runs of one packing that differ by noise are no independent ones.
 TEST(OwnPlot, IsADifferenceFromTheMeanOfSeveralPartners) {
-  std::vector<FigureRun> runs = runs_of_steps();
-  FigureRun clone = runs[0];  // the reference of packing 1
+  std::vector<FrameRun> runs = runs_of_steps();
+  FrameRun clone = runs[0];  // the reference of packing 1
   clone.stage.id += "/clone";
   clone.place.seed = 11;
   for (CheckpointMeasures& checkpoint : clone.checkpoints) {
@@ -480,20 +481,20 @@ TEST(OwnPlot, IsADifferenceFromTheMeanOfSeveralPartners) {
   PlotSpec mean = kErrors;
   mean.show = Show::mean;
   mean.log = LogAxes::none;
-  const FigureTable table = errors_of(runs, mean);
+  const Table table = errors_of(runs, mean);
   EXPECT_EQ(table.rows.size(), 3U);
   // 0.003, -0.004 and 0.004.
   expect_row(table, "engine=shearcell", 20, 0.001, std::sqrt((4 + 25 + 9) / 6.0) / 1000, 3);
 }
 
 TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
-  std::vector<FigureRun> runs = runs_of_steps();
+  std::vector<FrameRun> runs = runs_of_steps();
   runs.erase(runs.begin());  // the reference of packing 1
-  const FigureTable table = errors_of(runs);
+  const Table table = errors_of(runs);
   expect_row(table, "engine=shearcell", 25, 0.004, 0, 2);
   EXPECT_TRUE(table.chart.note.ends_with("with the same packing, which 3 of 9 runs lack"))
       << table.chart.note;
-  for (FigureRun& run : runs) run.packing.clear();
+  for (FrameRun& run : runs) run.packing.clear();
   EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
   EXPECT_TRUE(errors_of(runs).chart.note.ends_with("which 9 of 9 runs lack"));
   runs = runs_of_steps();
@@ -503,10 +504,10 @@ TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
 }
 
 TEST(OwnPlot, LeavesOutValuesThatAreNotThere) {
-  std::vector<FigureRun> runs = runs_of_steps();
+  std::vector<FrameRun> runs = runs_of_steps();
   runs[0].checkpoints[1].measures.numbers.erase("phi");  // of the reference of packing 1
   runs[4].checkpoints[1].measures.numbers.erase("phi");  // of 10 steps, packing 2
-  const FigureTable table = errors_of(runs);
+  const Table table = errors_of(runs);
   expect_row(table, "engine=shearcell", 30, 0.004, 0, 1);
   expect_row(table, "engine=lammps", 450, 0.001, 0, 2);
 }
@@ -514,7 +515,7 @@ TEST(OwnPlot, LeavesOutValuesThatAreNotThere) {
 TEST(OwnPlot, ComparesUnfinishedRunsAtTheCyclesOfBoth) {
   PlotSpec last = kErrors;
   last.cycle.reset();
-  std::vector<FigureRun> runs = runs_of_steps();
+  std::vector<FrameRun> runs = runs_of_steps();
   runs[1].checkpoints.pop_back();  // the reference of packing 2 has not reached cycle 2
   expect_row(errors_of(runs, last), "engine=shearcell", 20, 0.004, 0, 3);  // cycle 1, that of all
   last.cycle = 2;
@@ -523,14 +524,14 @@ TEST(OwnPlot, ComparesUnfinishedRunsAtTheCyclesOfBoth) {
   runs = runs_of_steps();
   runs[3].checkpoints.pop_back();  // 10 steps, packing 1
   expect_row(errors_of(runs, last), "engine=shearcell", 25, 0.008, 0, 2);
-  for (FigureRun& run : runs) run.checkpoints.clear();
+  for (FrameRun& run : runs) run.checkpoints.clear();
   EXPECT_TRUE(errors_of(runs, last).rows.empty());
 }
 
 TEST(OwnPlot, SaysThatADifferenceOfZeroIsNotOnALogarithmicAxis) {
   PlotSpec at_start = kErrors;
   at_start.cycle = 0;
-  const std::vector<FigureTable> tables = {errors_of(runs_of_steps(), at_start)};
+  const std::vector<Table> tables = {errors_of(runs_of_steps(), at_start)};
   EXPECT_EQ(tables[0].rows.size(), 3U);
   expect_row(tables[0], "engine=shearcell", 20, 0, 0, 3);
   const std::string caption = caption_of("Errors", tables);
@@ -550,7 +551,7 @@ TEST(OwnPlot, RefusesAReferenceOfSeveralVariants) {
 }
 
 /// phi rises by 0.001 a cycle; the percentage by one point a cycle from `first` on.
-FigureRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
+FrameRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
   return made_up_run("fluid", fluid, seed, 60, [=](int n, Measures& m) {
     m.numbers["phi"] = 0.6 + 0.001 * n;
     m.numbers["crystalline_percent"] = std::max(0, n - first);
@@ -558,8 +559,8 @@ FigureRun crystallizing(const char* fluid, std::uint64_t seed, int first) {
   });
 }
 
-std::vector<FigureRun> runs_of_fluids() {
-  std::vector<FigureRun> runs;
+std::vector<FrameRun> runs_of_fluids() {
+  std::vector<FrameRun> runs;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     runs.push_back(crystallizing("still", seed, 10 + static_cast<int>(seed)));
     runs.push_back(crystallizing("cell", seed + 10, 30 + static_cast<int>(seed)));
@@ -567,7 +568,7 @@ std::vector<FigureRun> runs_of_fluids() {
   return runs;
 }
 
-const ClaimSpec kOfFluids = {.name = "own",
+const ClaimSpec kOfFluids = {.id = "own",
                              .compare = "crystalline_percent",
                              .between = {{{{"fluid", "cell"}}, {{"fluid", "still"}}}},
                              .margin = 1};

@@ -120,11 +120,11 @@ struct Kind {
 double margin_of(const std::string& experiment, const std::string& claim) {
   const auto folder = std::filesystem::path(SHEARCELL_TEST_DATA) / ".." / ".." / "experiments";
   const Manifest manifest = load_manifest(folder / (experiment + ".yaml"));
-  return std::ranges::find(manifest.claims, claim, &ClaimSpec::name)->margin;
+  return std::ranges::find(manifest.claims, claim, &ClaimSpec::id)->margin;
 }
 
 std::vector<Kind> kinds() {
-  const double margin_early_phi = margin_of("drag", "S2_phi");
+  const double margin_early_phi = margin_of("drag", "S2.phi");
   return {
       {"relative fall of phi_u over a hundredfold k", margin_fall_of_phi_u, "0.001 a system",
        one_group(0.001)},
@@ -132,14 +132,14 @@ std::vector<Kind> kinds() {
       {"phi, mean over cycles 1 to 15", margin_early_phi, "0.0005 a pair", one_group(0.0005)},
       {"phi, mean over cycles 1 to 15", margin_early_phi, "0.0005 a run, two groups",
        two_groups(0.0005)},
-      {"phi gained by pauses at rest, mean over cycles 1 to 15", margin_of("relaxation", "B5_phi"),
+      {"phi gained by pauses at rest, mean over cycles 1 to 15", margin_of("relaxation", "B5.phi"),
        "0.0005 a pair", one_group(0.0005), Relation::higher},
       {"percentage crystalline, mean over phi from 0.646 to 0.67 [points]", margin_percentage,
        "2 points a run, two groups", two_groups(2)},
-      {"mean overlap, contacts per grain, relative", margin_of("moving_wall", "S4_overlap"),
+      {"mean overlap, contacts per grain, relative", margin_of("moving_wall", "S4.overlap"),
        "1.5 % a run, two groups", two_groups(0.015)},
       {"phi at the onset", margin_onset_phi, "0.002 a run", one_group(0.002)},
-      {"cycle of the onset, log2 of the ratio", margin_of("drag", "S2_onset"),
+      {"cycle of the onset, log2 of the ratio", margin_of("drag", "S2.onset"),
        "a factor of 1.5 a run, two groups", onset_cycles(0.6), Relation::same, 1, 400},
       {"N_inves, relative", margin_interior, "1 % a run", one_group(0.01)},
       {"critical size, of the published size", margin_critical_size, "a quarter a run",

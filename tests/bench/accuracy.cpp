@@ -102,12 +102,11 @@ struct Style {
 constexpr Style kStyles[] = {
     {"engine", "#000000", 7}, {"PEFRL", "#1f4fd8", 9}, {"Runge-Kutta", "#2ca02c", 11}};
 
-FigureTable error_table(double ours, double lammps) {
-  FigureTable table{
-      .name = "accuracy-order",
-      .columns = {"motion", "method", "curve", "time_step_s", "time_step_over_contact_time",
-                  "time_step_over_stability_limit", "core_seconds_per_cycle", "relative_error",
-                  "local_order", "fitted_order"}};
+Table error_table(double ours, double lammps) {
+  Table table{.name = "accuracy-order",
+              .columns = {"motion", "method", "curve", "time_step_s", "time_step_over_contact_time",
+                          "time_step_over_stability_limit", "core_seconds_per_cycle",
+                          "relative_error", "local_order", "fitted_order"}};
   for (const ClosedForm& form : closed_forms(shear_scene(Parameters{}), 256)) {
     fmt::print(stderr, "{}\n", form.title);
     for (const Method& method : methods()) add_curve(form, method, ours, table.rows);
@@ -115,7 +114,7 @@ FigureTable error_table(double ours, double lammps) {
   // LAMMPS makes the engine's steps up to rounding (tests/engines), at another cost.
   const std::vector<TableRow> rows = table.rows;
   for (TableRow row : rows) {
-    if (row[1] != TableValue("engine")) continue;
+    if (row[1] != TableCell("engine")) continue;
     row[1] = "LAMMPS";
     row[2] = std::get<std::string>(row[0]) + ", LAMMPS";
     row[6] = std::get<double>(row[6]) * ours / lammps;
@@ -143,10 +142,10 @@ FigureTable error_table(double ours, double lammps) {
   return table;
 }
 
-FigureTable cost_table(const FigureTable& errors) {
-  FigureTable table{.name = "accuracy-cost", .columns = errors.columns};
+Table cost_table(const Table& errors) {
+  Table table{.name = "accuracy-cost", .columns = errors.columns};
   for (const TableRow& row : errors.rows) {
-    if (row[0] == TableValue("collision")) table.rows.push_back(row);
+    if (row[0] == TableCell("collision")) table.rows.push_back(row);
   }
   table.chart = {.x = {.name = "core-seconds per cycle of 600 sheared grains", .log = true},
                  .y = {.name = "relative error of the speed after a collision", .log = true}};
@@ -164,11 +163,11 @@ FigureTable cost_table(const FigureTable& errors) {
 }
 
 // An observable: the mean energy after collisions, in which gains and losses cancel.
-FigureTable energy_table() {
+Table energy_table() {
   fmt::print(stderr, "mean energy after collisions\n");
   const Scene scene = shear_scene(Parameters{});
   const double drag = 1 - std::exp(-scene.drag_rate * contact_time(scene));
-  FigureTable table{
+  Table table{
       .name = "accuracy-energy",
       .columns = {"method", "time_step_s", "time_step_over_stability_limit", "speed_error",
                   "mean_energy_change", "local_order", "energy_lost_by_drag_in_a_collision"}};
@@ -187,11 +186,11 @@ FigureTable energy_table() {
 
 // Two runs of a settled packing of 600 grains under shear that differ by 1e-13 d in one coordinate:
 // the time in which their distance grows by a factor of e, between 1e-11 and 1e-5 d.
-FigureTable divergence_table() {
+Table divergence_table() {
   fmt::print(stderr, "divergence of two runs\n");
-  FigureTable table{.name = "accuracy-divergence",
-                    .columns = {"steps_per_cycle", "time_step_s", "time_step_over_stability_limit",
-                                "lyapunov_time_s", "standard_error_s", "runs"}};
+  Table table{.name = "accuracy-divergence",
+              .columns = {"steps_per_cycle", "time_step_s", "time_step_over_stability_limit",
+                          "lyapunov_time_s", "standard_error_s", "runs"}};
   constexpr std::uint64_t kSeeds = 4;
   std::vector<Packing> packings;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -235,9 +234,8 @@ FigureTable divergence_table() {
 void measure(const std::filesystem::path& folder) {
   fmt::print(stderr, "speed of the engine and of LAMMPS\n");
   const auto [ours, lammps] = measure_rates();
-  const FigureTable errors = error_table(ours, lammps);
-  for (const FigureTable& table :
-       {errors, cost_table(errors), energy_table(), divergence_table()}) {
+  const Table errors = error_table(ours, lammps);
+  for (const Table& table : {errors, cost_table(errors), energy_table(), divergence_table()}) {
     write_output(folder / (table.name + ".csv"), to_csv(table));
     if (!table.chart.series.empty()) draw_svg(table, folder);
   }

@@ -55,7 +55,7 @@ TEST_F(DrawFigure, LeavesOutRunsOfOtherExperiments) {
 // Variant and seed of the runs of tiny/S2, each once.
 std::set<std::pair<std::string, std::uint64_t>> distinct_runs(const CollectedRuns& collected) {
   std::set<std::pair<std::string, std::uint64_t>> found;
-  for (const FigureRun& run : collected.runs) {
+  for (const FrameRun& run : collected.runs) {
     EXPECT_TRUE(found.emplace(run.place.variant, run.place.seed).second)
         << run.place.variant << " seed " << run.place.seed;
   }
@@ -69,7 +69,7 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   compute(store_, other);
   CollectedRuns newest = collect_runs(store_, kS2, {});
   EXPECT_EQ(distinct_runs(newest).size(), 4U);
-  for (const FigureRun& run : newest.runs) {
+  for (const FrameRun& run : newest.runs) {
     EXPECT_EQ(run.stage.resolved.at("parameters").at("pressure_Pa"), 700);
   }
   ASSERT_EQ(newest.notes.size(), 1U);
@@ -193,7 +193,7 @@ TEST_F(DrawFigure, CurvesByAKeyHaveItsLabelsAndPoolNoOtherKey) {
   EXPECT_EQ(refusal(wanted_figures(store_, {"mean"}).figures.at(0)),
             "figure mean would average over the values of amplitude_rad that experiment tiny "
             "sweeps; leave out its `by` for a curve of each variant");
-  const std::string of_supplement = refusal({*find_figure("S5a"), "tiny"});
+  const std::string of_supplement = refusal({*find_figure("C"), "tiny"});
   EXPECT_TRUE(has(of_supplement, "the values of fluid"));
   draw("own", "each");
   const auto files = contents("own");
@@ -425,7 +425,7 @@ TEST_F(DrawFigure, DeletesVerdictAndCaptionOfAnOlderFigure) {
   ASSERT_TRUE(contents("out").contains("S2.verdict.json"));
   ASSERT_TRUE(contents("out").contains("S2.caption.txt"));
   WantedFigure bare = kS2;
-  bare.figure.make = [](std::span<const FigureRun>) { return FigureResult(); };
+  bare.figure.make = [](const Frame&) { return FigureResult(); };
   draw("out", bare);
   EXPECT_FALSE(contents("out").contains("S2.verdict.json"));
   EXPECT_FALSE(contents("out").contains("S2.caption.txt"));
@@ -434,10 +434,10 @@ TEST_F(DrawFigure, DeletesVerdictAndCaptionOfAnOlderFigure) {
 TEST_F(DrawFigure, NamesTablesWithoutValues) {
   compute(store_, tiny_manifest(), {.cycles = 1});
   WantedFigure made_up = kS2;
-  made_up.figure.make = [](std::span<const FigureRun>) {
-    FigureTable none{.name = "none", .columns = {"x", "y"}};
+  made_up.figure.make = [](const Frame&) {
+    Table none{.name = "none", .columns = {"x", "y"}};
     none.chart.series = {{.columns = {.x = "x", .y = "y"}}, {.points = {{.x = 1, .y = 1}}}};
-    FigureTable unknown = none, known = none;
+    Table unknown = none, known = none;
     unknown.name = "unknown", known.name = "known";
     unknown.rows = {{1.0, std::nan("")}};
     known.rows = {{1.0, 2.0}};
@@ -510,7 +510,7 @@ TEST_F(DrawFigure, SuggestsTheNearestFigureName) {
   EXPECT_EQ(wanted.figures.size(), 2U);
   ASSERT_EQ(wanted.unknown.size(), 2U);
   EXPECT_EQ(wanted.unknown[0], "experiment x: there is no figure walss; did you mean walls?");
-  EXPECT_TRUE(has(wanted.unknown[1], "known are table1, S1"));
+  EXPECT_TRUE(has(wanted.unknown[1], "known are table1, S7"));
   EXPECT_THROW(wanted_figures(store_, {"S99"}), NotFound);
 }
 

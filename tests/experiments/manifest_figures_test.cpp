@@ -174,24 +174,24 @@ TEST(FigureWarnings, OfListedFigures) {
   })) << fmt::format("{}", fmt::join(short_runs, "\n"));
 }
 
-// A label is part of what a claim says.
-TEST(FigureWarnings, OfPrimaryClaimsThatNothingStates) {
+// Manifests of earlier versions name claims by what they say. A label is part of what a claim says.
+TEST(FigureWarnings, OfPrimaryClaimsThatAreStatements) {
   const auto found = [](const std::string& primary, const std::string& more) {
     return warnings(4,
                     claim("compare: phi, at_cycle: 4") + "primary: ['" + primary + "']\n" + more);
   };
   const std::string says = "own: phi at cycle 4 is the same for fluid=still and fluid=cell";
   const std::string label = "labels: {\"fluid=still\": water}\n";
-  EXPECT_EQ(found(says, ""), Strings{});
-  EXPECT_EQ(found("own: phi at cycle 4 is the same for water and fluid=cell", label), Strings{});
-  const Strings renamed = found(says, label);
-  ASSERT_EQ(renamed.size(), 1U);
-  EXPECT_TRUE(has(renamed[0], "primary: no claim has the statement '" + says +
-                                  "', the nearest is own: phi at " +
-                                  "cycle 4 is the same for water and fluid=cell"));
-  for (const std::string& other : found("C: the size", "figures: [C]\n")) {
-    EXPECT_FALSE(has(other, "primary")) << "known only from runs";
+  EXPECT_EQ(found("own", ""), Strings{});
+  for (const auto& [statement, with] :
+       {std::pair{says, std::string()},
+        {std::string("own: phi at cycle 4 is the same for water and fluid=cell"), label}}) {
+    EXPECT_EQ(found(statement, with), Strings{"test.yaml: primary: '" + statement +
+                                              "' is a statement; write the claim's id, own."});
   }
+  EXPECT_EQ(found(says, label), Strings{"test.yaml: primary: no claim has the statement '" + says +
+                                        "'; write the id of a claim: own."});
+  EXPECT_EQ(found("C: the size", "figures: [C]\n").size(), 1U);
 }
 
 TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {

@@ -201,11 +201,9 @@ TEST_F(Phases, GiveALoopWhoseAreaIsAboutTheWorkOfTheWalls) {
   for (int k = 1; k < parts; ++k) phases += fmt::format("{}{}", k > 1 ? ", " : "", k / 16.0);
   compute(store_, manifest("checkpoints: {every_cycles: 2, phases: [" + phases + "]}\n"));
   const std::vector<std::string> ledger = {"ledger"};
-  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {.workers = 2}, ledger);
+  const Table table = run_table(store_, {}, RowPer::checkpoint, {.workers = 2}, ledger).table;
   const auto value = [&](std::size_t row, std::string_view name) {
-    const auto at = std::ranges::find(table.columns, name, &TableColumn::name);
-    const nlohmann::json& cell =
-        table.rows.at(row).at(static_cast<std::size_t>(at - table.columns.begin()));
+    const nlohmann::json cell = json_of(table.rows.at(row).at(table.place(name)));
     return cell.is_null() ? std::nan("") : cell.get<double>();
   };
   const Stage run = sheared(store_);

@@ -193,7 +193,7 @@ TEST_F(Started, CyclesAndSeedsOfTheRecordedRunsCanBeSwept) {
   EXPECT_EQ(parents.size(), 2U);
   const auto found =
       collect_runs(store_, wanted_figures(store_, {"S2"}, {"clones"}).figures.at(0), {});
-  for (const FigureRun& run : found.runs) {
+  for (const FrameRun& run : found.runs) {
     EXPECT_EQ(run.packing, store_.stage(run.stage.parent).parent) << "one packing";
   }
 }

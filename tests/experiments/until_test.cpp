@@ -275,7 +275,7 @@ TEST_F(UntilTest, EndsRunsInFiguresToo) {
   const WantedFigure s2{*find_figure("S2"), "tiny"};
   RunSelection tiny;
   tiny.experiments = {"tiny"};
-  const auto rows = [&] { return to_csv(run_table(store_, tiny, RowPer::checkpoint, {})); };
+  const auto rows = [&] { return to_csv(run_table(store_, tiny, RowPer::checkpoint, {}).table); };
   compute(store_, manifest(until()));
   const nlohmann::json alone = compute_figure(store_, s2, {}).lineage;
   const std::string table = rows();
@@ -329,17 +329,20 @@ TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
 TEST_F(UntilTest, MeasuresOverTwoCheckpointsKeepTheCadenceOfTheirExperiment) {
   compute(store_, tiny_manifest("  cycles: 4\n", "checkpoints: {every_cycles: 2}\n"));
   compute(store_, renamed(tiny_manifest("  cycles: 4\n"), "twin"));
-  const RunTable table = run_table(store_, {}, RowPer::checkpoint, {});
+  const Table table = run_table(store_, {}, RowPer::checkpoint, {}).table;
   const std::size_t experiment = table.place("experiment"), moved = table.place("msd_1_cycle_d2");
   std::map<std::string, int> known;
-  for (const auto& row : table.rows) known[row[experiment]] += row[moved].is_null() ? 0 : 1;
+  for (const auto& row : table.rows)
+    known[std::get<std::string>(row[experiment])] += row[moved] == TableCell() ? 0 : 1;
   EXPECT_EQ(known, (std::map<std::string, int>{{"tiny", 0}, {"twin", 4}}));
 }
 
 TEST_F(UntilTest, AnExperimentKeepsItsCadenceInTables) {
   RunSelection tiny;
   tiny.experiments = {"tiny"};
-  const auto rows = [&] { return run_table(store_, tiny, RowPer::checkpoint, {}).rows.size(); };
+  const auto rows = [&] {
+    return run_table(store_, tiny, RowPer::checkpoint, {}).table.rows.size();
+  };
   compute(store_, tiny_manifest("  cycles: 3\n", "checkpoints: {every_cycles: 2}\n"));
   EXPECT_EQ(rows(), 3U) << "cycles 0, 2 and 3";
   compute(store_, renamed(manifest(""), "twin"));

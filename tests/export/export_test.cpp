@@ -93,11 +93,11 @@ std::vector<double> made_up(std::size_t particles, double step) {
   return values;
 }
 
-std::vector<double>& column(Frame& frame, const std::string& name) {
-  return std::ranges::find(frame.columns, name, &FrameColumn::name)->values;
+std::vector<double>& column(ExportedState& frame, const std::string& name) {
+  return std::ranges::find(frame.columns, name, &ExportedColumn::name)->values;
 }
 
-/// From the checkpoint and its analysis, not through Frame.
+/// From the checkpoint and its analysis, not through ExportedState.
 nlohmann::json truth(const Checkpoint& c) {
   const double d = c.units.diameter_m;
   const WallPose pose = wall_pose(c.cell, c.theta, c.state.wall_height);
@@ -228,7 +228,7 @@ void write_texts(const fs::path& at) {
     texts[name] = name;
   }
   const FrameWriter xyz = extxyz_writer(at / "texts.xyz", LengthUnit::d);
-  Frame frame = frame_of(checkpoints().front(), {}, about());
+  ExportedState frame = frame_of(checkpoints().front(), {}, about());
   std::size_t k = 0;
   for (const auto& [name, as_text] : texts.items()) {
     for (auto& [key, value] : frame.run) {
@@ -256,7 +256,7 @@ TEST(Export, OtherProgramsReadEveryNumber) {
     nlohmann::json frames = nlohmann::json::array();
     for (const Checkpoint& checkpoint : all) {
       frames.push_back(truth(checkpoint));
-      Frame frame = frame_of(checkpoint, record_of(checkpoint), about());
+      ExportedState frame = frame_of(checkpoint, record_of(checkpoint), about());
       EXPECT_TRUE(std::isnan(column(frame, "displacement_d").front())) << "nothing is earlier";
       column(frame, "displacement_d") = made_up(frame.particles(), 1e-3);
       column(frame, "d2min_d2") = made_up(frame.particles(), 1e-5);
@@ -286,7 +286,7 @@ TEST(Export, ContactsAreAllPairsThatTouch) {
       c.cell = packing.cell;
       c.state = packing.state;
     }
-    const Frame frame = frame_of(c, record_of(c), about());
+    const ExportedState frame = frame_of(c, record_of(c), about());
     contacts_writer(folder.path())(frame);
     std::ifstream file(folder.path() / fmt::format("contacts_{}.csv", frame_name(frame)));
     std::string line;
@@ -363,8 +363,8 @@ TEST(Export, IsReadBackAsAStart) {
   const TemporaryFolder folder;
   const fs::path& at = folder.path();
   const std::vector<Checkpoint> all = checkpoints();
-  const Frame upright = frame_of(all.front(), {}, about()),
-              tilted = frame_of(all.back(), {}, about());
+  const ExportedState upright = frame_of(all.front(), {}, about()),
+                      tilted = frame_of(all.back(), {}, about());
   extxyz_writer(at / "d.xyz", LengthUnit::d)(upright);
   extxyz_writer(at / "m.xyz", LengthUnit::m)(upright);
   lammps_writer(at)(upright);
@@ -388,7 +388,7 @@ TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
   const Checkpoint checkpoint = checkpoints().front();  // upright, at the largest shear rate
   CheckpointRecord record = record_of(checkpoint);
   record.step = checkpoint.state.step;
-  const Frame frame = frame_of(checkpoint, record, run);
+  const ExportedState frame = frame_of(checkpoint, record, run);
   for (const auto& [key, value] : frame.parameters) {
     EXPECT_NE(key, "max_overlap_diameters") << "its record is a constant";
   }
@@ -409,7 +409,7 @@ TEST(Export, WallGrainsMoveWithTheShearOfTheirRun) {
 
 TEST(Export, WritesTheSameBytesTwice) {
   const TemporaryFolder folder;
-  Frame frame = frame_of(checkpoints().back(), {}, about());
+  ExportedState frame = frame_of(checkpoints().back(), {}, about());
   for (int k = 0; k < 20; ++k) frame.parameters.emplace_back("key_" + std::to_string(k), 0.5 * k);
   std::string bytes[2];
   for (int k = 0; k < 2; ++k) {
@@ -424,9 +424,9 @@ TEST(Export, WritesTheSameBytesTwice) {
 // NaN has no whole number. A sanitizer of float-cast-overflow reports it if it is converted.
 TEST(Export, OnlyWholeNumbersAreConvertedToThem) {
   const TemporaryFolder folder;
-  const Frame frame = frame_of(checkpoints().front());
+  const ExportedState frame = frame_of(checkpoints().front());
   bool unknown = false;
-  for (const FrameColumn& column : frame.columns) {
+  for (const ExportedColumn& column : frame.columns) {
     for (const double value : column.values) {
       unknown |= std::isnan(value);
       if (column.whole) {
@@ -441,7 +441,7 @@ TEST(Export, OnlyWholeNumbersAreConvertedToThem) {
 
 TEST(Export, CloseCheckpointsHaveSeparateFiles) {
   const TemporaryFolder folder;
-  Frame frame = frame_of(checkpoints().back(), {}, about());
+  ExportedState frame = frame_of(checkpoints().back(), {}, about());
   const FrameWriter writers[] = {vtk_writer(folder.path(), 2), lammps_writer(folder.path())};
   for (const double cycle : {100.00002, 100.00004}) {
     frame.checkpoint.cycle = cycle;
@@ -470,7 +470,7 @@ TEST(Export, HasOnlyKeysOfAManifest) {
 }
 
 TEST(Export, ReportsWhatItCannotWrite) {
-  const Frame frame = frame_of(checkpoints().front());
+  const ExportedState frame = frame_of(checkpoints().front());
   EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", LengthUnit::m), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
   EXPECT_THROW(vtk_writer("/nowhere", 1)(frame), std::runtime_error);
@@ -488,7 +488,7 @@ TEST(Export, EachCheckpointOfAPackingHasAFile) {
   const FrameWriter vtk = vtk_writer(folder.path(), 2), lammps = lammps_writer(folder.path());
   for (const std::uint64_t step : {45600U, 54720U}) {
     packing.state.step = step;
-    const Frame frame = frame_of(packing);
+    const ExportedState frame = frame_of(packing);
     vtk(frame);
     lammps(frame);
     for (const std::string file : {"grains_step{}.vtp", "cell_step{}.vtp", "frame_step{}.data"}) {

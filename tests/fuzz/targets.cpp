@@ -173,7 +173,7 @@ void take_measures(Input input) {
       provider("scalars").read(result, measures);
     });
     attempt<AnalysisError>([&] {
-      FigureRun run;
+      FrameRun run;
       CheckpointMeasures& checkpoint = run.checkpoints.emplace_back();
       provider("crystallites").read(result, checkpoint.measures);
       GrowthBySize counts;

@@ -7,6 +7,7 @@
 
 #include "provenance/errors.hpp"
 #include "tests/provenance/samples.hpp"
+#include "tests/support/text.hpp"
 
 namespace shearcell {
 namespace {

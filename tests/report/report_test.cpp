@@ -127,18 +127,15 @@ TEST_F(ReportOfRuns, ShowsPackingsOfTheNewestManifestOnly) {
 }
 
 TEST_F(ReportOfRuns, HasTheTableOfRunsInBothForms) {
-  const RunTable table = run_table(store_, {}, RowPer::run, {});
+  const Table table = run_table(store_, {}, RowPer::run, {}).table;
   ASSERT_EQ(table.rows.size(), 2U);
-  const auto column = [&](const std::string& name) {
-    return std::ranges::find(table.columns, name, &TableColumn::name) - table.columns.begin();
-  };
   for (const std::string& html : {make(), make(drawings())}) {
     EXPECT_EQ(count(html, "<tbody data-row="), 2U);
     for (const char* key : {"fluid", "grains"}) {
       EXPECT_EQ(count(html, "data-key=\"" + std::string(key) + "\""), 1U) << key;
     }
     for (const auto& row : table.rows) {
-      const nlohmann::json& phi = row[static_cast<std::size_t>(column("phi"))];
+      const nlohmann::json phi = json_of(row[table.place("phi")]);
       EXPECT_EQ(count(html, "data-value=\"" + phi.dump() + "\""), 1U) << phi;
     }
   }

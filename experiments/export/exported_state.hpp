@@ -17,7 +17,7 @@
 namespace shearcell {
 
 /// A measure of each particle.
-struct FrameColumn {
+struct ExportedColumn {
   std::string name;
   bool whole = false;  ///< whole numbers
   std::vector<double> values;
@@ -26,7 +26,7 @@ struct FrameColumn {
 /// Particles in SI units. Measures of wall grains are 0, classes -1. Velocities of grains and of
 /// the moving wall are half a time step before the state's step, velocities of the tilting walls at
 /// this step.
-struct Frame : Particles {
+struct ExportedState : Particles {
   Checkpoint checkpoint;
   std::string sha256;  ///< of the checkpoint's file
 
@@ -37,7 +37,7 @@ struct Frame : Particles {
   std::vector<std::pair<std::string, double>> scalars;
 
   /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
-  std::vector<FrameColumn> columns;
+  std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
   UnreadCheckpoints unread;                 ///< earlier ones, whose measures are NaN
 
@@ -46,12 +46,12 @@ struct Frame : Particles {
 };
 
 /// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".
-std::string frame_name(const Frame& frame);
+std::string frame_name(const ExportedState& frame);
 
 /// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. `every`:
 /// as in ToMeasure. Throws as analyse_stored().
-Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-               const Run& run = {}, const MeasureSources* sources = nullptr,
-               std::uint64_t every = 1);
+ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
+                       const Run& run = {}, const MeasureSources* sources = nullptr,
+                       std::uint64_t every = 1);
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/export/frame.hpp"
+#include "experiments/export/exported_state.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ bool enters_frames(const Provider& one) {
          (one.has(MeasureKind::number) || one.has(MeasureKind::grains));
 }
 
-void add_columns(const Measures& measures, Frame& frame) {
+void add_columns(const Measures& measures, ExportedState& frame) {
   for (const Measure* measure : all_measures(MeasureKind::grains)) {
     const auto found = measures.of_grains.find(measure->name);
     std::vector<double> values(frame.grains, measure->scale.whole ? -1 : std::nan(""));
@@ -46,15 +46,16 @@ std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
 }
 
 void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
-               Frame& frame) {
+               ExportedState& frame) {
   frame.run = {{"run", selected.stage.id},
                {"experiment", selected.place.experiment},
                {"scale", scale_name(selected.place.scale)},
                {"variant", selected.place.variant},
                {"seed", selected.place.seed}};
   frame.sha256 = record.sha256;
-  for (const auto& [column, value] : facts_of(record, measures)) {
-    // Members of Frame.
+  for (const auto& [column, cell] : facts_of(record, measures)) {
+    const nlohmann::json value = json_of(cell);
+    // Members of ExportedState.
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }
@@ -72,16 +73,16 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
 
 }  // namespace
 
-std::string frame_name(const Frame& frame) {
+std::string frame_name(const ExportedState& frame) {
   const double cycle = frame.checkpoint.cycle;
   const std::uint64_t step = frame.checkpoint.state.step;
   return cycle == 0 && step > 0 ? fmt::format("step{}", step) : fmt::format("{}", cycle);
 }
 
-Frame frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
-               const MeasureSources* sources, std::uint64_t every) {
+ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
+                       const MeasureSources* sources, std::uint64_t every) {
   const MeasureSources alone(record.run, run.stage);
-  Frame frame;
+  ExportedState frame;
   const Measures measures =
       (sources == nullptr ? alone : *sources)
           .measures_of(record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames,

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analysis/claims.hpp"
+#include "analysis/frame.hpp"
 #include "core/named.hpp"
 
 namespace shearcell {
@@ -30,7 +31,7 @@ template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
 /// How the curve of the variants with these parameters is drawn. What is not stated follows from
-/// what varies (analysis/figures/curves.hpp).
+/// what varies (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
   std::string label = {};   ///< with formulas (formula)
@@ -44,11 +45,19 @@ struct ColumnSpec {
   std::string name = {};  ///< of the column, without unit; "": that of the measure
 };
 
+/// A black point on each curve, at the means of two measures of the whole run.
+struct MarkSpec {
+  std::string x, y;
+  std::string label = {};
+};
+
 struct PlotSpec {
   std::string name;
   /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
   /// parameters, or of measures of a run and parameters.
   std::string y;
+  /// Selects runs by has_parameters(), and by "cycle" checkpoints.
+  nlohmann::json where = nlohmann::json::object();
   /// Parameters and their values that single out one variant. The plot then shows `y` minus the `y`
   /// of that variant's run with the same packing at the same cycle. Empty: `y` itself.
   nlohmann::json minus = nlohmann::json::object();
@@ -63,12 +72,17 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  std::vector<ColumnSpec> also = {};  ///< further scalar measures for the CSV, against the cycle
+  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints are those of
+  /// the run's first one. The first `drawn` of them have curves too.
+  std::vector<ColumnSpec> also = {};
+  std::size_t drawn = 0;
+  std::optional<MarkSpec> mark = {};
   /// The cycle of a curve measure, or of `y` against a parameter; default: the last cycle that all
   /// runs have.
   std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
+  std::string column = {};  ///< name of y's column, without unit; "": that of the measure
   std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
   /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
   /// user's manifest then replace those of `series`. Styles of `series` are used only if the runs
@@ -76,35 +90,14 @@ struct PlotSpec {
   bool listed = false;
 };
 
-/// "fluid=still, walls=rough" of parameters and their values.
-std::string words_of(const nlohmann::json& values);
+/// The figure of the plot: as stated, or its name.
+inline const std::string& figure_of(const PlotSpec& plot) {
+  return plot.figure.empty() ? plot.name : plot.figure;
+}
 
 /// The name of a column that occurs twice in the CSV of means against the cycle; "" if there is
 /// none.
 std::string repeated_column(const PlotSpec& plot);
-
-/// Whether an axis of a plot is one number of a run: it names neither the cycle nor a measure of
-/// checkpoints.
-bool is_parameter(std::string_view axis);
-/// Whether `x` names a measure of the whole run, which differs between runs of one variant.
-bool is_measured_of_run(std::string_view x);
-
-/// The number of variants among the runs.
-std::size_t count_variants(RunGroup runs);
-
-/// The runs with these parameters. If they belong to several variants, runs that `run --engine`
-/// added are left out.
-std::vector<const FigureRun*> runs_with(const nlohmann::json& where,
-                                        std::span<const FigureRun> runs);
-
-/// Returns a copy of the runs with the values of the expressions and run measures in `texts`. A
-/// number of the whole run becomes one of its parameters; any other value becomes a measure of each
-/// checkpoint.
-std::vector<FigureRun> with_values(std::span<const FigureRun> runs,
-                                   const std::vector<std::string>& texts);
-
-/// Names of the providers of the measures in expressions (Figure::needs).
-std::vector<std::string> needs_of(const std::vector<std::string>& texts);
 
 /// Whether the plot draws every cycle, not one of them.
 bool draws_every_cycle(const PlotSpec& plot);

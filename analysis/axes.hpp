@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Axes, columns and reference lines that several figures share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/figure.hpp"
+#include "analysis/statistics.hpp"
+
+namespace shearcell {
+
+// The axes that several figures share.
+inline const Axis cycle_axis = {.name = "shear cycle", .symbol = formula("$n$"), .whole = true};
+inline const Axis phi_axis = {.name = "volume fraction", .symbol = formula("$ϕ$")};
+inline const Axis crystalline_axis = {.name = "percentage crystalline", .unit = "%", .low = 0};
+inline const Axis overlap_axis = {
+    .name = "mean overlap", .symbol = formula("⟨$δ$⟩"), .unit = formula("$d$")};
+inline const Axis amplitude_axis = {
+    .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
+inline const Axis onset_axis = {.name = "onset", .symbol = formula("$ϕ$")};
+
+/// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
+std::vector<ReferenceLine> onset_lines(bool vertical = false);
+/// The supplement's critical size [grains] of one amplitude.
+ReferenceLine critical_line(double size, const std::string& colour);
+
+/// Columns of a size, its interval and its standard error, all in grains.
+void add_size_columns(const std::string& name, std::vector<TableColumn>& columns);
+/// The values of those columns; empty without an estimate.
+void add_size(const std::optional<Estimate>& size, TableRow& row);
+
+/// One quantity of a panel: its columns are NAME_mean (or NAME_rms) and NAME_standard_error, with
+/// the unit at the end where there is one.
+struct MeasureColumn {
+  std::string name;
+  std::string unit;  ///< as part of a column's name: "d", "percent" or ""
+  bool rms = false;  ///< the root mean square over runs in place of the mean
+
+  RunStatistics over(std::span<const double> values) const;  ///< one value of each run
+};
+
+/// Name of the column of a statistic, "mean" or "standard_error". "mean" is the root mean square if
+/// `rms`.
+std::string column_name(const MeasureColumn& measure, const char* statistic);
+void add_columns(const MeasureColumn& measure, std::vector<TableColumn>& columns);
+void add_values(const RunStatistics& statistics, TableRow& row);
+/// The columns to draw: x, the measure's mean with its error, and the number of runs.
+SeriesColumns columns_against(std::string x, const MeasureColumn& y);
+
+/// Of phi at the onset.
+inline const MeasureColumn onset_column = {"onset_phi", ""};
+
+}  // namespace shearcell

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/estimators.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "analysis/estimators/notes.hpp"
+#include "core/named.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+/// What is compared of the value of a run.
+using Number = std::function<double(double value)>;
+
+/// The numbers of one or two groups of runs, and why other runs have none.
+struct Values {
+  std::map<const FrameRun*, double> numbers;  ///< not finite where there is none
+  std::size_t runs = 0;
+  std::map<Missing, std::size_t> missing;
+  std::size_t not_positive = 0;  ///< values without a logarithm, which are left out
+  bool enough = true;            ///< three quarters of each group have a number
+  Table entered = entered_with({"value", "missing"});
+
+  void take(const Scalar& scalar, RunGroup group, const Number& number) {
+    std::size_t without = 0;
+    for (const FrameRun* run : group) {
+      const RunValue value = scalar.of(*run);
+      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
+      const double found = numbers[run] = number(value.or_nan());
+      if (value.missing != Missing::nothing) ++missing[value.missing];
+      if (std::isfinite(found)) continue;
+      ++without;
+      not_positive += value.missing == Missing::nothing ? 1 : 0;
+    }
+    runs += group.size();
+    enough = enough && 4 * without <= group.size();
+  }
+  std::vector<double> over_packings(RunGroup group) const {
+    std::vector<double> values;
+    for (const FrameRun* run : group) values.push_back(numbers.at(run));
+    return shearcell::over_packings(group, values);
+  }
+};
+
+/// `runs`: those with a number, or pairs of them.
+Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
+                 std::size_t runs, Values values, const Scalar& scalar, std::string note) {
+  if (values.not_positive > 0) {
+    add_note(note,
+             fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
+                         values.not_positive, values.runs, scalar.reach));
+  }
+  for (const auto& [why, count] : values.missing) {
+    add_note(note, fmt::format("{} of {} runs {} {}", count, values.runs,
+                               why == Missing::checkpoint  ? "lack a checkpoint of"
+                               : why == Missing::too_short ? "end too early for"
+                               : why == Missing::too_late  ? "begin too late for"
+                                                           : "have no value at",
+                               scalar.reach));
+  }
+  if (values.runs == 0) {
+    note = no_group;
+  } else if (!values.enough) {
+    add_note(note, "more than a quarter of the runs are left out");
+    estimate.reset();
+  } else if (runs < least_runs) {
+    add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
+  }
+  return decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
+}
+
+/// Differences a - b of the packings that both groups have: each of the mean over its runs.
+struct Pairs {
+  std::vector<double> differences;
+  bool any = false;    ///< different runs share a packing, with numbers or without
+  bool enough = true;  ///< three quarters of the packings of each group
+};
+Pairs paired(RunGroup a, RunGroup b, const Values& values) {
+  Pairs pairs;
+  const auto first = by_packing(a), second = by_packing(b);
+  for (const auto& [packing, runs] : first) {
+    const auto same = second.find(packing);
+    if (same == second.end() || same->second == runs) continue;
+    pairs.any = true;
+    const std::vector<double> x = values.over_packings(runs);
+    const std::vector<double> y = values.over_packings(same->second);
+    if (!x.empty() && !y.empty()) pairs.differences.push_back(x.front() - y.front());
+  }
+  pairs.enough = 4 * pairs.differences.size() >= 3 * std::max(first.size(), second.size());
+  return pairs;
+}
+
+}  // namespace
+
+std::span<const Estimator> all_estimators() {
+  static const std::array all = {mean_over_cycles,   mean_over_phi, number_of_the_run,
+                                 change_over_cycles, relative_fall, first_cycle_reached,
+                                 waiting_ratio,      slope_against, spread_of_variants};
+  return all;
+}
+
+const Estimator& estimator_of(const ClaimSpec& claim) {
+  if (const Estimator* named = find_named(all_estimators(), claim.estimator)) return *named;
+  if (!claim.against.empty()) return slope_against;
+  if (claim.reaches) return first_cycle_reached;
+  const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
+  if (of_run != nullptr && of_run->waits && !claim.published) return waiting_ratio;
+  return claim.cycles ? mean_over_cycles : claim.phi ? mean_over_phi : number_of_the_run;
+}
+
+std::string words_of_column(const std::string& column) {
+  const Measure* measure = find_measure(column);
+  return measure != nullptr && !measure->words.empty() ? std::string(measure->words) : column;
+}
+
+Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b) {
+  const auto number = [&](double value) { return scalar.relative ? std::log(value) : value; };
+  Values all;
+  all.take(scalar, a, number);
+  all.take(scalar, b, number);
+  const Pairs pairs = paired(a, b, all);
+  std::optional<Estimate> estimate;
+  std::string note;
+  std::size_t runs = 0;
+  if (pairs.any) {
+    estimate = mean_of(pairs.differences);
+    runs = pairs.differences.size();
+    note = fmt::format("{} of runs that share{} a packing", counted(runs, "pair"),
+                       runs == 1 ? "s" : "");
+    if (estimate && !pairs.enough) {
+      note += "; more than a quarter of the runs have no partner";
+      estimate.reset();
+    }
+  } else {
+    const std::vector<double> x = all.over_packings(a), y = all.over_packings(b);
+    estimate = difference_of_means(x, y);
+    runs = std::min(x.size(), y.size());
+    note = fmt::format("{} and {} independent runs", x.size(), y.size());
+  }
+  if (estimate && scalar.relative) {  // a difference of logarithms
+    estimate = mapped(*estimate, [](double log_ratio) { return std::expm1(log_ratio); });
+  }
+  if (a.empty() || b.empty()) all.runs = 0;
+  Verdict verdict = conclude(
+      claim, (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
+      estimate, runs, all, scalar, std::move(note));
+  verdict.counted = pairs.any ? Counted::pairs : Counted::runs_per_variant;
+  return verdict;
+}
+
+Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
+  const double sign = published < 0 ? -1 : 1;  // a higher value has a positive difference
+  const auto number = [&](double value) {
+    return scalar.relative ? sign * (value / published - 1) : value - published;
+  };
+  Values all;
+  all.take(scalar, runs, number);
+  std::vector<double> values = all.over_packings(runs);
+  std::sort(values.begin(), values.end());  // the same bits in any order of the runs
+  std::string quantity = scalar.name;
+  if (scalar.relative) {
+    quantity += fmt::format(", relative difference from {:.6g}", published);
+  } else if (published != 0) {
+    quantity += fmt::format(" less {:.6g}", published);
+  }
+  return conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
+}
+
+Table entered_with(const std::vector<TableColumn>& columns) {
+  Table entered{.columns = {"group", "seed", "packing"}};
+  entered.columns.insert(entered.columns.end(), columns.begin(), columns.end());
+  return entered;
+}
+
+void enter(const FrameRun& run, const TableRow& values, Table& entered) {
+  TableRow& row =
+      entered.rows.emplace_back(TableRow{run.place.variant, run.place.seed, packing_of(run)});
+  row.insert(row.end(), values.begin(), values.end());
+}
+
+}  // namespace shearcell

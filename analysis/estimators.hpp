@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Estimators: one number of one or two groups of runs, with its interval. To add one, write its
+// file in analysis/estimators/ and add it to the list in estimators.cpp.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/claims.hpp"
+#include "analysis/statistics.hpp"
+
+namespace shearcell {
+
+/// One number per run.
+struct Scalar {
+  std::string name;   ///< "phi at cycle 10"
+  std::string reach;  ///< what a run must reach to have it: "cycle 10"
+  std::function<RunValue(const FrameRun&)> of;
+  bool relative = false;  ///< differences are relative: 0.03 is 3 %
+};
+
+struct Estimator {
+  std::string_view name;     ///< in manifests
+  std::string_view meaning;  ///< for the reference
+  /// Its key of a claim, whose presence implies the estimator; "": it has none.
+  std::string_view key = {};
+  /// The number of each run, whose mean or whose difference of means is estimated; or null.
+  Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
+  /// Otherwise the verdict on the groups; the second is empty if the claim has a published number.
+  Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
+  /// What it estimates, in sentences. Empty: the name of its Scalar.
+  std::string (*words)(const ClaimSpec& claim) = nullptr;
+};
+
+/// All estimators that claims can name, in the order of the reference.
+std::span<const Estimator> all_estimators();
+/// The estimator that the claim names, or that its keys imply.
+const Estimator& estimator_of(const ClaimSpec& claim);
+
+// The estimators, a file each.
+extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, change_over_cycles,
+    relative_fall, first_cycle_reached, waiting_ratio, slope_against, spread_of_variants;
+
+/// Whether the claim compares waiting times: a run may end before the event.
+bool compares_waits(const ClaimSpec& claim);
+
+/// Mean of a column over the checkpoints of cycles first .. last, all of which the run must have.
+/// Sentences call it `name`.
+Scalar over_cycles(const std::string& name, const std::string& column, std::int64_t first,
+                   std::int64_t last);
+
+/// Mean of a column over a window of phi: the polygon through the means of the run's bins of phi
+/// (binning.hpp), integrated over the window. Sentences call it `name`.
+Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
+
+/// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
+/// left out. Otherwise Welch's interval. A verdict needs least_runs runs or pairs. So that runs
+/// that end early do not bias it, three quarters of each group must have the number, and with pairs
+/// also a partner. [choice]
+Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
+
+/// The mean over runs less the published number.
+Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
+
+/// For each run the first cycle at which the column is at least `level`; without one, the run's
+/// last cycle, as censored.
+std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level);
+/// For each run the cycle of the onset by method 1, or its last cycle, as censored.
+std::vector<Waiting> waits_for_onset(RunGroup runs);
+
+/// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
+/// (statistics.hpp). `waits` gives the waiting times of runs; runs that end before the event are
+/// censored.
+Verdict compare_waits(const Claim& claim, const std::string& event,
+                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
+                      RunGroup b);
+
+/// The mean of `of` over items of runs, such as nuclei: the bootstrap draws the packings with all
+/// their items.
+std::optional<Estimate> share(std::span<const std::vector<double>> packings);
+
+/// The name of a measure in sentences.
+std::string words_of_column(const std::string& column);
+
+/// An empty table of what entered a verdict: group (the run's variant), seed, packing, then these
+/// columns.
+Table entered_with(const std::vector<TableColumn>& columns);
+/// Adds the row of a run, with the values of the columns after group, seed and packing.
+void enter(const FrameRun& run, const TableRow& values, Table& entered);
+
+}  // namespace shearcell

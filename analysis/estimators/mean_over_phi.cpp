@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/binning.hpp"
+#include "analysis/estimators.hpp"
+
+namespace shearcell {
+
+Scalar over_phi(const std::string& name, const std::string& column, double low, double high) {
+  const auto of = [low, high, number = NumberColumn(column)](const FrameRun& run) -> RunValue {
+    const std::vector<PhiMean> bins = means_over_phi(run, number);
+    if (bins.empty()) return {0, Missing::too_short};
+    if (bins.front().phi > low) return {0, Missing::too_late};
+    if (bins.back().phi < high) return {0, Missing::too_short};
+    double area = 0;
+    for (std::size_t k = 1; k < bins.size(); ++k) {
+      const double x0 = bins[k - 1].phi, x1 = bins[k].phi;
+      const double begin = std::max(x0, low), end = std::min(x1, high);
+      if (begin >= end) continue;
+      const double middle = ((begin + end) / 2 - x0) / (x1 - x0);
+      area += (end - begin) * std::lerp(bins[k - 1].value, bins[k].value, middle);
+    }
+    return measured(area / (high - low));
+  };
+  return {fmt::format("{}, mean over phi from {} to {}", name, low, high),
+          fmt::format("phi from {} to {}", low, high), of};
+}
+
+const Estimator mean_over_phi = {.name = "mean_over_phi",
+                                 .meaning = "mean over the window `phi` of the volume fraction",
+                                 .key = "phi",
+                                 .scalar = [](const ClaimSpec& claim) {
+                                   return over_phi(words_of_column(claim.compare), claim.compare,
+                                                   claim.phi->at(0), claim.phi->at(1));
+                                 }};
+
+}  // namespace shearcell

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the notes of verdicts have in common.
+#pragma once
+
+#include <string>
+
+namespace shearcell {
+
+inline constexpr const char* no_group =
+    "there are no such runs, or they differ in another swept parameter too";
+
+inline void add_note(std::string& note, const std::string& text) {
+  note += (note.empty() ? "" : "; ") + text;
+}
+
+}  // namespace shearcell

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/estimators.hpp"
+
+namespace shearcell {
+namespace {
+
+Scalar scalar_of_run(const ClaimSpec& claim) {
+  if (const Measure* measure = find_measure(claim.compare, MeasureKind::run)) {
+    return {std::string(measure->words), std::string(measure->reach), measure->of_run};
+  }
+  // An expression lacks what the first of its measures lacks.
+  const auto of = [number = NumberColumn(claim.compare),
+                   names = names_in(claim.compare)](const FrameRun& run) {
+    for (const std::string& name : names) {
+      const Measure* measure = find_measure(name, MeasureKind::run);
+      if (measure == nullptr) continue;
+      if (const RunValue one = measure->of_run(run); one.missing != Missing::nothing) return one;
+    }
+    return measured(number(run));
+  };
+  return {claim.compare, claim.compare, of};
+}
+
+}  // namespace
+
+const Estimator number_of_the_run = {
+    .name = "number_of_run",
+    .meaning = "a number of the whole run, such as `onset_size_phi`, or an expression of them",
+    .scalar = scalar_of_run};
+
+}  // namespace shearcell

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The standard deviation between the true means of variants: no variant changes a number by more
+// than the margin.
+#include <fmt/format.h>
+
+#include <map>
+
+#include "analysis/estimators.hpp"
+#include "analysis/estimators/notes.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+Scalar scalar_of_spread(const ClaimSpec& claim) {
+  return (claim.phi      ? mean_over_phi
+          : claim.cycles ? mean_over_cycles
+                         : number_of_the_run)
+      .scalar(claim);
+}
+
+std::string words_of_spread(const ClaimSpec& claim) {
+  return "standard deviation between variants of " + scalar_of_spread(claim).name;
+}
+
+Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
+  const Scalar number = scalar_of_spread(claim);
+  std::map<std::string, std::vector<const FrameRun*>> variants;
+  for (const FrameRun* run : runs) variants[run->place.variant].push_back(run);
+  std::vector<std::vector<double>> groups;
+  std::size_t with_number = 0;
+  Table entered = entered_with({"value", "missing"});
+  for (const auto& [variant, members] : variants) {
+    std::vector<double> values;
+    for (const FrameRun* run : members) {
+      const RunValue value = number.of(*run);
+      values.push_back(value.or_nan());
+      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
+    }
+    values = over_packings(members, values);
+    with_number += values.size();
+    if (!values.empty()) groups.push_back(std::move(values));
+  }
+  std::string note = runs.empty() ? std::string(no_group)
+                                  : fmt::format("{} of {} runs have it, in {}", with_number,
+                                                runs.size(), counted(groups.size(), "variant"));
+  std::optional<Estimate> estimate;
+  if (const auto found = variance_between(groups)) {
+    estimate = Estimate{.value = found->value,
+                        .interval = {0, found->upper_limit},
+                        .runs = with_number / groups.size()};
+    add_note(note,
+             fmt::format("variance ratio F = {:.3g}; the interval is from 0 to the upper 95 % "
+                         "limit",
+                         found->f));
+  }
+  return decide(stated, words_of_spread(claim), estimate,
+                with_number / std::max<std::size_t>(1, groups.size()), std::move(note),
+                std::move(entered), Counted::runs_per_variant);
+}
+
+}  // namespace
+
+const Estimator spread_of_variants = {
+    .name = "spread_of_variants",
+    .meaning = "standard deviation between the true means of the variants, by their variance ratio",
+    .decide = decide_spread,
+    .words = words_of_spread};
+
+}  // namespace shearcell

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The ratio of two groups' waiting times for an event, by the log-rank test.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/estimators.hpp"
+#include "analysis/estimators/notes.hpp"
+#include "analysis/onset.hpp"
+
+namespace shearcell {
+namespace {
+
+std::string wait_in_words(std::span<const Waiting> runs) {
+  const auto median = median_wait(runs);
+  return fmt::format("median cycle {} ({} of {} runs end before theirs)",
+                     median ? fmt::format("{:.3g}", *median) : "unknown",
+                     std::ranges::count(runs, false, &Waiting::observed), runs.size());
+}
+
+/// What the runs of a claim wait for.
+std::string event_of(const ClaimSpec& claim) {
+  return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
+}
+
+std::string words_of_waits(const ClaimSpec& claim) {
+  return "the cycle of " + event_of(claim);
+}
+
+Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
+  const auto waits = [&claim](RunGroup runs) {
+    return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
+  };
+  return compare_waits(stated, event_of(claim), waits, a, b);
+}
+
+}  // namespace
+
+std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level) {
+  const NumberColumn number(column);
+  std::vector<Waiting> waits;
+  for (const FrameRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    Waiting wait{run->checkpoints.back().cycle, false};
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
+      if (!(number(*run, &checkpoint) >= level)) continue;
+      wait = {checkpoint.cycle, true};
+      break;
+    }
+    waits.push_back(wait);
+  }
+  return waits;
+}
+
+std::vector<Waiting> waits_for_onset(RunGroup runs) {
+  std::vector<Waiting> waits;
+  for (const FrameRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    const RunOnset onset = onset_by_size(*run);
+    const bool observed = onset.observed != Observed::never;
+    waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
+  }
+  return waits;
+}
+
+Verdict compare_waits(const Claim& claim, const std::string& event,
+                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup first,
+                      RunGroup second) {
+  const std::vector<Waiting> a = waits(first), b = waits(second);
+  const std::optional<Estimate> estimate = log2_wait_ratio(a, b);
+  const std::size_t runs = std::min(a.size(), b.size());
+  std::string note;
+  if (runs > 0) note = "first: " + wait_in_words(a) + "; second: " + wait_in_words(b);
+  if (runs == 0) {
+    note = no_group;
+  } else if (runs < least_runs) {
+    add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
+  } else if (!estimate) {
+    add_note(note, fmt::format("{} is at cycle 0 in every run of one group, or in no run", event));
+  }
+  Table entered = entered_with({"cycle", "missing"});
+  for (const RunGroup group : {first, second}) {
+    for (const FrameRun* run : group) {
+      RunValue cycle = {0, Missing::checkpoint};
+      for (const Waiting& wait : waits(RunGroup(&run, 1))) {
+        cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
+      }
+      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
+    }
+  }
+  return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
+                estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
+}
+
+bool compares_waits(const ClaimSpec& claim) {
+  const std::string_view name = estimator_of(claim).name;
+  return name == first_cycle_reached.name || name == waiting_ratio.name;
+}
+
+const Estimator first_cycle_reached = {
+    .name = "first_cycle",
+    .meaning = "log2 of the ratio of the cycles at which the number first `reaches` a value",
+    .key = "reaches",
+    .decide = decide_waits,
+    .words = words_of_waits};
+
+const Estimator waiting_ratio = {
+    .name = "waiting_ratio",
+    .meaning = "log2 of the ratio of the cycles of the onset; of `onset_size_cycle`",
+    .decide = decide_waits,
+    .words = words_of_waits};
+
+}  // namespace shearcell

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "analysis/statistics.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+
+namespace shearcell {
+
+double RunValue::or_nan() const {
+  return missing == Missing::nothing ? value : std::nan("");
+}
+
+RunValue measured(double value) {
+  return {value, std::isfinite(value) ? Missing::nothing : Missing::undefined};
+}
+
+nlohmann::json parameter_of(const FrameRun& run, const std::string& key) {
+  if (key == "experiment") return run.place.experiment;
+  return member_of(run.place.swept.contains(key) ? run.place.swept : run.parameters, key.c_str());
+}
+
+bool is_within(const nlohmann::json& value, const nlohmann::json& wanted) {
+  if (wanted.is_array()) {
+    return std::ranges::any_of(wanted, [&](const auto& one) { return is_within(value, one); });
+  }
+  if (!value.is_number()) return value == wanted;
+  const auto number = value.get<double>();
+  const auto end = [&](const char* key, double without) {
+    return wanted.contains(key) ? wanted[key].get<double>() : without;
+  };
+  const bool range = wanted.is_object();
+  if (!range && !wanted.is_number()) return false;
+  const double low = range ? end("min", -infinite) : wanted.get<double>();
+  const double high = range ? end("max", infinite) : low;
+  constexpr double rounded = 1e-6;
+  return (number >= low || number >= low - rounded * std::abs(low)) &&
+         (number <= high || number <= high + rounded * std::abs(high));
+}
+
+bool has_parameters(const FrameRun& run, const nlohmann::json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    return is_within(parameter_of(run, stated.key()), stated.value());
+  });
+}
+
+std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
+                                       std::span<const FrameRun> runs) {
+  std::vector<const FrameRun*> found;
+  for (const FrameRun& run : runs) {
+    if (has_parameters(run, where)) found.push_back(&run);
+  }
+  std::vector<const FrameRun*> as_stated = found;
+  std::erase_if(as_stated, [](const FrameRun* run) { return run->place.swept.contains("engine"); });
+  return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
+}
+
+const std::string& packing_of(const FrameRun& run) {
+  return run.packing.empty() ? run.stage.id : run.packing;
+}
+
+std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
+  nlohmann::ordered_map<std::string, std::vector<double>> packings;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (std::isfinite(values[k])) packings[packing_of(*runs[k])].push_back(values[k]);
+  }
+  std::vector<double> means;
+  for (const auto& [packing, found] : packings) means.push_back(over_runs(found).mean.value());
+  return means;
+}
+
+double number_of(const FrameRun& run, const std::string& key) {
+  const nlohmann::json value = parameter_of(run, key);
+  return value.is_number() ? value.get<double>() : std::nan("");
+}
+
+std::vector<const FrameRun*> pointers(std::span<const FrameRun> runs) {
+  std::vector<const FrameRun*> all;
+  for (const FrameRun& run : runs) all.push_back(&run);
+  return all;
+}
+
+std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun> runs,
+                                                       const std::string& parameter) {
+  std::map<double, std::vector<const FrameRun*>> groups;
+  for (const FrameRun& run : runs) {
+    const double value = number_of(run, parameter);
+    if (std::isfinite(value)) groups[value].push_back(&run);
+  }
+  return groups;
+}
+
+double at_start(RunGroup runs, const std::string& measure) {
+  std::vector<double> values;
+  for (const FrameRun* run : runs) {
+    if (run->checkpoints.empty()) continue;
+    values.push_back(run->checkpoints.front().measures.number(measure));
+  }
+  return over_runs(values).mean.value_or(std::nan(""));
+}
+
+std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
+                                            std::vector<std::string> keys) {
+  const auto distinct = [&](const std::vector<std::string>& used) {
+    std::set<std::vector<nlohmann::json>> tuples;
+    for (const nlohmann::json& variant : variants) {
+      std::vector<nlohmann::json> tuple;
+      for (const std::string& key : used) tuple.push_back(variant.value(key, nlohmann::json()));
+      tuples.insert(std::move(tuple));
+    }
+    return tuples.size();
+  };
+  const std::size_t all = distinct(keys);
+  for (std::size_t k = keys.size(); k-- > 0;) {
+    std::vector<std::string> fewer = keys;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+    if (distinct(fewer) == all) keys = std::move(fewer);
+  }
+  return keys;
+}
+
+std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys) {
+  std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // with its first variant
+  for (const FrameRun& run : runs) {
+    std::vector<nlohmann::json> curve;
+    for (const std::string& key : keys) curve.push_back(parameter_of(run, key));
+    const nlohmann::json& first =
+        curves.try_emplace(std::move(curve), run.place.swept).first->second;
+    for (const auto& [key, value] : run.place.swept.items()) {
+      if (first.value(key, nlohmann::json()) != value) return key;
+    }
+  }
+  return "";
+}
+
+void require_told_apart(const std::string& figure, std::span<const FrameRun> runs,
+                        const std::vector<std::string>& keys, const std::string& remedy) {
+  const std::string key = averaged_key(runs, keys);
+  if (key.empty()) return;
+  const std::string& experiment = runs.front().place.experiment;
+  throw UsageError(
+      fmt::format("figure {} would average over the values of {} that experiment {} sweeps; {}",
+                  figure, key, experiment, remedy));
+}
+
+std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
+                                     std::string_view first) {
+  std::set<nlohmann::json> distinct;
+  std::set<std::string> keys;
+  for (const nlohmann::json& variant : variants) {
+    if (!variant.is_object()) continue;
+    distinct.insert(variant);
+    for (const auto& [key, value] : variant.items()) keys.insert(key);
+  }
+  const std::vector<nlohmann::json> list(distinct.begin(), distinct.end());
+  std::vector<std::string> in_order(keys.begin(), keys.end());
+  std::stable_partition(in_order.begin(), in_order.end(),
+                        [&](const std::string& key) { return key == first; });
+  return keys_telling_apart(list, std::move(in_order));
+}
+
+std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first) {
+  std::vector<nlohmann::json> variants;
+  for (const FrameRun& run : runs) variants.push_back(run.place.swept);
+  return varied_keys(variants, first);
+}
+
+PackingGroups by_packing(RunGroup group) {
+  PackingGroups packings;
+  for (const FrameRun* run : group) packings[packing_of(*run)].push_back(run);
+  return packings;
+}
+
+std::string words_of(const nlohmann::json& values) {
+  std::string text;
+  for (const auto& [key, value] : values.items()) {
+    text += (text.empty() ? "" : ", ") + key + "=" + value_text(value);
+  }
+  return text;
+}
+
+NumberColumn::NumberColumn(std::string text) : text_(std::move(text)) {
+  if (is_expression(text_)) evaluate_ = evaluator_of(text_);
+}
+
+double NumberColumn::operator()(const FrameRun& run, const CheckpointMeasures* checkpoint) const {
+  const auto number = [&](const std::string& name) {
+    if (checkpoint != nullptr && find_measure(name) != nullptr) {
+      return checkpoint->measures.number(name);
+    }
+    if (checkpoint != nullptr && name == "cycle") return checkpoint->cycle;
+    const Measure* measure = find_measure(name, MeasureKind::run);
+    return measure != nullptr ? measure->of_run(run).or_nan() : number_of(run, name);
+  };
+  return evaluate_ ? evaluate_(number) : number(text_);
+}
+
+std::vector<std::string> providers_of(std::span<const std::string> columns) {
+  std::vector<std::string> names;
+  for (const std::string& column : columns) {
+    for (const std::string& name : names_in(column)) {
+      for (const auto kind : {MeasureKind::number, MeasureKind::run, MeasureKind::curve}) {
+        if (const Measure* one = find_measure(name, kind)) names.push_back(provider_of(*one).name);
+      }
+    }
+  }
+  return names;
+}
+
+const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle) {
+  const auto found = std::ranges::find(run.checkpoints, cycle, &CheckpointMeasures::cycle);
+  return found == run.checkpoints.end() ? nullptr : &*found;
+}
+
+bool is_of_run(std::string_view column) {
+  return std::ranges::none_of(names_in(column), [](const std::string& name) {
+    return name == "cycle" || find_measure(name) != nullptr ||
+           find_measure(name, MeasureKind::curve) != nullptr;
+  });
+}
+
+bool is_measured_of_run(std::string_view column) {
+  return std::ranges::any_of(names_in(column), [](const std::string& name) {
+    return find_measure(name, MeasureKind::run) != nullptr;
+  });
+}
+
+std::size_t count_variants(RunGroup runs) {
+  std::set<std::string> distinct;
+  for (const FrameRun* run : runs) distinct.insert(run->place.variant);
+  return distinct.size();
+}
+
+}  // namespace shearcell

@@ -1,0 +1,1101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plot in the order of the calls: select runs and checkpoints, evaluate the columns, group into
+// panels and curves, average, draw.
+#include "analysis/plots.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "analysis/axes.hpp"
+#include "analysis/binning.hpp"
+#include "analysis/claims.hpp"
+#include "analysis/error.hpp"
+#include "analysis/styles.hpp"
+#include "provenance/errors.hpp"
+#include "provenance/json_text.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+const Measure* find_curve(std::string_view name) {
+  return find_measure(name, MeasureKind::curve);
+}
+
+/// What the plot averages over at equal values.
+enum class Against { cycle, phi, measure, number_of_run, curve };
+
+Against against(const PlotSpec& plot) {
+  if (find_curve(plot.y) != nullptr) return Against::curve;
+  if (is_of_run(plot.x)) return Against::number_of_run;
+  return plot.x == "cycle" ? Against::cycle : plot.x == "phi" ? Against::phi : Against::measure;
+}
+
+/// Whether the plot draws runs, not numbers over runs.
+bool draws_runs(const PlotSpec& plot) {
+  return plot.show == Show::traces || plot.show == Show::scatter;
+}
+
+// --- Select ---
+
+/// A run of the plot.
+struct Selected {
+  const FrameRun* run;
+  std::vector<const CheckpointMeasures*> checkpoints = {};
+  /// The runs whose mean is subtracted: several where the runs of a packing differ by noise.
+  std::vector<const FrameRun*> partners = {};
+};
+
+/// The column `text` of the run at its checkpoint less the mean over its partners.
+double value_of(const NumberColumn& column, const Selected& one,
+                const CheckpointMeasures* checkpoint) {
+  const double own = column(*one.run, checkpoint);
+  if (one.partners.empty()) return own;
+  std::vector<double> values;
+  for (const FrameRun* partner : one.partners) {
+    const auto* same = checkpoint == nullptr ? nullptr : checkpoint_at(*partner, checkpoint->cycle);
+    const bool is_there = checkpoint == nullptr || same != nullptr;
+    values.push_back(is_there ? column(*partner, same) : std::nan(""));
+  }
+  return own - over_runs(values).mean.value_or(std::nan(""));
+}
+
+/// All runs, or those with a partner of PlotSpec::minus and their checkpoints of cycles that the
+/// partner has. Adds a sentence for the caption.
+std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
+  std::vector<Selected> selected;
+  json of_runs = plot.where;
+  of_runs.erase("cycle");
+  const auto take = [&](const FrameRun& run) -> Selected& {
+    Selected& one = selected.emplace_back(Selected{&run});
+    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+      const bool wanted =
+          !plot.where.contains("cycle") || is_within(checkpoint.cycle, plot.where.at("cycle"));
+      if (wanted) one.checkpoints.push_back(&checkpoint);
+    }
+    return one;
+  };
+  if (plot.minus.empty()) {
+    for (const FrameRun& run : frame.runs) {
+      if (has_parameters(run, of_runs)) take(run);
+    }
+    return selected;
+  }
+  const std::vector<const FrameRun*> others = runs_with(plot.minus, frame.runs);
+  const std::size_t variants = count_variants(others);
+  if (variants > 1 && !plot.listed) {
+    throw UsageError(fmt::format("plot {}: {}", plot.name, problem_of_minus(plot, variants)));
+  }
+  if (variants != 1) {
+    note = fmt::format("{} {}", variants == 0 ? "No run has" : "Several variants have",
+                       words_of(plot.minus));
+    return {};
+  }
+  const PackingGroups packings = by_packing(others);
+  const NumberColumn y(plot.y);
+  for (const FrameRun& run : frame.runs) {
+    const auto same = packings.find(packing_of(run));
+    if (same == packings.end() || std::ranges::count(others, &run) > 0) continue;
+    if (!has_parameters(run, of_runs)) continue;
+    Selected& one = take(run);
+    one.partners = same->second;
+    if (is_of_run(plot.y)) continue;
+    std::erase_if(one.checkpoints, [&](const CheckpointMeasures* checkpoint) {
+      return std::ranges::none_of(one.partners, [&](const FrameRun* partner) {
+        const CheckpointMeasures* other = checkpoint_at(*partner, checkpoint->cycle);
+        return other != nullptr && std::isfinite(y(*partner, other));
+      });
+    });
+  }
+  const std::size_t all = frame.runs.size() - others.size(), alone = all - selected.size();
+  const std::string& name = others.front()->name;
+  note = fmt::format("Differences from {} with the same packing{}",
+                     name.empty() ? words_of(plot.minus) : name,
+                     alone == 0 ? "" : fmt::format(", which {} of {} runs lack", alone, all));
+  return selected;
+}
+
+/// The cycle of the plot: as stated, or the last that all runs have.
+double cycle_of(const PlotSpec& plot, std::span<const Selected> runs) {
+  if (plot.cycle) return static_cast<double>(*plot.cycle);
+  std::map<double, std::size_t> count;  // of the runs with this cycle
+  std::size_t begun = 0;
+  for (const Selected& run : runs) {
+    if (!run.checkpoints.empty()) ++begun;
+    for (const CheckpointMeasures* checkpoint : run.checkpoints) ++count[checkpoint->cycle];
+  }
+  const auto last = std::find_if(count.rbegin(), count.rend(),
+                                 [&](const auto& cycle) { return cycle.second == begun; });
+  return last == count.rend() ? infinite : last->first;
+}
+
+// --- Evaluate ---
+
+/// The values of one row.
+struct Sample {
+  double cycle = 0;
+  double x = 0;
+  std::vector<double> y = {};  ///< of the columns in columns_of()
+};
+
+/// A run of a curve.
+struct Trace {
+  const FrameRun* run;
+  std::vector<Sample> samples = {};    ///< in the order of the checkpoints
+  Missing missing = Missing::nothing;  ///< why the run has no y, a measure of the whole run
+};
+
+struct Curve {
+  std::string variant;  ///< its name in the CSV, with ';' for ','
+  Text title = {};
+  Look look = {};
+  std::vector<Trace> traces = {};
+
+  std::vector<const FrameRun*> runs() const {
+    std::vector<const FrameRun*> all;
+    for (const Trace& trace : traces) all.push_back(trace.run);
+    return all;
+  }
+};
+
+/// A panel before it is drawn.
+struct Panel {
+  const PlotSpec& plot;
+  std::vector<Selected> selected;
+  double cycle = 0;  ///< cycle_of()
+  std::vector<Curve> curves = {};
+};
+
+/// The samples of a run.
+Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
+               const Selected& one, double cycle) {
+  Trace trace{one.run};
+  const auto at = std::ranges::find(one.checkpoints, cycle, &CheckpointMeasures::cycle);
+  const CheckpointMeasures* chosen = at == one.checkpoints.end() ? nullptr : *at;
+  const auto add = [&](double cycle_of_row, double x_value, const CheckpointMeasures* checkpoint) {
+    Sample& sample = trace.samples.emplace_back(Sample{cycle_of_row, x_value});
+    for (const NumberColumn& column : columns) {
+      const bool is_y = &column == columns.data();
+      const CheckpointMeasures* row = checkpoint;
+      if (!is_y && row == nullptr && !one.checkpoints.empty()) row = one.checkpoints.front();
+      sample.y.push_back(is_y ? value_of(column, one, checkpoint) : column(*one.run, row));
+    }
+  };
+  if (const Measure* measure = find_measure(plot.y, MeasureKind::run)) {
+    trace.missing = measure->of_run(*one.run).missing;
+  }
+  switch (against(plot)) {
+    case Against::curve:
+      if (chosen == nullptr) break;
+      if (const auto found = chosen->measures.curves.find(plot.y);
+          found != chosen->measures.curves.end()) {
+        const auto& [xs, ys] = found->second;
+        for (std::size_t i = 0; i < xs.size(); ++i) {
+          trace.samples.push_back({cycle, xs[i], {ys[i]}});
+        }
+      }
+      break;
+    case Against::number_of_run:
+      if (is_of_run(plot.y))
+        add(cycle, x(*one.run), nullptr);
+      else if (chosen != nullptr)
+        add(cycle, x(*one.run), chosen);
+      break;
+    default:
+      for (const CheckpointMeasures* checkpoint : one.checkpoints) {
+        const bool whole = checkpoint->cycle == std::floor(checkpoint->cycle);
+        if (!draws_runs(plot) && !whole) continue;
+        add(checkpoint->cycle, x(*one.run, checkpoint), checkpoint);
+      }
+  }
+  return trace;
+}
+
+/// Sets x, a measure of the whole run, to its mean over those runs of a variant that have a y, so
+/// that these share a point.
+void average_x(std::vector<Curve>& curves) {
+  std::map<std::string, std::vector<double>> found;  // of each variant
+  const auto for_each_sample = [&](const auto& visit) {
+    for (Curve& curve : curves) {
+      for (Trace& trace : curve.traces) {
+        for (Sample& sample : trace.samples) visit(found[trace.run->place.variant], sample);
+      }
+    }
+  };
+  for_each_sample([](std::vector<double>& of_variant, const Sample& sample) {
+    if (std::isfinite(sample.y.front())) of_variant.push_back(sample.x);
+  });
+  for_each_sample([](const std::vector<double>& of_variant, Sample& sample) {
+    sample.x = over_runs(of_variant).mean.value_or(std::nan(""));
+  });
+}
+
+// --- Group ---
+
+/// A variant as one field without quotes, for readers that do not know RFC 4180. Variants of
+/// manifests have no special characters but the comma; those of another program's store may.
+std::string plain_field(std::string variant) {
+  const auto odd = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x80 && std::isalnum(byte) == 0 &&
+           std::string_view("=.+-_;: /").find(c) == std::string_view::npos;
+  };
+  std::replace_if(variant.begin(), variant.end(), odd, ';');
+  return variant;
+}
+
+/// Runs that share a curve.
+struct Group {
+  json key;             ///< what they have in common, of the keys that distinguish curves
+  std::string variant;  ///< the same as text
+  std::vector<const Selected*> runs = {};
+};
+
+/// The curves of a panel: one for each variant; or runs that differ in `x` alone, or have the same
+/// value of `by`, share a curve.
+std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
+  const bool by_variant =
+      against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
+  std::vector<json> variants;
+  for (const Selected& one : runs) variants.push_back(one.run->place.swept);
+  std::vector<std::string> keys = varied_keys(variants, plot.x);
+  for (const std::string& used : names_in(plot.x)) std::erase(keys, used);
+  std::erase(keys, plot.panel);
+  if (!plot.by.empty()) keys = {plot.by};
+  std::map<std::string, Group> groups;
+  for (const Selected& one : runs) {
+    json key = json::object();
+    for (const std::string& name : keys) {
+      if (json value = parameter_of(*one.run, name); !value.is_null()) key[name] = value;
+    }
+    if (by_variant) key = one.run->place.swept;
+    std::string text = by_variant ? one.run->place.variant : key.empty() ? "all" : words_of(key);
+    Group& group = groups.try_emplace(text, Group{std::move(key), text}).first->second;
+    group.runs.push_back(&one);
+  }
+  std::vector<Group> found;
+  for (auto& [text, group] : groups) found.push_back(std::move(group));
+  return found;
+}
+
+/// The titles of the curves: the name of a curve's only variant, else its values.
+std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
+                                   const NameVariants& name) {
+  std::vector<json> keys;
+  for (const Group& group : groups) keys.push_back(group.key);
+  const auto shared = name ? name(keys) : std::map<json, std::string>();
+  std::vector<std::string> titles;
+  for (const Group& group : groups) {
+    const std::string& first = group.runs.front()->run->name;
+    const bool of_one = std::ranges::all_of(
+        group.runs, [&](const Selected* one) { return one->run->name == first; });
+    titles.push_back(of_one && !first.empty() && plot.panel.empty() ? first
+                     : name && !group.key.empty()                   ? shared.at(group.key)
+                                                                    : group.variant);
+  }
+  return titles;
+}
+
+/// The place of a style in PlotSpec::series for each group; the number of styles if none fits it
+/// alone. Styles of a plot that another manifest lists are used only if the runs differ in no other
+/// parameters.
+std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group> groups) {
+  std::vector<json> keys;
+  for (const Group& group : groups) keys.push_back(group.key);
+  const bool own = std::ranges::all_of(varied_keys(keys), [&](const std::string& key) {
+    return std::ranges::any_of(plot.series,
+                               [&](const SeriesSpec& s) { return s.where.contains(key); });
+  });
+  std::vector<std::size_t> places, used(plot.series.size() + 1);
+  for (const Group& group : groups) {
+    const auto style = std::ranges::find_if(plot.series, [&](const SeriesSpec& one) {
+      return (own || !plot.listed) && has_parameters(*group.runs.front()->run, one.where);
+    });
+    places.push_back(static_cast<std::size_t>(style - plot.series.begin()));
+    ++used[places.back()];
+  }
+  for (std::size_t& place : places) {
+    if (used[place] > 1) place = plot.series.size();
+  }
+  return places;
+}
+
+std::string colour_of(const SeriesSpec& series) {
+  const auto name = std::ranges::find(colour_names, series.colour);
+  return name == colour_names.end()
+             ? series.colour
+             : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
+}
+
+/// Sets title and look as PlotSpec::series states.
+void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
+  if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
+  if (!stated.colour.empty()) {
+    curve.look.colour = colour_of(stated);
+    curve.look.join = Join::line;
+  }
+  const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
+                                               marker_names.begin());
+  if (symbol < marker_names.size()) {
+    curve.look.point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
+  }
+}
+
+/// Sets Panel::curves, in the order of PlotSpec::series, then by their values.
+void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
+  const PlotSpec& plot = panel.plot;
+  std::vector<NumberColumn> columns;
+  if (against(plot) != Against::curve) columns.emplace_back(plot.y);
+  for (const ColumnSpec& one : plot.also) columns.emplace_back(one.measure);
+  const NumberColumn x(plot.x);
+  const std::vector<Group> groups = groups_of(plot, panel.selected);
+  const std::vector<std::string> titles = titles_of(plot, groups, names);
+  const std::vector<std::size_t> styles = styles_for(plot, groups);
+  using Place = std::tuple<std::size_t, json, std::size_t>;  // of a curve among all
+  std::map<Place, Curve> ordered;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const auto& [key, variant, members] = groups[k];
+    Curve curve{plain_field(variant), Text(titles[k])};
+    for (const Selected* one : members) {
+      curve.traces.push_back(evaluate(plot, columns, x, *one, panel.cycle));
+    }
+    const bool begun =
+        std::ranges::any_of(members, [](const Selected* one) { return !one->checkpoints.empty(); });
+    if (!begun) continue;
+    curve.look = looks.of(curve.runs(), key);
+    if (styles[k] < plot.series.size()) {
+      apply(plot.series[styles[k]], plot, members.front()->run->named, curve);
+    }
+    json values = json::array();
+    for (const auto& [name, value] : key.items()) values.push_back(value);
+    ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
+  }
+  // A colour that a manifest states is of that curve alone.
+  std::set<std::string> taken;
+  for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
+  for (auto& [place, curve] : ordered) {
+    const std::size_t style = std::get<0>(place);
+    const bool stated = style < plot.series.size() && !plot.series[style].colour.empty();
+    if (stated || !taken.contains(curve.look.colour)) continue;
+    const auto free = std::ranges::find_if(safe_colours, [&](const char* colour) {
+      return !taken.contains(colour) && std::ranges::none_of(ordered, [&](const auto& other) {
+        return other.second.look.colour == colour;
+      });
+    });
+    if (free != safe_colours.end()) curve.look.colour = *free;
+  }
+  for (auto& [place, curve] : ordered) panel.curves.push_back(std::move(curve));
+  if (is_measured_of_run(plot.x) && !draws_runs(plot)) average_x(panel.curves);
+}
+
+// --- Average ---
+
+/// Means over the runs of a curve at one cycle, in one bin of phi or at one x.
+struct Bin {
+  double at = 0;  ///< the cycle, the lower end of the bin of phi, or x
+  RunStatistics x = {};
+  std::vector<RunStatistics> y = {};            ///< of the columns
+  std::size_t values = 0;                       ///< runs with a y
+  std::map<Missing, std::size_t> missing = {};  ///< runs without y, a measure of the whole run
+};
+
+/// Averages over independent runs: runs of one packing count as one, and in a bin of phi each run
+/// with the mean over its checkpoints there. `columns`: of the values.
+std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
+                         std::span<const MeasureColumn> columns) {
+  const Against what = against(plot);
+  const bool by_x = what == Against::number_of_run || what == Against::curve;
+  struct Members {
+    std::vector<const FrameRun*> runs;
+    std::vector<std::vector<double>> values;  // x, then y, of each run
+    std::map<Missing, std::size_t> missing;
+  };
+  std::map<double, Members> bins;
+  for (const Trace& trace : curve.traces) {
+    std::map<double, std::vector<Sample>> own;
+    for (const Sample& sample : trace.samples) {
+      if (what == Against::cycle || what == Against::measure) own[sample.cycle].push_back(sample);
+      if (what == Against::phi && std::isfinite(sample.x)) {
+        own[std::floor(sample.x / phi_bin)].push_back(sample);
+      }
+      if (!by_x || !std::isfinite(sample.x)) continue;
+      const bool has_y = std::isfinite(sample.y.front());
+      if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
+      // Further columns are over all runs, with y or without.
+      if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
+    }
+    for (const auto& [at, samples] : own) {
+      if (samples.size() > 1 && (what == Against::cycle || what == Against::measure)) {
+        throw AnalysisError(
+            fmt::format("run {} has two checkpoints of cycle {}", trace.run->stage.id, at));
+      }
+      std::vector<double> values;
+      const auto add_mean = [&](const auto& value) {
+        std::vector<double> all;
+        for (const Sample& sample : samples) all.push_back(value(sample));
+        values.push_back(all.size() == 1 ? all[0] : over_runs(all).mean.value_or(std::nan("")));
+      };
+      add_mean([](const Sample& sample) { return sample.x; });
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        add_mean([k](const Sample& sample) { return sample.y[k]; });
+      }
+      if (what == Against::phi && !std::isfinite(values[1])) continue;
+      bins[at].runs.push_back(trace.run);
+      bins[at].values.push_back(std::move(values));
+    }
+  }
+  std::vector<Bin> found;
+  for (const auto& [at, members] : bins) {
+    Bin& bin = found.emplace_back(Bin{at});
+    const auto over = [&](std::size_t k, const auto& statistics) {
+      std::vector<double> values;
+      for (const std::vector<double>& of_run : members.values) values.push_back(of_run[k]);
+      // Against a measure, the runs that have both.
+      for (std::size_t r = 0; what == Against::measure && r < values.size(); ++r) {
+        const auto& of_run = members.values[r];
+        if (!std::isfinite(of_run[0]) || !std::isfinite(of_run[1])) values[r] = std::nan("");
+      }
+      return statistics(over_packings(members.runs, values));
+    };
+    bin.x = over(0, [](const auto& values) { return over_runs(values); });
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      bin.y.push_back(over(k + 1, [&](const auto& values) { return columns[k].over(values); }));
+    }
+    bin.values = static_cast<std::size_t>(std::ranges::count_if(
+        members.values, [](const auto& of_run) { return std::isfinite(of_run[1]); }));
+    bin.missing = members.missing;
+  }
+  return found;
+}
+
+// --- Draw ---
+
+/// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
+MeasureColumn column_of(std::string_view measure, std::string_view of) {
+  std::string name(measure);
+  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of);
+  if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
+  if (const auto slash = unit.find('/'); slash != std::string::npos) {
+    unit.replace(slash, 1, "_per_");  // "m/s"
+  }
+  std::ranges::replace(unit, ' ', '_');
+  std::erase(unit, '^');
+  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
+  return {std::move(name), std::move(unit)};
+}
+
+/// A number of checkpoints or of a whole run, or a curve; null if the text is none of them.
+const Measure* find_plotted(std::string_view text) {
+  const Measure* measure = find_measure(text);
+  if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
+  return measure != nullptr ? measure : find_curve(text);
+}
+
+/// The column of such a measure, or of an expression. `name` replaces its name.
+MeasureColumn column_for(const std::string& text, const std::string& name = {}) {
+  MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, ""};
+  if (const Measure* measure = find_plotted(text)) column = column_of(text, measure->unit);
+  if (!name.empty()) column.name = name;
+  return column;
+}
+
+/// Of y, and of further measures.
+std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
+  std::vector<MeasureColumn> columns = {column_for(plot.y, plot.column)};
+  if (!plot.minus.empty()) columns[0].name += "_difference";
+  columns[0].rms = plot.show == Show::rms;
+  for (const ColumnSpec& one : plot.also) columns.push_back(column_for(one.measure, one.name));
+  return columns;
+}
+
+/// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
+/// the name ends in it.
+Axis named_axis(std::string_view measure, std::string_view unit) {
+  std::string name = column_of(measure, unit).name;
+  const bool has_unit = name.size() < measure.size();
+  std::ranges::replace(name, '_', ' ');
+  if (!has_unit) return {.name = std::move(name)};
+  std::string of(unit);
+  while (of.find("^2") != std::string::npos) of.replace(of.find("^2"), 2, "²");
+  return {.name = std::move(name), .unit = Text(of)};
+}
+
+Axis axis_of(const std::string& key) {
+  if (key == "cycle") return cycle_axis;
+  if (key == "phi") return phi_axis;
+  if (key == "crystalline_percent") return crystalline_axis;
+  if (key == "mean_overlap_d") return overlap_axis;
+  if (const Measure* measure = find_plotted(key)) return named_axis(key, measure->unit);
+  return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
+}
+
+/// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
+std::string_view word_for_cycle(std::span<const Selected> runs) {
+  const auto stiffens = [](const Selected& one) {
+    return !one.checkpoints.empty() &&
+           std::isfinite(one.checkpoints.front()->measures.number("raised_stiffness_N_per_m"));
+  };
+  if (std::ranges::none_of(runs, stiffens)) return "cycle";
+  return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
+}
+
+/// A logarithmic axis has no fixed lower end.
+void adapt(Axis& axis, const std::string& label, bool log) {
+  axis.log = log;
+  if (log) axis.low = {};
+  if (label.empty()) return;
+  axis.name = formula(label);
+  axis.symbol = axis.unit = {};
+}
+
+Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
+  if (const Measure* y = find_curve(plot.y)) return named_axis(y->x, y->x_unit);
+  if (!plot.x_symbol.empty()) {
+    return {.symbol = formula("$" + plot.x_symbol + "$"),
+            .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
+  }
+  if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
+  const std::string_view word = word_for_cycle(runs);
+  if (plot.x != "cycle" || word == "cycle") return axis_of(plot.x);
+  return {.name = fmt::format("{} of the stiffening", word), .whole = true};
+}
+
+/// A series of the curve, without points.
+Series series_of(const Curve& curve) {
+  return {.title = curve.title,
+          .colour = curve.look.colour,
+          .point = curve.look.point,
+          .join = Join::line};
+}
+
+/// Curves of single runs, and those of a curve measure, have no symbols, which would hide them.
+void leave_out_symbol(const Curve& curve, Series& series) {
+  series.point = 0;
+  series.join = curve.look.join;
+}
+
+/// A thin line or a cloud of points for each run; the title once, in the key.
+std::vector<Series> series_of_runs(const Panel& panel) {
+  std::vector<Series> all;
+  for (const Curve& curve : panel.curves) {
+    std::map<std::uint64_t, std::map<double, double>> by_seed;  // against a number of the run
+    std::vector<std::vector<ChartPoint>> traces;
+    for (const Trace& trace : curve.traces) {
+      std::vector<ChartPoint>& points = traces.emplace_back();
+      std::map<double, double> sorted;  // of a curve measure
+      for (const Sample& sample : trace.samples) {
+        const double y = sample.y.front();
+        if (!std::isfinite(sample.x) || !std::isfinite(y)) continue;
+        points.push_back({sample.x, y});
+        by_seed[trace.run->place.seed][sample.x] = y;
+      }
+    }
+    if (against(panel.plot) == Against::number_of_run) {
+      traces.clear();
+      for (const auto& [seed, values] : by_seed) {
+        std::vector<ChartPoint>& points = traces.emplace_back();
+        for (const auto& [x, y] : values) points.push_back({x, y});
+      }
+    }
+    if (against(panel.plot) == Against::curve) {
+      std::erase_if(traces, [](const auto& points) { return points.empty(); });
+    }
+    Text title = curve.title;
+    for (std::vector<ChartPoint>& points : traces) {
+      Series& series = all.emplace_back(series_of(curve));
+      series.title = std::exchange(title, Text());
+      series.thin = true;
+      if (panel.plot.show == Show::scatter) series.join = Join::none;
+      const bool of_rows = against(panel.plot) != Against::number_of_run;
+      if (of_rows && panel.plot.show != Show::scatter) leave_out_symbol(curve, series);
+      series.points = std::move(points);
+    }
+  }
+  return all;
+}
+
+/// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where
+/// the first run ends, and every run continues as a thin line. Returns whether the runs end at
+/// different cycles.
+bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
+                 std::vector<Series>& single) {
+  double first_end = infinite;
+  for (const Trace& trace : curve.traces) {
+    if (!trace.samples.empty()) first_end = std::min(first_end, trace.samples.back().cycle);
+  }
+  if (bins.back().at <= first_end) return false;
+  mean.columns = {};
+  for (const Bin& bin : bins) {
+    if (bin.at > first_end || !bin.y.front().mean) continue;
+    mean.points.push_back({bin.at, *bin.y.front().mean, std::nullopt, bin.y.front().standard_error,
+                           static_cast<double>(bin.y.front().runs)});
+  }
+  for (const Trace& trace : curve.traces) {
+    Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
+    for (const Sample& sample : trace.samples) {
+      const double value = rms ? std::abs(sample.y.front()) : sample.y.front();
+      if (sample.cycle >= first_end && std::isfinite(value)) {
+        line.points.push_back({sample.cycle, value});
+      }
+    }
+    if (line.points.size() > 1) single.push_back(std::move(line));
+  }
+  return true;
+}
+
+/// Whether the table counts the runs that have no y.
+bool counts_missing(const PlotSpec& plot) {
+  return against(plot) == Against::number_of_run &&
+         find_measure(plot.y, MeasureKind::run) != nullptr;
+}
+
+/// The columns of the means and their names in the series.
+Table table_of_means(const Panel& panel, std::span<const MeasureColumn> columns) {
+  const PlotSpec& plot = panel.plot;
+  const Against what = against(plot);
+  const Measure* curve = find_curve(plot.y);
+  const MeasureColumn x = column_for(plot.x);
+  Table table{.name = plot.name, .columns = {"variant"}};
+  if (what == Against::phi) {
+    for (const char* name : {"phi_low", "phi_high"}) table.columns.emplace_back(name);
+    add_columns(x, table.columns);
+  } else if (what == Against::cycle || what == Against::measure) {
+    table.columns.emplace_back("cycle");
+  } else {
+    table.columns.emplace_back(curve != nullptr ? std::string(curve->x) : plot.x);
+  }
+  for (const MeasureColumn& column : columns) add_columns(column, table.columns);
+  if (what == Against::measure) add_columns(x, table.columns);
+  table.columns.emplace_back("runs");
+  for (std::size_t k = 1; k <= plot.drawn; ++k)
+    table.columns.emplace_back(columns[k].name + "_runs");
+  if (counts_missing(plot)) {
+    for (const char* name : {"runs_ended_before", "runs_began_after", "runs_unclear"}) {
+      table.columns.emplace_back(name);
+    }
+  }
+  const bool at_cycle =
+      what == Against::curve || (what == Against::number_of_run && !is_of_run(plot.y));
+  if (at_cycle) table.columns.emplace_back("cycle");
+  return table;
+}
+
+void add_rows(const Panel& panel, const Curve& curve, std::span<const Bin> bins, Table& table) {
+  const Against what = against(panel.plot);
+  for (const Bin& bin : bins) {
+    TableRow& row = table.rows.emplace_back(TableRow{curve.variant});
+    if (what == Against::phi) {
+      row.insert(row.end(), {bin.at * phi_bin, (bin.at + 1) * phi_bin});
+      add_values(bin.x, row);
+    } else if (what == Against::cycle || what == Against::measure) {
+      row.emplace_back(static_cast<std::int64_t>(bin.at));
+    } else {
+      row.emplace_back(bin.at);
+    }
+    for (const RunStatistics& statistics : bin.y) add_values(statistics, row);
+    if (what == Against::measure) add_values(bin.x, row);
+    for (std::size_t k = 0; k <= panel.plot.drawn; ++k) row.emplace_back(bin.y[k].runs);
+    if (counts_missing(panel.plot)) {
+      for (const Missing why : {Missing::too_short, Missing::too_late, Missing::undefined}) {
+        const auto count = bin.missing.find(why);
+        row.emplace_back(count == bin.missing.end() ? std::size_t{0} : count->second);
+      }
+    }
+    if (row.size() < table.columns.size()) row.emplace_back(panel.cycle);
+  }
+}
+
+/// Every row that is drawn of each run.
+Table table_of_runs(const Panel& panel) {
+  const PlotSpec& plot = panel.plot;
+  Table table{.name = plot.name, .columns = {"variant", "seed"}};
+  const bool x = plot.x != "cycle";
+  if (x) table.columns.emplace_back("cycle");
+  table.columns.emplace_back(plot.x);
+  table.columns.emplace_back(plot.y + (plot.minus.empty() ? "" : "_difference"));
+  for (const Curve& curve : panel.curves) {
+    for (const Trace& trace : curve.traces) {
+      for (const Sample& sample : trace.samples) {
+        TableRow& row = table.rows.emplace_back(TableRow{curve.variant, trace.run->place.seed});
+        if (x) row.emplace_back(sample.cycle);
+        row.insert(row.end(), {sample.x, sample.y.front()});
+      }
+    }
+  }
+  table.chart.series = series_of_runs(panel);
+  return table;
+}
+
+/// A sentence of the caption: which checkpoints, and how many runs have no value.
+std::string note_of(const Panel& panel, std::size_t with_value) {
+  if (!is_of_run(panel.plot.y)) {
+    if (!std::isfinite(panel.cycle)) return "";
+    return fmt::format("At {} {}{}", word_for_cycle(panel.selected), panel.cycle,
+                       panel.plot.cycle ? "" : ", the last that all runs have");
+  }
+  const std::size_t runs = panel.selected.size();
+  if (with_value == runs) return "";
+  return fmt::format("{} of {} runs have no value and are left out of the means", runs - with_value,
+                     runs);
+}
+
+/// Throws AnalysisError if two curves have the same title.
+void require_different_titles(std::span<const Curve> curves) {
+  std::set<std::string> titles;
+  for (const Curve& curve : curves) {
+    if (titles.insert(plain_text(curve.title)).second) continue;
+    throw AnalysisError("two curves of a figure have the label '" + plain_text(curve.title) +
+                        "'; give each its own, in the `series` of its plot or in `labels`");
+  }
+}
+
+/// The names of the drawn columns in the key.
+std::vector<Text> labels_of(const PlotSpec& plot) {
+  const auto label_of = [](const std::string& text, const std::string& name) {
+    if (!name.empty()) return Text(formula(boost::replace_all_copy(name, "_", " ")));
+    const Axis axis = axis_of(text);
+    return axis.symbol.empty() ? axis.name : axis.symbol;
+  };
+  std::vector<Text> labels = {label_of(plot.y, plot.column)};
+  for (std::size_t k = 0; k < plot.drawn; ++k) {
+    labels.push_back(label_of(plot.also[k].measure, plot.also[k].name));
+  }
+  return labels;
+}
+
+/// Adds PlotSpec::mark.
+void add_mark(const Panel& panel, Table& table) {
+  const MarkSpec& mark = *panel.plot.mark;
+  const NumberColumn x(mark.x), y(mark.y);
+  Series series{.title = formula(mark.label), .colour = "#000000"};
+  for (const Curve& curve : panel.curves) {
+    const std::vector<const FrameRun*> runs = curve.runs();
+    const auto over = [&](const NumberColumn& column) {
+      std::vector<double> values;
+      for (const FrameRun* run : runs) values.push_back(column(*run));
+      return over_runs(over_packings(runs, values));
+    };
+    const RunStatistics at = over(x), value = over(y);
+    if (!at.mean || !value.mean) continue;
+    series.points.push_back({*at.mean, *value.mean, {}, value.standard_error});
+  }
+  table.chart.series.push_back(std::move(series));
+}
+
+Table draw(const Panel& panel) {
+  const PlotSpec& plot = panel.plot;
+  const Against what = against(plot);
+  const bool at_one_cycle = what == Against::number_of_run || what == Against::curve;
+  if (draws_runs(plot) && !at_one_cycle) return table_of_runs(panel);
+  const std::vector<MeasureColumn> columns = columns_of(plot);
+  require_different_titles(panel.curves);
+  Table table = table_of_means(panel, columns);
+  std::vector<Series> single;
+  std::size_t with_value = 0;
+  const std::string x = what == Against::phi || what == Against::measure
+                            ? column_name(column_for(plot.x), "mean")
+                            : table.columns[1].name;
+  for (const Curve& curve : panel.curves) {
+    const std::vector<Bin> bins = average(plot, curve, columns);
+    add_rows(panel, curve, bins, table);
+    for (const Bin& bin : bins) with_value += bin.values;
+    Series series = series_of(curve);
+    series.band = what != Against::number_of_run;
+    if (what == Against::phi) series.columns.x_error = "phi_standard_error";
+    series.filter = {"variant", curve.variant};
+    if (what == Against::curve) leave_out_symbol(curve, series);
+    // Against a number of the run, the runs at each x are others.
+    if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
+    if (what == Against::cycle && !bins.empty() &&
+        follow_runs(curve, bins, columns[0].rms, series, single)) {
+      table.chart.note = "Thin lines: single runs, from where the first run of a curve has ended";
+    }
+    for (std::size_t k = 0; k <= plot.drawn; ++k) {
+      Series& drawn = table.chart.series.emplace_back(series);
+      if (!series.points.empty() && k == 0) continue;  // followed
+      drawn.points.clear();
+      drawn.columns = columns_against(x, columns[k]);
+      drawn.columns.x_error = series.columns.x_error;
+      if (plot.drawn == 0) continue;
+      // Of one curve the columns differ in colour, of several in symbols.
+      const bool alone = panel.curves.size() == 1;
+      if (alone) drawn.colour = safe_colours[k % safe_colours.size()];
+      drawn.point = alone ? curve_symbol(k) : drawn.point - static_cast<int>(k % 2);
+      if (k > 0) drawn.columns.runs = columns[k].name + "_runs";
+      const Text label = labels_of(plot)[k];
+      drawn.title = alone ? label : drawn.title + Text(", ") + label;
+    }
+  }
+  std::ranges::move(single, std::back_inserter(table.chart.series));
+  if (plot.mark) add_mark(panel, table);
+  if (!at_one_cycle) return table;
+  if (draws_runs(plot)) table.chart.series = series_of_runs(panel);
+  if (panel.curves.size() == 1 && plot.drawn == 0) {
+    for (Series& series : table.chart.series) series.title = {};
+  }
+  table.chart.note = note_of(panel, with_value);
+  return table;
+}
+
+/// Adds the published numbers in black: a dashed line, or two at the ends of an error, and points
+/// with open symbols. The caption names their sources.
+void add_published(const PlotSpec& plot, Chart& chart) {
+  std::vector<std::string> sources;
+  int point = 6;
+  for (const PublishedSpec& one : plot.published) {
+    Series series{.title = formula(one.label), .colour = "#000000", .point = point};
+    if (one.value) {
+      series.point = 0;
+      series.join = Join::dashes;
+      for (const double end : {-one.error, one.error}) {
+        if (end != 0 || chart.lines.empty() || chart.lines.back().at != *one.value) {
+          chart.lines.push_back({.at = *one.value + end, .colour = "#000000"});
+        }
+      }
+    } else {
+      point = point == 12 ? 4 : point + 2;
+    }
+    for (const std::vector<double>& p : one.points) {
+      series.points.push_back({p[0], p[1]});
+      if (p.size() > 2) series.points.back().y_error = p[2];
+    }
+    chart.series.push_back(std::move(series));
+    const std::string value = !one.value       ? ""
+                              : one.error == 0 ? fmt::format(" {}", *one.value)
+                                               : fmt::format(" {} ± {}", *one.value, one.error);
+    sources.push_back(fmt::format("{}{}: {}", plain_text(formula(one.label)), value, one.source));
+  }
+  if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
+}
+
+/// Says so if there are more curves than looks.
+void note_equal_looks(const Panel& panel, Table& table) {
+  std::set<std::tuple<std::string, int, Join>> looks;
+  std::size_t titled = 0;
+  for (const Series& one : table.chart.series) {
+    if (one.title.empty()) continue;
+    looks.emplace(one.colour, one.point, one.join);
+    ++titled;
+  }
+  if (panel.curves.size() < 2 || looks.size() == titled) return;
+  std::string& note = table.chart.note;
+  note += (note.empty() ? "" : ". ") +
+          std::string("Some curves look the same, since there are more curves than styles");
+}
+
+/// Adds the value of the panel's parameter to each row, after the variant.
+void add_panel_column(const std::string& parameter, const json& value, Table& table) {
+  if (table.place(parameter) < table.columns.size()) return;
+  table.columns.insert(table.columns.begin() + 1, parameter);
+  for (TableRow& row : table.rows) {
+    row.insert(row.begin() + 1,
+               value.is_number() ? TableCell(value.get<double>()) : TableCell(value_text(value)));
+  }
+}
+
+/// Gives all panels the ranges of all their data and published lines.
+void share_ranges(std::vector<Table>& tables) {
+  std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
+  for (const Table& table : tables) {
+    for (const Series& series : table.chart.series) {
+      for (const ChartPoint& p : points_of(table, series)) {
+        if (!is_on_log_axes(table.chart, p)) continue;
+        const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
+        low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
+        high = {std::max(high[0], p.x), std::max(high[1], p.y + error)};
+      }
+    }
+    for (const ReferenceLine& line : table.chart.lines) {
+      if (!is_on_log_axes(table.chart, line)) continue;
+      low[1] = std::min(low[1], line.at);
+      high[1] = std::max(high[1], line.at);
+    }
+  }
+  for (Table& table : tables) {
+    Axis* const axes[] = {&table.chart.x, &table.chart.y};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!(low[k] < high[k])) continue;
+      const double room = 0.04 * (axes[k]->log ? std::log(high[k] / low[k]) : high[k] - low[k]);
+      const auto beyond = [&](double end, double by) {
+        return axes[k]->log ? end * std::exp(by) : end + by;
+      };
+      axes[k]->low = std::min(axes[k]->low.value_or(high[k]), beyond(low[k], -room));
+      axes[k]->high = beyond(high[k], room);
+    }
+  }
+}
+
+FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVariants& names) {
+  if (!plot.by.empty() && !is_measured_of_run(plot.x)) {
+    std::vector<std::string> keys = names_in(plot.x);
+    keys.insert(keys.end(), {plot.by, plot.panel});
+    require_told_apart(plot.name, frame.runs, keys,
+                       "leave out its `by` for a curve of each variant");
+  }
+  std::string less;                              // about what is subtracted
+  std::map<json, std::vector<Selected>> panels;  // by the value of their parameter
+  for (Selected& one : select(plot, frame, less)) {
+    panels[plot.panel.empty() ? json() : parameter_of(*one.run, plot.panel)].push_back(
+        std::move(one));
+  }
+  // An empty panel, whose caption says why.
+  if (panels.empty() && !less.empty()) panels[nullptr] = {};
+  const Looks looks(frame);
+  FigureResult result;
+  std::vector<json> wheres;
+  for (auto& [value, members] : panels) {
+    Panel panel{plot, std::move(members)};
+    panel.cycle = cycle_of(plot, panel.selected);
+    set_curves(looks, names, panel);
+    Table& table = result.tables.emplace_back(draw(panel));
+    table.chart.x = x_axis(plot, panel.selected);
+    table.chart.y = axis_of(plot.y);
+    if (!plot.minus.empty()) table.chart.y.name = Text("difference in ") + table.chart.y.name;
+    if (plot.show == Show::rms) table.chart.y.name = Text("rms ") + table.chart.y.name;
+    if (!less.empty()) table.chart.note += (table.chart.note.empty() ? "" : ". ") + less;
+    note_equal_looks(panel, table);
+    adapt(table.chart.x, plot.xlabel, plot.log == LogAxes::x || plot.log == LogAxes::xy);
+    adapt(table.chart.y, plot.ylabel, plot.log == LogAxes::y || plot.log == LogAxes::xy);
+    add_published(plot, table.chart);
+    if (plot.panel.empty()) continue;
+    table.name += fmt::format("_{}", result.tables.size());
+    wheres.push_back({{plot.panel, value}});
+    table.chart.title = words_of(wheres.back());
+    add_panel_column(plot.panel, value, table);
+  }
+  if (names && !wheres.empty()) {
+    const auto named = names(wheres);
+    for (std::size_t k = 0; k < wheres.size(); ++k) {
+      result.tables[k].chart.title = named.at(wheres[k]);
+    }
+  }
+  if (result.tables.size() > 1) share_ranges(result.tables);
+  return result;
+}
+
+/// The cycles, first to last, of which the parts need what is simulated; none: all.
+std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
+  std::optional<std::array<std::uint64_t, 2>> hull;
+  for (const Figure& part : parts) {
+    const bool simulates = std::ranges::any_of(part.needs, [](const std::string& name) {
+      return provider(name).from == ComputedFrom::simulation;
+    });
+    if (!simulates) continue;
+    if (!part.within) return std::nullopt;
+    const auto [first, last] = *part.within;
+    hull =
+        hull ? std::array{std::min(hull->at(0), first), std::max(hull->at(1), last)} : *part.within;
+  }
+  return hull;
+}
+
+/// One figure of several: its panels and verdicts are theirs.
+Figure joined(const std::string& name, const std::string& title, std::vector<Figure> parts) {
+  if (parts.size() == 1 && parts.front().name == name) return std::move(parts.front());
+  Figure figure{name, title.empty() ? parts.front().title : title, {}};
+  figure.within = parts.front().within;
+  figure.simulated = simulated_by(parts);
+  for (const Figure& part : parts) {
+    for (const std::string& key : part.keys) {
+      if (std::ranges::find(figure.keys, key) == figure.keys.end()) figure.keys.push_back(key);
+    }
+    figure.claims.insert(figure.claims.end(), part.claims.begin(), part.claims.end());
+    figure.needs.insert(figure.needs.end(), part.needs.begin(), part.needs.end());
+    if (part.within != figure.within) figure.within = {};
+  }
+  if (std::ranges::all_of(parts, [](const Figure& part) { return bool(part.uses); })) {
+    figure.uses = [parts](const FrameRun& run) {
+      return std::ranges::any_of(parts, [&](const Figure& part) { return part.uses(run); });
+    };
+  }
+  figure.make = [parts = std::move(parts)](const Frame& frame) {
+    FigureResult result;
+    for (const Figure& part : parts) {
+      FigureResult more = part.make(frame);
+      std::ranges::move(more.tables, std::back_inserter(result.tables));
+      std::ranges::move(more.verdicts, std::back_inserter(result.verdicts));
+    }
+    return result;
+  };
+  return figure;
+}
+
+}  // namespace
+
+std::string repeated_column(const PlotSpec& plot) {
+  std::set<std::string> names;
+  for (const MeasureColumn& column : columns_of(plot)) {
+    const std::string name = column_name(column, "mean");
+    if (!names.insert(name).second) return name;
+  }
+  return "";
+}
+
+std::string variants_have(std::size_t variants, const nlohmann::json& where) {
+  return variants == 0 ? "no variant has " + words_of(where)
+                       : fmt::format("{} variants have {}", variants, words_of(where));
+}
+
+std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
+  if (plot.minus.empty() || variants == 1) return "";
+  return fmt::format("{}; `minus` must name one.", variants_have(variants, plot.minus));
+}
+
+bool draws_every_cycle(const PlotSpec& plot) {
+  return find_curve(plot.y) == nullptr && !is_of_run(plot.x);
+}
+
+Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
+  const Measure* measured = find_curve(plot.y);
+  const std::string x(measured == nullptr ? plot.x : measured->x);
+  Figure figure{plot.name, plot.y + " against " + x,
+                [plot, names](const Frame& frame) { return make_plot(plot, frame, names); }};
+  for (const SeriesSpec& one : plot.series) {
+    for (const auto& [key, value] : one.where.items()) figure.keys.push_back(key);
+  }
+  std::vector<std::string> texts;
+  for (const ColumnSpec& one : plot.also) texts.push_back(one.measure);
+  if (plot.mark) texts.insert(texts.end(), {plot.mark->x, plot.mark->y});
+  texts.insert(texts.end(), {plot.x, plot.y});
+  figure.needs = providers_of(texts);
+  if (!plot.where.empty()) {
+    json where = plot.where;
+    where.erase("cycle");
+    figure.uses = [where, minus = plot.minus](const FrameRun& run) {
+      return has_parameters(run, where) || (!minus.empty() && has_parameters(run, minus));
+    };
+  }
+  figure.within = plot.cycles;
+  if (plot.cycle && !draws_every_cycle(plot) && !is_of_run(plot.y)) {
+    figure.within = {{*plot.cycle, *plot.cycle}};
+  }
+  return figure;
+}
+
+std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
+                                const NameVariants& names, const std::string& question) {
+  nlohmann::ordered_map<std::string, std::vector<Figure>> figures;  // their parts
+  for (const PlotSpec& plot : plots) {
+    figures[figure_of(plot)].push_back(plot_figure(plot, names));
+  }
+  for (const ClaimSpec& claim : claims) {
+    figures[figure_of(claim)].push_back(claim_figure(claim));
+  }
+  std::vector<Figure> found;
+  for (auto& [name, parts] : figures) found.push_back(joined(name, question, std::move(parts)));
+  return found;
+}
+
+}  // namespace shearcell

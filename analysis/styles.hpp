@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colours and symbols of variants: the same in every panel and figure of an experiment.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/chart.hpp"
+#include "analysis/frame.hpp"
+
+namespace shearcell {
+
+/// Colours for readers with any colour vision (Okabe and Ito, jfly.uni-koeln.de/color), and their
+/// names in manifests.
+inline constexpr std::array<const char*, 7> safe_colours = {
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+inline constexpr std::array<std::string_view, 7> colour_names = {
+    "blue", "vermilion", "green", "purple", "orange", "sky", "black"};
+
+/// No symbol, then those of curve_symbol(), as manifests name them.
+inline constexpr std::array<std::string_view, 11> marker_names = {
+    "none",        "square",      "circle",        "triangle",           "triangle_down", "diamond",
+    "open_square", "open_circle", "open_triangle", "open_triangle_down", "open_diamond"};
+
+/// The five filled symbols, then the open ones.
+inline int curve_symbol(std::size_t k) {
+  return (k / 5 % 2 == 0 ? 5 : 4) + 2 * static_cast<int>(k % 5);
+}
+inline constexpr std::size_t curve_symbols = 10;
+
+struct Look {
+  std::string colour = {};  ///< "#rrggbb"
+  int point = 0;            ///< as Series::point
+  Join join = Join::line;   ///< of a curve without symbols: dashes once its colour occurs twice
+};
+
+/// The look of an amplitude in all figures; of one that the supplement does not have, that of the
+/// k-th curve.
+Look amplitude_look(double amplitude_rad, std::size_t k);
+
+/// Looks by the values of the keys that vary in the frame: the rank of the first key's value
+/// decides the colour, the rank of the other values the symbol, as far as there are colours and
+/// symbols. The supplement's amplitudes have their own colours (amplitude_look()).
+class Looks {
+ public:
+  explicit Looks(const Frame& frame);
+
+  /// The look of a curve: of one variant by all its swept values, else by `key`, the values that
+  /// its runs have in common.
+  Look of(RunGroup curve, const nlohmann::json& key) const;
+
+ private:
+  std::vector<nlohmann::json> variants_;
+  std::vector<std::string> keys_;
+};
+
+}  // namespace shearcell
