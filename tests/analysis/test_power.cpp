@@ -132,7 +132,7 @@ std::vector<Kind> kinds() {
       {"phi, mean over cycles 1 to 15", margin_early_phi, "0.0005 a pair", one_group(0.0005)},
       {"phi, mean over cycles 1 to 15", margin_early_phi, "0.0005 a run, two groups",
        two_groups(0.0005)},
-      {"phi gained by pauses at rest, mean over cycles 1 to 15", margin_of("relaxation", "B5.phi"),
+      {"phi gained by pauses at rest, mean over cycles 1 to 15", margin_of("relaxation", "B5.rest"),
        "0.0005 a pair", one_group(0.0005), Relation::higher},
       {"percentage crystalline, mean over phi from 0.646 to 0.67 [points]", margin_percentage,
        "2 points a run, two groups", two_groups(2)},

@@ -20,24 +20,24 @@ import sys
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
 
-# A row of README.md: for each claim its figure, how it begins in the verdict, and the cells "claim" and "supplement".
+# A row of README.md: for each claim its figure, its id (of older manifests its name), and the cells "claim" and "supplement".
 HEADLINES = [
-    [("S5a", "C: the onset at A = 0.05 rad is", "phi at the onset, A = 0.05", "0.646 +- 0.001")],
-    [("S5b", "C: phi at the onset does not depend", "change of phi at the onset with ln N_inves", "none from 6000 on"),
-     ("S5b", "C: the onset at N = 18200", "phi at the onset in the largest cells", "0.646 +- 0.001")],
-    [("summary", "B.3 to D: no drag, time step, wall or gravity changes the percentage", "largest difference in the percentage crystalline over all variants", "negligible")],
-    [("summary", "B.3 to D: no drag, time step, wall or gravity changes phi", "largest difference in phi at the onset over all variants", "similar")],
-    [("S1", "B.2: phi_u falls by about 2 %", "fall of phi_u over a hundredfold k", "about 2 %"),
-     ("S1", "B.2: phi (Eq. S4) stays the same over a hundredfold k", "change of phi", "none")],
-    [("S3", "B.4: at 4.4e-5 s the average overlap", "mean overlap [d]", "less than 0.001")],
-    [("B5", "B.5: at cycles 1 to 15 phi of paused shear, as drawn", "phi with pauses minus without, as drawn", "grows faster"),
-     ("B5", "B.5: at cycles 1 to 15 phi of paused shear, at rest", "at rest", "grows faster")],
-    [("C", "C: the critical size at A = 0.0833", "critical size [grains], A = 0.0833, by delta_rho with the supplement's scatter", "about 16"),
-     ("committor", "C: at A = 0.0833 rad half", "by the committor", "about 16"),
-     ("C", "C: the critical size grows with A", "its relative growth with A at n_bin = 5", "grows")],
-    [("nucleation", "title: the rate", "exponent of the nucleation rate against N_inves", "1 (homogeneous)")],
-    [("S7", "E: crystallites are equally probable", "share of nuclei in the inner minus the outer half", "equal"),
-     ("S7", "E: crystallites are more probable near the top", "in the upper minus the lower third", "more near the top, by over 0.2")],
+    [("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001")],
+    [("S5b", "S5b.slope", "change of phi at the onset with ln N_inves", "none from 6000 on"),
+     ("S5b", "S5b.onset@grains=18200", "phi at the onset in the largest cells", "0.646 +- 0.001")],
+    [("summary", "summary.percentage", "standard deviation between variants of the percentage crystalline (chosen after seeing)", "negligible")],
+    [("summary", "summary.onset", "standard deviation between variants of phi at the onset (chosen after seeing)", "similar")],
+    [("S1", "S1.fall", "fall of phi_u over a hundredfold k", "about 2 %"),
+     ("S1", "S1.phi", "change of phi", "none")],
+    [("S3", "S3_overlap", "mean overlap [d]", "less than 0.001")],
+    [("B5", "B5_drawn", "phi with pauses minus without, as drawn", "grows faster"),
+     ("B5", "B5_phi", "at rest", "grows faster")],
+    [("C", "C.critical_size@amplitude_rad=0.0833", "critical size [grains], A = 0.0833, by delta_rho with the supplement's scatter", "about 16"),
+     ("committor", "committor.size@amplitude_rad=0.0833", "by the committor", "about 16"),
+     ("C", "C.growth", "its relative growth with A at n_bin = 5", "grows")],
+    [("nucleation", "nucleation.volume", "exponent of the nucleation rate against N_inves", "1 (homogeneous)")],
+    [("S7", "S7.inner", "share of nuclei in the inner minus the outer half", "equal"),
+     ("S7", "S7.top", "in the upper minus the lower third", "more near the top, by over 0.2")],
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
 SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
@@ -46,7 +46,7 @@ FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleat
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
-    (r"relative fall of phi_u less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
+    (r"relative fall of .* less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
     (r"phi at the onset less ([\d.]+)", lambda value, base: value + base, ""),
     (r"relative difference from ([\d.]+)", lambda value, base: base * (1 + value), ""),
     (r"exponent of the rate against \w+ less ([\d.]+)", lambda value, base: value + base, ""),
@@ -132,9 +132,9 @@ def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "margin", "packings", "verdict"])
     for parts in HEADLINES:
         cells = []
-        for figure, beginning, name, supplement in parts:
+        for figure, identity, name, supplement in parts:
             found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
-                     if of == figure and claim["claim"].startswith(beginning) and "(P on" not in claim["claim"]]
+                     if of == figure and claim.get("id") == identity]
             if found:
                 _, drawing, claim = best_of(found)
                 cells.append([name, supplement, measured(claim), margin(claim), runs(claim),
@@ -155,7 +155,7 @@ def in_order(figure, claim):
 
 def all_claims(page, results):
     """A row for each claim; its last cell has what other folders' runs gave."""
-    rows = [["figure", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict", "folder",
+    rows = [["figure", "id", "claim", "quantity", "measured (90 % interval)", "margin", "runs", "verdict", "folder",
              "other folders: estimate, verdict (runs)"]]
     asked = {}  # by figure and claim
     for place, figure, drawing, claim in verdicts(results):
@@ -168,7 +168,7 @@ def all_claims(page, results):
         value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})" if is_measured else "not measured"
         others = [f"{one[0]}: {digits(one[2]['estimate'])}, {one[2]['verdict']} ({runs(one[2])})"
                   for one in found if one != best and one[2]["estimate"] is not None]
-        rows.append([figure, name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], place,
+        rows.append([figure, claim.get("id", ""), name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], place,
                      "; ".join(others)])
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)

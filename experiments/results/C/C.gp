@@ -21,7 +21,7 @@ set xrange [0:60]
 set yrange [-1.05:1.05]
 set offsets 0, 0, 0, 0
 set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#888888'
-set arrow from 10, graph 0 to 10, graph 0.06 nohead lw 2 lc rgb '#6a3d9a'
+set arrow from 10, graph 0 to 10, graph 0.06 nohead lw 2 lc rgb '#cc79a7'
 set arrow from 10, graph 0 to 10, graph 0.06 nohead lw 2 lc rgb '#000000'
 set arrow from 13, graph 0 to 13, graph 0.06 nohead lw 2 lc rgb '#009e73'
 set arrow from 16, graph 0 to 16, graph 0.06 nohead lw 2 lc rgb '#0072b2'
@@ -641,8 +641,8 @@ $series9 << EOD
 4019.761,-0.1,,0.260499599
 4205.40406,0.3,,0.200609922
 EOD
-plot keyentry with lines lc rgb '#6a3d9a' lw 1.2 notitle, \
-     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
+plot keyentry with lines lc rgb '#cc79a7' lw 1.2 notitle, \
+     keyentry with points lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
      keyentry with lines lc rgb '#000000' lw 1.2 notitle, \
      keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05', \
      keyentry with lines lc rgb '#009e73' lw 1.2 notitle, \
@@ -655,7 +655,7 @@ plot keyentry with lines lc rgb '#6a3d9a' lw 1.2 notitle, \
      $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#6a3d9a' fs transparent solid 0.2 noborder notitle, \
+     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \
      $series9 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
      $series9 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
      $series8 using 1:2 with lines lc rgb '#d55e00' lw 1.2 notitle, \
@@ -668,7 +668,7 @@ plot keyentry with lines lc rgb '#6a3d9a' lw 1.2 notitle, \
      $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
      $series2 using 1:2 with lines lc rgb '#000000' lw 1.2 notitle, \
-     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#6a3d9a' lw 0.7 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#6a3d9a' lw 1.2 notitle
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#cc79a7' lw 0.7 notitle, \
+     $series1 every 1 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series0 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 notitle
 set output

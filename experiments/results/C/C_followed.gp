@@ -73,8 +73,8 @@ EOD
 $series9 << EOD
 1,20,,
 EOD
-plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
-     keyentry with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 1.1 notitle, \
+plot keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
+     keyentry with points lc rgb '#cc79a7' lw 1.2 pt 4 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 1.1 notitle, \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0667', \
@@ -95,5 +95,5 @@ plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 1.1 notitle, \
      $series2 every 1 using 1:($2-$4>0?$2-$4:1.09860284):(0):($2+$4-($2-$4>0?$2-$4:1.09860284)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series2 every 1 using 1:2 with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#6a3d9a' lw 1.2 pt 4 ps 1.1 notitle
+     $series1 every 1 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 4 ps 1.1 notitle
 set output

@@ -12,7 +12,7 @@ set output 'C_largest.svg'
 set label '(c)' at screen 0.015, screen 0.96 left front
 set key maxcols 1 width -6
 set xlabel 'volume fraction  {/:Italic ϕ}'
-set ylabel 'largest crystallite  [grains]'
+set ylabel 'largest crystallite [grains]'
 set xtics 0.02
 set format x '%.2f'
 set logscale y
@@ -21,7 +21,7 @@ set mytics 10
 set xrange [*:*]
 set yrange [0.656070342:6982.99107]
 set offsets graph 0.03, graph 0.03, 0, 0
-set arrow from graph 0, first 10 to graph 1, first 10 nohead dt 2 lc rgb '#6a3d9a'
+set arrow from graph 0, first 10 to graph 1, first 10 nohead dt 2 lc rgb '#cc79a7'
 set arrow from graph 0, first 10 to graph 1, first 10 nohead dt 2 lc rgb '#000000'
 set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#009e73'
 set arrow from graph 0, first 16 to graph 1, first 16 nohead dt 2 lc rgb '#0072b2'
@@ -204,7 +204,7 @@ $series4 << EOD
 0.716874058,4048.74451,0.000207995215,106.899016
 0.718209351,4156.66667,4.85423446e-05,148.740989
 EOD
-plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
+plot keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.04', \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05 (1 to 6 runs)', \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0667 (1 to 12 runs)', \
      keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.0833 (1 to 40 runs)', \
@@ -213,7 +213,7 @@ plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      $series3 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#6a3d9a' fs transparent solid 0.2 noborder notitle, \
+     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \
      $series4 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
      $series4 every 5 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
      $series3 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
@@ -222,6 +222,6 @@ plot keyentry with linespoints lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      $series2 every 5 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
      $series1 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
      $series1 every 5 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 every 5 using 1:2 with points lc rgb '#6a3d9a' lw 1.2 pt 5 ps 0.4 notitle
+     $series0 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series0 every 5 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 notitle
 set output

@@ -1,4 +1,4 @@
-set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,260 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -9,31 +9,28 @@ set mytics 2
 set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'S5b.svg'
-set key maxcols 1 width -6
-set xlabel 'grains  {/:Italic N}'
-set ylabel 'onset  {/:Italic ϕ}'
-set xtics 5000
+set key maxcols 1 width -5
+set xlabel '{/:Italic N}'
+set ylabel 'onset {/:Italic ϕ}'
+set xtics 2000
 set format x '%.0f'
 set ytics 0.0005
 set format y '%.4f'
-set xrange [0:20000]
-set yrange [0.644597129:0.647274397]
-set offsets 0, 0, 0, 0
-set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
-set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
+set xrange [*:*]
+set yrange [0.644606698:0.647278451]
+set offsets graph 0.03, graph 0.03, 0, 0
+set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#000000'
 $series0 << EOD
-5200,0.64677253,,0.000380173497
-7900,0.646452507,,0.000343689439
-11400,0.645694276,,0.000463024011
-18200,0.645158536,,0.00043971327
+5200,0.64677253,,0.000384477601
+7900,0.646452507,,0.000334470341
+11400,0.645694276,,0.000459299487
+18200,0.645158536,,0.000430394366
 EOD
-$series1 << EOD
-0,0.645,,
-20000,0.645,,
-EOD
-plot keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'simulated (6 to 11 runs)', \
-     keyentry with lines lc rgb '#e69f00' lw 1.2 title 'experiment, {/:Italic A} = 0.01', \
-     $series1 every 1 using 1:2 with lines lc rgb '#e69f00' lw 1.2 notitle, \
-     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
-     $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 11 runs', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'experiment, {/:Italic A} = 0.01', \
+     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output

@@ -1,4 +1,4 @@
-set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,260 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -11,29 +11,30 @@ set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'S6_onset.svg'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set key maxcols 1 width -6
-set xlabel 'amplitude  {/:Italic A}  [rad]'
-set ylabel 'onset  {/:Italic ϕ}'
-set xtics 0.02
-set format x '%.2f'
+set xlabel '{/:Italic A}  [rad]'
+set ylabel 'onset {/:Italic ϕ}'
+set xtics 0.002
+set format x '%.3f'
 set ytics 0.0005
 set format y '%.4f'
-set xrange [0:0.12]
-set yrange [0.644265611:0.647378357]
-set offsets 0, 0, 0, 0
-set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#888888'
-set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#888888'
+set xrange [*:*]
+set yrange [0.644321881:0.647322087]
+set offsets graph 0.03, graph 0.03, 0, 0
+set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#000000'
 $series0 << EOD
-0.04,0.645009919,,0.000347804643
-0.05,0.646452507,,0.000343689439
+0.04,0.645821984,,0.00136373009
+0.05,0.646327402,,0.000304148377
 EOD
 $series1 << EOD
-0.04,0.645821984,,0.00141488454
-0.05,0.646327402,,0.000310513013
+0.04,0.645009919,,0.000346073308
+0.05,0.646452507,,0.000334470341
 EOD
-plot keyentry with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'gravity (4 to 11 runs)', \
-     keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'no gravity (2 to 11 runs)', \
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title 'g=0 m/s\^2 (2 to 11 runs)', \
+     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'g=9.81 m/s\^2 (4 to 11 runs)', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
      $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
-     $series0 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle
+     $series1 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
+     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output

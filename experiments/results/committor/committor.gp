@@ -21,10 +21,10 @@ set xrange [0:21]
 set yrange [0:1]
 set offsets 0, 0, 0, 0
 set arrow from graph 0, first 0.5 to graph 1, first 0.5 nohead dt 2 lc rgb '#888888'
-set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#0072b2'
-set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#d55e00'
-set arrow from graph 0, first 0.0416666667 to graph 1, first 0.0416666667 nohead dt 2 lc rgb '#009e73'
-set arrow from graph 0, first 0.78125 to graph 1, first 0.78125 nohead dt 2 lc rgb '#cc79a7'
+set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#009e73'
+set arrow from graph 0, first 0.0416666667 to graph 1, first 0.0416666667 nohead dt 2 lc rgb '#0072b2'
+set arrow from graph 0, first 0.78125 to graph 1, first 0.78125 nohead dt 2 lc rgb '#d55e00'
 $series0 << EOD
 3,-1.7214008e-12,,1.27115741e-12
 4,1.33673028e-08,,1.36086555e-08
@@ -116,28 +116,28 @@ $series7 << EOD
 15.3261886,1,,0.0829882663
 17.3570406,1,,0.0712169308
 EOD
-plot keyentry with lines lc rgb '#0072b2' lw 1.2 notitle, \
-     keyentry with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.05', \
-     keyentry with lines lc rgb '#d55e00' lw 1.2 notitle, \
-     keyentry with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0667', \
+plot keyentry with lines lc rgb '#000000' lw 1.2 notitle, \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05', \
      keyentry with lines lc rgb '#009e73' lw 1.2 notitle, \
-     keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0833', \
-     keyentry with lines lc rgb '#cc79a7' lw 1.2 notitle, \
-     keyentry with points lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.1', \
-     $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \
-     $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
-     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
-     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
-     $series7 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#cc79a7' lw 0.7 notitle, \
-     $series7 every 1 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 notitle, \
-     $series6 every 1 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 notitle, \
-     $series5 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
-     $series5 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
-     $series4 every 1 using 1:2 with lines lc rgb '#009e73' lw 1.2 notitle, \
-     $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
-     $series3 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
-     $series2 every 1 using 1:2 with lines lc rgb '#d55e00' lw 1.2 notitle, \
-     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
-     $series1 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series0 every 1 using 1:2 with lines lc rgb '#0072b2' lw 1.2 notitle
+     keyentry with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0667', \
+     keyentry with lines lc rgb '#0072b2' lw 1.2 notitle, \
+     keyentry with points lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with lines lc rgb '#d55e00' lw 1.2 notitle, \
+     keyentry with points lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 title '{/:Italic A} = 0.1', \
+     $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
+     $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
+     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
+     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
+     $series7 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
+     $series7 every 1 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series6 every 1 using 1:2 with lines lc rgb '#d55e00' lw 1.2 notitle, \
+     $series5 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
+     $series5 every 1 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series4 every 1 using 1:2 with lines lc rgb '#0072b2' lw 1.2 notitle, \
+     $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
+     $series3 every 1 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series2 every 1 using 1:2 with lines lc rgb '#009e73' lw 1.2 notitle, \
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
+     $series1 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series0 every 1 using 1:2 with lines lc rgb '#000000' lw 1.2 notitle
 set output

@@ -20,10 +20,10 @@ set format y '%.0f'
 set xrange [0.5:3.5]
 set yrange [0:25]
 set offsets 0, 0, 0, 0
-set arrow from graph 0, first 10 to graph 1, first 10 nohead dt 2 lc rgb '#0072b2'
-set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#d55e00'
-set arrow from graph 0, first 16 to graph 1, first 16 nohead dt 2 lc rgb '#009e73'
-set arrow from graph 0, first 20 to graph 1, first 20 nohead dt 2 lc rgb '#cc79a7'
+set arrow from graph 0, first 10 to graph 1, first 10 nohead dt 2 lc rgb '#000000'
+set arrow from graph 0, first 13 to graph 1, first 13 nohead dt 2 lc rgb '#009e73'
+set arrow from graph 0, first 16 to graph 1, first 16 nohead dt 2 lc rgb '#0072b2'
+set arrow from graph 0, first 20 to graph 1, first 20 nohead dt 2 lc rgb '#d55e00'
 $series1 << EOD
 1.04,11.9273505,,
 2.04,10.9140187,,1.18993659
@@ -34,12 +34,12 @@ $series2 << EOD
 2.08,6.95107529,,0.573321962
 3.08,6.77343115,,0.820792309
 EOD
-plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '{/:Italic A} = 0.05', \
-     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.0667', \
-     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0833', \
-     keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.1', \
-     $series2 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
-     $series2 every 1 using 1:2 with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle, \
-     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
-     $series1 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle
+plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic A} = 0.05', \
+     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 title '{/:Italic A} = 0.0667', \
+     keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title '{/:Italic A} = 0.0833', \
+     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 title '{/:Italic A} = 0.1', \
+     $series2 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
+     $series2 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
+     $series1 every 1 using 1:2 with linespoints lc rgb '#009e73' lw 1.2 pt 9 ps 0.4 notitle
 set output
