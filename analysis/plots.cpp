@@ -321,7 +321,8 @@ std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group>
   std::vector<std::size_t> places, used(plot.series.size() + 1);
   for (const Group& group : groups) {
     const auto style = std::ranges::find_if(plot.series, [&](const SeriesSpec& one) {
-      return (own || !plot.listed) && has_parameters(*group.runs.front()->run, one.where);
+      return one.column.empty() && (own || !plot.listed) &&
+             has_parameters(*group.runs.front()->run, one.where);
     });
     places.push_back(static_cast<std::size_t>(style - plot.series.begin()));
     ++used[places.back()];
@@ -339,18 +340,19 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
+/// Sets the colour and the symbol that are stated.
+void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
+  if (!stated.colour.empty()) colour = colour_of(stated);
+  const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
+                                               marker_names.begin());
+  if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
+}
+
 /// Sets title and look as PlotSpec::series states.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
-  if (!stated.colour.empty()) {
-    curve.look.colour = colour_of(stated);
-    curve.look.join = Join::line;
-  }
-  const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
-                                               marker_names.begin());
-  if (symbol < marker_names.size()) {
-    curve.look.point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
-  }
+  if (!stated.colour.empty()) curve.look.join = Join::line;
+  set_look(stated, curve.look.colour, curve.look.point);
 }
 
 /// Sets Panel::curves, in the order of PlotSpec::series, then by their values.
@@ -761,18 +763,23 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// The names of the drawn columns in the key.
-std::vector<Text> labels_of(const PlotSpec& plot) {
-  const auto label_of = [](const std::string& text, const std::string& name) {
-    if (!name.empty()) return Text(formula(boost::replace_all_copy(name, "_", " ")));
-    const Axis axis = axis_of(text);
-    return axis.symbol.empty() ? axis.name : axis.symbol;
-  };
-  std::vector<Text> labels = {label_of(plot.y, plot.column)};
-  for (std::size_t k = 0; k < plot.drawn; ++k) {
-    labels.push_back(label_of(plot.also[k].measure, plot.also[k].name));
+/// Title and look of the k-th y of a plot that draws several: as stated, else its symbol or name.
+void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
+  const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
+  const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
+  // Of one curve the columns differ in colour, of several in symbols.
+  if (alone) series.colour = safe_colours[k % safe_colours.size()];
+  series.point = alone ? curve_symbol(k) : series.point - static_cast<int>(k % 2);
+  const Axis axis = axis_of(measure);
+  Text label = !axis.symbol.empty() ? axis.symbol
+               : name.empty()       ? axis.name
+                                    : formula(boost::replace_all_copy(name, "_", " "));
+  const auto stated = std::ranges::find(plot.series, name, &SeriesSpec::column);
+  if (stated != plot.series.end() && !name.empty()) {
+    if (!stated->label.empty()) label = formula(stated->label);
+    if (alone) set_look(*stated, series.colour, series.point);
   }
-  return labels;
+  series.title = alone ? label : series.title + Text(", ") + label;
 }
 
 /// Adds PlotSpec::mark.
@@ -829,13 +836,11 @@ Table draw(const Panel& panel) {
       drawn.columns = columns_against(x, columns[k]);
       drawn.columns.x_error = series.columns.x_error;
       if (plot.drawn == 0) continue;
-      // Of one curve the columns differ in colour, of several in symbols.
-      const bool alone = panel.curves.size() == 1;
-      if (alone) drawn.colour = safe_colours[k % safe_colours.size()];
-      drawn.point = alone ? curve_symbol(k) : drawn.point - static_cast<int>(k % 2);
+      name_y(plot, k, panel.curves.size() == 1, drawn);
       if (k > 0) drawn.columns.runs = columns[k].name + "_runs";
-      const Text label = labels_of(plot)[k];
-      drawn.title = alone ? label : drawn.title + Text(", ") + label;
+      if (what == Against::number_of_run && !bins.empty()) {
+        drawn.shift = static_cast<double>(k) * (bins.back().at - bins.front().at) / 60;
+      }
     }
   }
   std::ranges::move(single, std::back_inserter(table.chart.series));

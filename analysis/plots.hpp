@@ -34,6 +34,7 @@ inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y"
 /// what varies (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
+  std::string column = {};  ///< instead: of the y with this name
   std::string label = {};   ///< with formulas (formula)
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names

@@ -579,6 +579,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   }
   for (const SeriesSpec& one : plot.series) {
     if (plot.listed) break;  // only of the manifest that states the plot
+    if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const bool of_another = std::ranges::any_of(
         all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });

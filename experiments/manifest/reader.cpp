@@ -248,8 +248,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.series,
       {.name = "series",
        .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or `\"#rrggbb\"`) "
-              "and marker of curves: by the value of `by`, or by `\"KEY=VALUE\"` as in `labels`. "
-              "Curves come in this order",
+              "and marker of curves: by the value of `by`, by `\"KEY=VALUE\"` as in `labels`, or "
+              "by the "
+              "name of one of several `y`. Curves come in this order",
        .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
@@ -1194,9 +1195,15 @@ struct Reader {
       json& where = plot.series[k].where;
       if (!where.contains("")) continue;
       const Node& part = in.parts[k];
+      const std::span drawn = std::span(plot.also).first(plot.drawn);
+      if (plot.column == part.key || std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
+        where = json::object();
+        plot.series[k].column = part.key;
+        continue;
+      }
       if (plot.by.empty()) {
         reject_key(part, "names no parameter",
-                   "Write `\"KEY=VALUE\"`, or name the parameter with `by`.");
+                   "Write `\"KEY=VALUE\"`, name the parameter with `by`, or write a name of `y`.");
         continue;
       }
       const Node value = {
