@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "analysis/estimators.hpp"
+#include "analysis/estimators/notes.hpp"
+#include "analysis/looks.hpp"
 #include "analysis/plots.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
@@ -113,9 +115,79 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   return verdict;
 }
 
+/// The verdict of the first planned look that decides. A look at n seeds takes the runs of the
+/// first n seeds of each side and exists when all of them have ended; without stated looks there is
+/// one, at all seeds. Between looks there are numbers, of the first seeds that have ended, and no
+/// verdict. Runs of other seeds have no part in it.
+Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
+                 const Frame& frame) {
+  std::set<std::uint64_t> begun, pending;
+  for (const auto& side : sides.runs) {
+    for (const FrameRun* run : side) begun.insert(run->place.seed);
+  }
+  for (const auto& side : sides_of(claim, frame.pending).runs) {
+    for (const FrameRun* run : side) pending.insert(run->place.seed);
+  }
+  std::vector<std::uint64_t> seeds = frame.seeds;
+  std::erase_if(seeds, [&](std::uint64_t s) { return !begun.contains(s) && !pending.contains(s); });
+  const auto of_first = [&](std::size_t count) {
+    const std::span first = std::span(seeds).first(count);
+    std::array<std::vector<const FrameRun*>, 2> runs = sides.runs;
+    for (auto& side : runs) {
+      std::erase_if(side, [&](const FrameRun* run) {
+        return std::ranges::find(first, run->place.seed) == first.end();
+      });
+    }
+    return decided_by(claim, stated, runs[0], runs[1]);
+  };
+  if (seeds.empty()) return decided_by(claim, stated, sides.runs[0], sides.runs[1]);
+  const auto first_pending =
+      std::ranges::find_if(seeds, [&](std::uint64_t seed) { return pending.contains(seed); });
+  const auto ended = static_cast<std::size_t>(first_pending - seeds.begin());
+  std::vector<std::size_t> looks = frame.looks;
+  std::erase_if(looks, [&](std::size_t look) { return look > seeds.size(); });
+  if (looks.empty()) looks = {seeds.size()};
+  stated.level = look_level(looks);
+  Verdict verdict;
+  std::size_t taken = 0;
+  for (const std::size_t look : looks) {
+    if (look > ended || verdict.ruling != Ruling::undecided) break;
+    verdict = of_first(taken = look);
+  }
+  const auto next = std::ranges::upper_bound(looks, ended);
+  if (verdict.ruling == Ruling::undecided && ended != taken) {
+    verdict = of_first(ended);
+    verdict.ruling = Ruling::undecided;
+  }
+  if (taken == 0 && ended == 0) {
+    verdict = of_first(seeds.size());
+    verdict.ruling = Ruling::undecided;
+  }
+  if (verdict.ruling == Ruling::undecided && next != looks.end()) {
+    verdict.runs_needed.reset();
+    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look is at {}", ended,
+                                       seeds.size(), *next));
+    if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
+      const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
+      const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
+      add_note(verdict.note,
+               fmt::format("if this estimate is true, a verdict is given there or before with "
+                           "probability {:.2f}",
+                           there.as_claimed + there.against));
+    }
+  }
+  if (!frame.looks.empty()) verdict.looks = looks, verdict.look = taken;
+  std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
+  if (begun.empty()) return verdict;
+  const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
+  add_note(verdict.note, fmt::format("unplanned look, with {} more: {}",
+                                     counted(begun.size(), "seed"), numbers_of(all)));
+  return verdict;
+}
+
 /// Nothing for an optional claim without runs.
-std::optional<Verdict> decide_one(const ClaimSpec& claim, std::span<const FrameRun> runs) {
-  ClaimSides sides = sides_of(claim, runs);
+std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
+  ClaimSides sides = sides_of(claim, frame.runs);
   if (claim.optional && sides.lacks_one) return {};
   const Claim decided = stated(claim, sides.names);
   const std::vector<std::string> problems = problems_of_sides(claim, sides, false);
@@ -130,7 +202,7 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, std::span<const FrameR
         decided, "difference in " + words_of(claim), std::nullopt, 0,
         fmt::format("no run{} has a checkpoint{}", name.empty() ? "" : " with " + name, reach));
   }
-  return decided_by(claim, decided, sides.runs[0], sides.runs[1]);
+  return at_looks(claim, decided, sides, frame);
 }
 
 }  // namespace
@@ -157,7 +229,9 @@ std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sid
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {
     nlohmann::json swept = run->place.swept;
-    for (const auto& [key, value] : claim.between.at(k).items()) swept.erase(key);
+    for (const auto& [key, value] : claim.between.at(k).items()) {
+      if (swept.is_object()) swept.erase(key);  // of a damaged store it may be none
+    }
     others.insert(std::move(swept));
   }
   return others;
@@ -217,7 +291,7 @@ Figure claim_figure(const ClaimSpec& claim) {
   Figure figure{claim.id, "", [claim](const Frame& frame) {
                   FigureResult result;
                   for (const ClaimSpec& one : each_of(claim, frame.runs)) {
-                    if (auto verdict = decide_one(one, frame.runs)) {
+                    if (auto verdict = decide_one(one, frame)) {
                       result.verdicts.push_back(std::move(*verdict));
                     }
                   }

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "analysis/censored.hpp"
 #include "analysis/estimators/notes.hpp"
 #include "core/named.hpp"
 #include "provenance/words.hpp"
@@ -21,8 +22,8 @@ using Number = std::function<double(double value)>;
 
 /// The numbers of one or two groups of runs, and why other runs have none.
 struct Values {
-  std::map<const FrameRun*, double> numbers;  ///< not finite where there is none
-  std::size_t runs = 0;
+  std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite where there is none
+  std::size_t runs = 0, censored = 0;
   std::map<Missing, std::size_t> missing;
   std::size_t not_positive = 0;  ///< values without a logarithm, which are left out
   bool enough = true;            ///< three quarters of each group have a number
@@ -32,20 +33,38 @@ struct Values {
     std::size_t without = 0;
     for (const FrameRun* run : group) {
       const RunValue value = scalar.of(*run);
-      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
-      const double found = numbers[run] = number(value.or_nan());
-      if (value.missing != Missing::nothing) ++missing[value.missing];
-      if (std::isfinite(found)) continue;
+      CensoredValue found = {number(value.or_nan()), false};
+      TableRow row = {value.or_nan(), std::string(name_of(value.missing))};
+      if (value.missing == Missing::too_short && std::isfinite(number(value.above))) {
+        found = {number(value.above), true};
+        ++censored;
+        if (entered.columns.size() < 6) entered.columns.emplace_back("above");
+        row.emplace_back(value.above);
+      } else if (value.missing != Missing::nothing) {
+        ++missing[value.missing];
+      }
+      enter(*run, row, entered);
+      numbers[run] = found;
+      if (std::isfinite(found.value)) continue;
       ++without;
       not_positive += value.missing == Missing::nothing ? 1 : 0;
     }
     runs += group.size();
     enough = enough && 4 * without <= group.size();
   }
-  std::vector<double> over_packings(RunGroup group) const {
-    std::vector<double> values;
-    for (const FrameRun* run : group) values.push_back(numbers.at(run));
-    return shearcell::over_packings(group, values);
+  /// The mean over the runs of each packing; censored if one of them is.
+  std::vector<CensoredValue> over_packings(RunGroup group) const {
+    std::vector<CensoredValue> means;
+    for (const auto& [packing, members] : by_packing(group)) {
+      std::vector<double> values;
+      bool above = false;
+      for (const FrameRun* run : members) {
+        values.push_back(numbers.at(run).value);
+        above = above || numbers.at(run).censored;
+      }
+      if (const auto mean = over_runs(values).mean) means.push_back({*mean, above});
+    }
+    return means;
   }
 };
 
@@ -56,6 +75,10 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
     add_note(note,
              fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
                          values.not_positive, values.runs, scalar.reach));
+  }
+  if (values.censored > 0) {
+    add_note(note, fmt::format("{} of {} runs end before {} and are censored", values.censored,
+                               values.runs, scalar.reach));
   }
   for (const auto& [why, count] : values.missing) {
     add_note(note, fmt::format("{} of {} runs {} {}", count, values.runs,
@@ -73,12 +96,15 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   } else if (runs < least_runs) {
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
-  return decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
+  Verdict verdict =
+      decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
+  verdict.censored = values.censored;
+  return verdict;
 }
 
-/// Differences a - b of the packings that both groups have: each of the mean over its runs.
+/// The numbers of the packings that both groups have: each of the mean over its runs.
 struct Pairs {
-  std::vector<double> differences;
+  std::vector<CensoredValue> a, b;
   bool any = false;    ///< different runs share a packing, with numbers or without
   bool enough = true;  ///< three quarters of the packings of each group
 };
@@ -89,20 +115,23 @@ Pairs paired(RunGroup a, RunGroup b, const Values& values) {
     const auto same = second.find(packing);
     if (same == second.end() || same->second == runs) continue;
     pairs.any = true;
-    const std::vector<double> x = values.over_packings(runs);
-    const std::vector<double> y = values.over_packings(same->second);
-    if (!x.empty() && !y.empty()) pairs.differences.push_back(x.front() - y.front());
+    const std::vector<CensoredValue> x = values.over_packings(runs);
+    const std::vector<CensoredValue> y = values.over_packings(same->second);
+    if (x.empty() || y.empty()) continue;
+    pairs.a.push_back(x.front());
+    pairs.b.push_back(y.front());
   }
-  pairs.enough = 4 * pairs.differences.size() >= 3 * std::max(first.size(), second.size());
+  pairs.enough = 4 * pairs.a.size() >= 3 * std::max(first.size(), second.size());
   return pairs;
 }
 
 }  // namespace
 
 std::span<const Estimator> all_estimators() {
-  static const std::array all = {mean_over_cycles,   mean_over_phi, number_of_the_run,
-                                 change_over_cycles, relative_fall, first_cycle_reached,
-                                 waiting_ratio,      slope_against, spread_of_variants};
+  static const std::array all = {mean_over_cycles,    mean_over_phi, number_of_the_run,
+                                 change_over_cycles,  relative_fall, slope_over_cycles,
+                                 first_cycle_reached, waiting_ratio, slope_against,
+                                 spread_of_variants};
   return all;
 }
 
@@ -130,8 +159,8 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
   std::string note;
   std::size_t runs = 0;
   if (pairs.any) {
-    estimate = mean_of(pairs.differences);
-    runs = pairs.differences.size();
+    estimate = censored_difference(pairs.a, pairs.b, true, claim.level);
+    runs = pairs.a.size();
     note = fmt::format("{} of runs that share{} a packing", counted(runs, "pair"),
                        runs == 1 ? "s" : "");
     if (estimate && !pairs.enough) {
@@ -139,8 +168,8 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
       estimate.reset();
     }
   } else {
-    const std::vector<double> x = all.over_packings(a), y = all.over_packings(b);
-    estimate = difference_of_means(x, y);
+    const std::vector<CensoredValue> x = all.over_packings(a), y = all.over_packings(b);
+    estimate = censored_difference(x, y, false, claim.level);
     runs = std::min(x.size(), y.size());
     note = fmt::format("{} and {} independent runs", x.size(), y.size());
   }
@@ -162,15 +191,18 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   };
   Values all;
   all.take(scalar, runs, number);
-  std::vector<double> values = all.over_packings(runs);
-  std::sort(values.begin(), values.end());  // the same bits in any order of the runs
+  std::vector<CensoredValue> values = all.over_packings(runs);
+  // The same bits in any order of the runs.
+  std::ranges::sort(values, {},
+                    [](const CensoredValue& v) { return std::pair(v.value, v.censored); });
   std::string quantity = scalar.name;
   if (scalar.relative) {
     quantity += fmt::format(", relative difference from {:.6g}", published);
   } else if (published != 0) {
     quantity += fmt::format(" less {:.6g}", published);
   }
-  return conclude(claim, quantity, mean_of(values), values.size(), all, scalar, "");
+  return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
+                  "");
 }
 
 Table entered_with(const std::vector<TableColumn>& columns) {

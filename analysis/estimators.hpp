@@ -24,10 +24,10 @@ struct Scalar {
 };
 
 struct Estimator {
-  std::string_view name;     ///< in manifests
-  std::string_view meaning;  ///< for the reference
-  /// Its key of a claim, whose presence implies the estimator; "": it has none.
-  std::string_view key = {};
+  std::string_view name;      ///< in manifests
+  std::string_view meaning;   ///< for the reference
+  std::string_view key = {};  ///< that its claims must state; "": none
+  bool of_run = false;        ///< compares a number of the whole run, not one of checkpoints
   /// The number of each run, whose mean or whose difference of means is estimated; or null.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Otherwise the verdict on the groups; the second is empty if the claim has a published number.
@@ -43,7 +43,8 @@ const Estimator& estimator_of(const ClaimSpec& claim);
 
 // The estimators, a file each.
 extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, change_over_cycles,
-    relative_fall, first_cycle_reached, waiting_ratio, slope_against, spread_of_variants;
+    relative_fall, slope_over_cycles, first_cycle_reached, waiting_ratio, slope_against,
+    spread_of_variants;
 
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
@@ -58,9 +59,10 @@ Scalar over_cycles(const std::string& name, const std::string& column, std::int6
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
 /// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
-/// left out. Otherwise Welch's interval. A verdict needs least_runs runs or pairs. So that runs
-/// that end early do not bias it, three quarters of each group must have the number, and with pairs
-/// also a partner. [choice]
+/// left out. Otherwise Welch's interval. A run that ends before an event is censored
+/// (censored.hpp). A verdict needs least_runs runs or pairs. So that other runs without the number
+/// do not bias it, three quarters of each group must have it, and with pairs also a partner.
+/// [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// The mean over runs less the published number.

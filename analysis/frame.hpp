@@ -5,6 +5,7 @@
 // (experiments/figures/collect.hpp).
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,12 @@ struct Frame {
   /// Swept values of all variants of the experiments at this scale, whether or not they are in
   /// `runs`: the colours of variants follow from these. Empty: those of `runs`.
   std::vector<nlohmann::json> variants;
+  /// Planned runs that have not ended: their place and parameters.
+  std::vector<FrameRun> pending = {};
+  /// Seeds of the experiments at this scale in their order, and the planned looks, in numbers of
+  /// these seeds. Without seeds every claim is decided by the runs that there are.
+  std::vector<std::uint64_t> seeds = {};
+  std::vector<std::size_t> looks = {};
 
   Frame(std::vector<FrameRun> all = {}, std::vector<nlohmann::json> of = {})  // NOLINT
       : runs(std::move(all)), variants(std::move(of)) {}
@@ -65,6 +72,8 @@ inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoi
 struct RunValue {
   double value = 0;
   Missing missing = Missing::nothing;
+  /// If the run ended before the event: the number is larger than this (censored). NaN: unknown.
+  double above = std::numeric_limits<double>::quiet_NaN();
 
   /// Not a number if it is missing.
   double or_nan() const;

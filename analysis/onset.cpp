@@ -50,7 +50,7 @@ RunOnset onset_by_size(const FrameRun& run) {
     }
     cycle_before = checkpoint.cycle, phi_before = phi, size_before = size;
   }
-  return {};
+  return {Observed::never, phi_before, cycle_before};
 }
 
 RunOnset onset_by_slope(const FrameRun& run) {
@@ -87,7 +87,7 @@ namespace {
 template <OnsetMethod kMethod, double RunOnset::*kValue>
 RunValue at_onset(const FrameRun& run) {
   const RunOnset onset = kMethod(run);
-  if (onset.observed == Observed::never) return {0, Missing::too_short};
+  if (onset.observed == Observed::never) return {0, Missing::too_short, onset.*kValue};
   if (onset.observed == Observed::before_start) return {0, Missing::too_late};
   if (onset.observed == Observed::unclear) return {0, Missing::undefined};
   return measured(onset.*kValue);

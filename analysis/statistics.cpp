@@ -201,7 +201,8 @@ Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& s
   return percentiles(bootstrap_values(runs, chosen, statistic), 1 - upper());
 }
 
-std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups) {
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
+                                              double level) {
   double n = 0, k = 0, sum = 0, sum_of_squares = 0, sizes = 0, within = 0;
   for (const std::vector<double>& group : groups) {
     const RunStatistics found = over_runs(group);
@@ -215,7 +216,7 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
     within += std::pow(found.standard_error.value_or(0), 2) * size * (size - 1);
   }
   if (k < 2 || n == k) return std::nullopt;
-  constexpr double tail = 0.05;
+  const double tail = (1 - level) / 2;
   const double size = (n - sizes / n) / (k - 1);
   const double between = (sum_of_squares - sum * sum / n) / (k - 1), noise = within / (n - k);
   const double least = boost::math::quantile(boost::math::fisher_f(k - 1, n - k), tail);

@@ -100,17 +100,19 @@ Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& s
 /// effects).
 struct SpreadBetween {
   double value = 0;        ///< sqrt of (variance between groups - variance within) / group size
-  double upper_limit = 0;  ///< exceeds the true one with 95 % probability
+  double upper_limit = 0;  ///< exceeds the true one with the probability (1 + level) / 2
   double f = 0;            ///< variance ratio; with no difference between groups it is about 1
 };
 /// Analysis of variance of groups of one value per run, which may be of unequal size: S. R. Searle,
 /// G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit is that
 /// of J. S. Williams, Biometrika 49, 278 (1962), with k groups and f = n - k:
 ///
-///     limit^2 = (k - 1) MSB (1 - F / f_ratio) / (n0 chi^2),   F, chi^2: 5 % quantiles
+///     limit^2 = (k - 1) MSB (1 - F / f_ratio) / (n0 chi^2),   F, chi^2: (1 - level) / 2
+/// quantiles
 ///
 /// None for fewer than two groups with values, or without a group of two.
-std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups);
+std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
+                                              double level = confidence_level);
 
 /// a / b of two independent estimates of positive quantities. The errors of the logarithms are
 /// added in squares, on each side those that move the ratio there: G. Y. Zou and A. Donner, Stat.

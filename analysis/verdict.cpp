@@ -43,13 +43,15 @@ json claim_of(const Verdict& verdict) {
                 {"quantity", verdict.quantity},
                 {"estimate", estimate},
                 {"interval", interval},
-                {"level", confidence_level},
+                {"level", rounded(verdict.level, significant)},
                 {"margin", rounded(verdict.margin, significant)},
                 {"verdict", name_of(verdict.ruling)},
                 {"runs", verdict.runs},
                 {"counted", name_of(verdict.counted)},
                 {"runs_needed", runs_needed},
                 {"note", verdict.note}};
+  if (verdict.censored > 0) claim["censored"] = verdict.censored;
+  if (!verdict.looks.empty()) claim["looks"] = verdict.looks, claim["look"] = verdict.look;
   if (verdict.primary) claim["primary"] = true;
   return claim;
 }
@@ -75,6 +77,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   verdict.claim = claim.text;
   verdict.quantity = std::move(quantity);
   verdict.margin = claim.margin;
+  verdict.level = claim.level;
   verdict.runs = runs;
   verdict.counted = counted;
   verdict.note = std::move(note);
@@ -82,6 +85,8 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   if (!estimate) return verdict;
   verdict.estimate = estimate->value;
   verdict.interval = estimate->interval;
+  verdict.spread = estimate->spread;
+  verdict.groups = estimate->groups;
   verdict.ruling = ruling_of(estimate->interval, claim.margin, claim.claimed);
   if (verdict.ruling == Ruling::undecided) {
     verdict.runs_needed = runs_needed(*estimate, claim.margin, claim.claimed);
@@ -137,12 +142,14 @@ std::string numbers_of(const Verdict& verdict) {
   std::string text = "not measured";
   if (verdict.estimate) {
     text = std::isfinite(*verdict.estimate) ? end(*verdict.estimate) : "no finite value";
-    text += ", 90 % interval " + (any_end ? end(low) + " to " + end(high) : end(low));
+    text += fmt::format(", {:.3g} % interval {}", 100 * verdict.level,
+                        any_end ? end(low) + " to " + end(high) : end(low));
   }
   text += fmt::format(", margin {:.3g}, {}{}", verdict.margin,
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
+  if (verdict.censored > 0) text += fmt::format(", {} censored", verdict.censored);
   if (verdict.primary) text += ", primary claim";
   return text;
 }

@@ -34,6 +34,7 @@ struct Claim {
   double margin = 0;
   Relation claimed = Relation::same;
   std::string id = {};  ///< "S5a.onset@amplitude_rad=0.05"
+  double level = confidence_level;
 };
 
 /// What the runs of a verdict are counted in.
@@ -47,12 +48,18 @@ struct Verdict {
   std::string claim;               ///< its text
   std::string quantity;            ///< what is estimated, with its unit
   std::optional<double> estimate;  ///< none if too few runs have the quantity
-  Interval interval;               ///< at confidence_level; only with an estimate
+  Interval interval;               ///< only with an estimate
+  double level = confidence_level;
   double margin = 0;
   Ruling ruling = Ruling::undecided;
   std::size_t runs = 0;  ///< as `counted` says
   Counted counted = Counted::runs;
+  std::size_t censored = 0;  ///< runs that ended before the event, among those that entered
   std::optional<std::size_t> runs_needed;  ///< if undecided; none if it is not known
+  double spread = 0;                       ///< Estimate::spread
+  std::size_t groups = 1;                  ///< Estimate::groups
+  std::vector<std::size_t> looks = {};     ///< planned numbers of seeds; empty: not planned
+  std::size_t look = 0;                    ///< seeds of the look that was taken; 0: none yet
   std::string note;                        ///< how it was compared, what is missing
   bool primary = false;  ///< its runs were made to decide it; others are exploratory
   Table entered = {};    ///< rows of a CSV file, from which anyone can compute it again

@@ -30,6 +30,7 @@ Scalar between_cycles(const ClaimSpec& claim, const char* words,
 const Estimator change_over_cycles = {
     .name = "change",
     .meaning = "value at the last less that at the first of `cycles`",
+    .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return between_cycles(claim, "change",
                             [](double first, double last) { return last - first; });
@@ -38,6 +39,7 @@ const Estimator change_over_cycles = {
 const Estimator relative_fall = {
     .name = "relative_fall",
     .meaning = "1 less the ratio of the values at the last and the first of `cycles`",
+    .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return between_cycles(claim, "relative fall",
                             [](double first, double last) { return 1 - last / first; });

@@ -26,6 +26,7 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
 const Estimator number_of_the_run = {
     .name = "number_of_run",
     .meaning = "a number of the whole run, such as `onset_size_phi`, or an expression of them",
+    .of_run = true,
     .scalar = scalar_of_run};
 
 }  // namespace shearcell

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "analysis/censored.hpp"
 #include "analysis/estimators.hpp"
 #include "provenance/words.hpp"
 
@@ -16,32 +17,36 @@ std::string words_of_slope(const ClaimSpec& claim) {
   return fmt::format("change of {} with {}", number_of_the_run.scalar(claim).name, claim.against);
 }
 
-/// `against` is taken at the first checkpoint of each run. The bootstrap draws runs.
+/// `against` is taken at the first checkpoint of each run.
 Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
   const Scalar number = number_of_the_run.scalar(claim);
   const NumberColumn against(claim.against);
-  std::vector<std::pair<double, double>> points;
+  std::vector<CensoredValue> values;
+  std::vector<double> at;
   std::set<std::string> variants;
-  Table entered = entered_with({"x", "value"});
+  std::size_t censored = 0;
+  Table entered = entered_with({"x", "value", "missing", "above"});
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
-    const double x = against(*run, &run->checkpoints.front()), y = number.of(*run).or_nan();
-    if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    points.emplace_back(x, y);
+    const double x = against(*run, &run->checkpoints.front());
+    const RunValue found = number.of(*run);
+    const bool above = found.missing == Missing::too_short && std::isfinite(found.above);
+    const double value = above ? found.above : found.or_nan();
+    if (!std::isfinite(x) || !std::isfinite(value)) continue;
+    values.push_back({value, above});
+    at.push_back(x);
     variants.insert(run->place.variant);
-    enter(*run, {x, y}, entered);
+    censored += above ? 1 : 0;
+    enter(*run, {x, found.or_nan(), std::string(name_of(found.missing)), found.above}, entered);
   }
-  const auto slope = [&](std::span<const std::size_t> selection) {
-    std::vector<std::pair<double, double>> chosen;
-    for (const std::size_t k : selection) chosen.push_back(points[k]);
-    return least_squares_slope(chosen);
-  };
-  return decide(stated, words_of_slope(claim),
-                variants.size() < 2 ? std::nullopt : bootstrapped(points.size(), slope),
-                points.size(),
-                fmt::format("{} of {} runs have it, in {}", points.size(), runs.size(),
-                            counted(variants.size(), "variant")),
-                std::move(entered));
+  std::optional<Estimate> estimate;
+  if (variants.size() > 1) estimate = censored_slope(values, at, stated.level);
+  Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(),
+                           fmt::format("{} of {} runs have it, in {}", values.size() - censored,
+                                       runs.size(), counted(variants.size(), "variant")),
+                           std::move(entered));
+  verdict.censored = censored;
+  return verdict;
 }
 
 }  // namespace
@@ -50,6 +55,7 @@ const Estimator slope_against = {
     .name = "slope",
     .meaning = "slope against the column `against` at each run's first checkpoint",
     .key = "against",
+    .of_run = true,
     .decide = decide_slope,
     .words = words_of_slope};
 

@@ -45,14 +45,14 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                                   : fmt::format("{} of {} runs have it, in {}", with_number,
                                                 runs.size(), counted(groups.size(), "variant"));
   std::optional<Estimate> estimate;
-  if (const auto found = variance_between(groups)) {
+  if (const auto found = variance_between(groups, stated.level)) {
     estimate = Estimate{.value = found->value,
                         .interval = {0, found->upper_limit},
                         .runs = with_number / groups.size()};
     add_note(note,
-             fmt::format("variance ratio F = {:.3g}; the interval is from 0 to the upper 95 % "
+             fmt::format("variance ratio F = {:.3g}; the interval is from 0 to the upper {:.3g} % "
                          "limit",
-                         found->f));
+                         found->f, 50 * (1 + stated.level)));
   }
   return decide(stated, words_of_spread(claim), estimate,
                 with_number / std::max<std::size_t>(1, groups.size()), std::move(note),

@@ -67,7 +67,7 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup first,
                       RunGroup second) {
   const std::vector<Waiting> a = waits(first), b = waits(second);
-  const std::optional<Estimate> estimate = log2_wait_ratio(a, b);
+  const std::optional<Estimate> estimate = log2_wait_ratio(a, b, claim.level);
   const std::size_t runs = std::min(a.size(), b.size());
   std::string note;
   if (runs > 0) note = "first: " + wait_in_words(a) + "; second: " + wait_in_words(b);
@@ -107,6 +107,7 @@ const Estimator first_cycle_reached = {
 const Estimator waiting_ratio = {
     .name = "waiting_ratio",
     .meaning = "log2 of the ratio of the cycles of the onset; of `onset_size_cycle`",
+    .of_run = true,
     .decide = decide_waits,
     .words = words_of_waits};
 

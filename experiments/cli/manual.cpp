@@ -96,7 +96,7 @@ stand in `plots` and `claims` of a manifest, those marked *until* also in `until
 std::string estimator_reference() {
   std::string text =
       "\n## Estimators\n\n"
-      "Of a claim's `estimator`; a key in the second column implies it.\n\n"
+      "Of a claim's `estimator`, with the key that the claim must state.\n\n"
       "| estimator | key | number |\n|---|---|---|\n";
   for (const Estimator& one : all_estimators()) {
     const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);

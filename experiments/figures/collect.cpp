@@ -118,6 +118,9 @@ void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns
                run.checkpoints.back().cycle < last_cycle(figure, run)) {
       going_on.insert(name);
     }
+    if (!failed && not_begun.contains(name) + going_on.contains(name) > 0) {
+      collected.pending.push_back(run);
+    }
   }
   std::erase_if(collected.runs, [](const FrameRun& run) { return run.checkpoints.empty(); });
   for (const auto* names : {&not_begun, &never}) {
@@ -171,11 +174,8 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
 }
 
 /// Sets Run::name and Run::named of the runs of this experiment.
-void name_variants(const std::vector<RegisteredManifest>& manifests, const std::string& experiment,
+void name_variants(const std::vector<VariantLabel>& labels, const std::string& experiment,
                    CollectedRuns& collected) {
-  const auto manifest = std::ranges::find(manifests, experiment, &RegisteredManifest::experiment);
-  if (manifest == manifests.end()) return;
-  const std::vector<VariantLabel> labels = recorded_manifest(manifest->text).labels;
   std::vector<nlohmann::json> variants;
   for (const FrameRun& run : collected.runs) {
     if (run.place.experiment == experiment) variants.push_back(run.place.swept);
@@ -189,8 +189,44 @@ void name_variants(const std::vector<RegisteredManifest>& manifests, const std::
   }
 }
 
-/// Makes one list of the runs of several experiments: the experiment is a swept value of each, and
-/// a stage that two of them share is a run of the first. Notes experiments without runs.
+/// Sets Frame::seeds, Frame::looks, and in Frame::pending the planned runs that are not declared.
+void add_planned(const Manifest& manifest, CollectedRuns& collected) {
+  for (const Scale& scale : scales_of(manifest)) {
+    if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
+      continue;
+    const std::vector<std::uint64_t>& seeds = scale.seeds.values;
+    for (const std::uint64_t seed : seeds) {
+      if (std::ranges::count(collected.seeds, seed) == 0) collected.seeds.push_back(seed);
+    }
+    collected.looks = scale.looks;
+    const std::vector<Variant> variants = variants_of(scale);
+    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
+    for (std::size_t k = 0; k < variants.size(); ++k) {
+      for (const std::uint64_t seed :
+           std::span(seeds).first(std::min<std::size_t>(variants[k].seeds, seeds.size()))) {
+        const bool declared = std::ranges::any_of(collected.runs, [&](const FrameRun& run) {
+          return run.place.seed == seed && run.place.experiment == manifest.experiment &&
+                 run.place.swept == variants[k].swept;
+        });
+        if (declared) continue;
+        collected.pending.push_back(runs[k]);
+        collected.pending.back().place.seed = seed;
+      }
+    }
+  }
+}
+
+/// Makes the experiment a swept value of the run.
+void add_experiment(FrameRun& run) {
+  const std::string& experiment = run.place.experiment;
+  run.place.swept["experiment"] = experiment;
+  run.place.variant = fmt::format("experiment={}{}{}", experiment,
+                                  run.place.variant.empty() ? "" : ",", run.place.variant);
+  run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
+}
+
+/// Makes one list of the runs of several experiments: a stage that two of them share is a run of
+/// the first. Notes experiments without runs.
 void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
   std::set<std::string> known;
   std::vector<FrameRun> joined;
@@ -200,15 +236,13 @@ void join(const std::vector<std::string>& experiments, CollectedRuns& collected)
       if (run.place.experiment != experiment) continue;
       any = true;
       if (!known.insert(run.stage.id).second) continue;
-      run.place.swept["experiment"] = experiment;
-      run.place.variant = fmt::format("experiment={}{}{}", experiment,
-                                      run.place.variant.empty() ? "" : ",", run.place.variant);
-      run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
+      add_experiment(run);
       joined.push_back(std::move(run));
     }
     if (!any) collected.notes.push_back("left out: experiment without runs: " + experiment);
   }
   collected.runs = std::move(joined);
+  std::ranges::for_each(collected.pending, add_experiment);
 }
 
 /// The selected runs of any version of the manifest, at least one. Throws NotFound.
@@ -388,7 +422,13 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   if (measured) {
     std::set<std::string> experiments;
     for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
-    for (const std::string& one : experiments) name_variants(manifests, one, collected);
+    const bool all_seeds = selection.seeds.empty() && selection.variants.empty();
+    for (const RegisteredManifest& manifest : manifests) {
+      if (!experiments.contains(manifest.experiment)) continue;
+      const Manifest stated = recorded_manifest(manifest.text);
+      name_variants(stated.labels, manifest.experiment, collected);
+      if (all_seeds) add_planned(stated, collected);
+    }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
     for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
     std::erase_if(collected.runs, [&](const FrameRun& run) {

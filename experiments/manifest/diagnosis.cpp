@@ -415,36 +415,12 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// A scale, and a run of each of its variants as figures take them, without checkpoints.
+/// A scale, and a run of each of its variants as figures take them.
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;
   std::vector<FrameRun> runs = {};
 };
-
-ScaleRuns runs_of(const Manifest& manifest, const Scale& scale, std::span<const Variant> variants,
-                  std::size_t seeds) {
-  std::vector<json> swept;
-  for (const Variant& variant : variants) swept.push_back(variant.swept);
-  const auto names = variant_names(swept, manifest.labels);
-  ScaleRuns made{scale, seeds};
-  for (const Variant& variant : variants) {
-    const Parameters& p = variant.parameters;
-    FrameRun& run = made.runs.emplace_back();
-    run.place.variant = variant.name;
-    run.place.swept = variant.swept;
-    run.name = names.at(variant.swept);
-    const Stage packing = prepare_stage(variant.packing, 1);
-    run.stage = last_stage(p, 1, packing);
-    // With `start`, the packing is not known yet, and several variants may share it.
-    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
-    for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
-    run.ask.target_cycles = target_cycles(p);
-    const bool stiffens = p.protocol == ProtocolKind::stiffen;
-    run.ask.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
-  }
-  return made;
-}
 
 /// To the earliest checkpoint that a measure or expression needs besides its own.
 std::uint64_t cycles_back(string_view text) {
@@ -680,7 +656,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   const std::vector<Scale> scales = scales_of(manifest);
   std::vector<ScaleRuns> all;
   for (const Scale& one : scales) {
-    all.push_back(runs_of(manifest, one, variants_of(one), one.seeds.values.size()));
+    all.push_back({one, one.seeds.values.size(), planned_runs(manifest, one, variants_of(one))});
   }
   std::vector<Said> said;
   for (const string& figure : manifest.figures) {
@@ -730,6 +706,11 @@ void check_variants(const Manifest& manifest) {
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();
+    if (!scale.looks.empty() && scale.looks.back() > seeds) {
+      problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
+                   "asks for more seeds than there are", std::to_string(scale.looks.back()),
+                   format("State `seeds: {}`, or list as many.", scale.looks.back()));
+    }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
          numbers == nullptr ? std::span<const Setting>() : numbers->values) {
@@ -765,7 +746,7 @@ std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,
                                 std::size_t seeds) {
   std::vector<string> warnings;
   warn_of_parameters(manifest, scale, planned, seeds, warnings);
-  warn_of_figures(manifest, runs_of(manifest, scale, all, seeds), warnings);
+  warn_of_figures(manifest, {scale, seeds, planned_runs(manifest, scale, all)}, warnings);
   warn_of_ineffective(manifest, scale, all, warnings);
   return warnings;
 }

@@ -128,6 +128,32 @@ void take_declared_lengths(const Place& place, std::span<const Stage> known,
 
 }  // namespace
 
+std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
+                                   std::span<const Variant> variants) {
+  std::vector<nlohmann::json> swept;
+  for (const Variant& variant : variants) swept.push_back(variant.swept);
+  const auto names = variant_names(swept, manifest.labels);
+  std::vector<FrameRun> runs;
+  for (const Variant& variant : variants) {
+    const Parameters& p = variant.parameters;
+    FrameRun& run = runs.emplace_back();
+    run.place = {.experiment = manifest.experiment,
+                 .scale = scale.name,
+                 .variant = variant.name,
+                 .swept = variant.swept};
+    run.name = names.at(variant.swept);
+    const Stage packing = prepare_stage(variant.packing, 1);
+    run.stage = last_stage(p, 1, packing);
+    // With `start`, the packing is not known yet, and several variants may share it.
+    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
+    for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
+    run.ask.target_cycles = target_cycles(p);
+    const bool stiffens = p.protocol == ProtocolKind::stiffen;
+    run.ask.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
+  }
+  return runs;
+}
+
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   if (!manifest.of.empty()) return {manifest, "", {}, {}, {}};  // runs of other experiments
   Scale scale = choose_scale(manifest, options.scale);

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/frame.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/start.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "provenance/records.hpp"
 
 namespace shearcell {
@@ -46,6 +48,10 @@ struct Plan {
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
+
+/// A run of each variant as figures take it, without seed and checkpoints.
+std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
+                                   std::span<const Variant> variants);
 
 /// Adds the runs of the plan to `known`, or extends them there, with all cycles that the plan asks
 /// for, so that the `start` of another manifest can name them.

@@ -184,7 +184,8 @@ struct Scale {
   /// Ids, or in older manifests statements, of the claims that the runs of this scale are made to
   /// decide.
   std::vector<std::string> primary = {};
-  std::set<std::string> own = {};  ///< keys that an entry of `scales` states itself
+  std::vector<std::uint64_t> looks = {};  ///< ascending numbers of seeds; empty: one, at all seeds
+  std::set<std::string> own = {};         ///< keys that an entry of `scales` states itself
 };
 
 struct Manifest {

@@ -153,6 +153,12 @@ void fields(Scale& scale, const auto& visit) {
          .besides = ", or `none`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}",
          .wanted = "a measure with its value"});
+  visit(scale.looks,
+        {.name = "looks",
+         .range = {least_runs, ManifestLimits::runs},
+         .doc = "numbers of seeds at which claims get their verdicts, planned before the runs; the "
+                "intervals are widened for their number. Default: one look, at all seeds",
+         .example = "[12, 36, 60]"});
   visit(scale.primary,
         {.name = "primary",
          .doc = "ids of the claims that these runs are made to decide; all others are "
@@ -478,7 +484,7 @@ struct Reader {
   void check_of(const Node& document) {
     if (document.find("of") == nullptr) return;
     for (const char* key :
-         {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "scales"}) {
+         {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "looks", "scales"}) {
       if (const Node* own = document.find(key)) {
         reject_key(*own, "does not go with of", "A manifest with `of` has no runs of its own.");
       }
@@ -809,6 +815,19 @@ struct Reader {
     }
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
+  }
+
+  // Numbers of seeds.
+  void read(const Node& in, const Field& about, std::vector<std::uint64_t>& looks) {
+    for (const Node& item : items_of(in, about.example)) {
+      std::uint64_t look = 0;
+      read(item, {.range = about.range, .whole = true}, look);
+      if (look != 0 && !looks.empty() && look <= looks.back()) {
+        reject_value(item, "is not greater than the look before it",
+                     "List them in ascending order.");
+      }
+      looks.push_back(look);
+    }
   }
 
   // Phases of a cycle.
@@ -1251,6 +1270,19 @@ struct Reader {
     const bool of_all = is_slope || claim.estimator == spread_of_variants.name;
     require_one(of_all ? nullptr : "between", {"between", "published"});
     require_one(is_slope ? "against" : nullptr, {"against"});
+    if (const Estimator* named = find_named(all_estimators(), claim.estimator)) {
+      const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
+      if (!named->key.empty() && in.find(named->key) == nullptr && !cycle) {
+        reject(in, fmt::format("lacks {}", named->key),
+               fmt::format("`estimator: {}` takes it.", named->name));
+      }
+      const bool any = claim.compare.empty() || claim.estimator == spread_of_variants.name;
+      if (!any && is_of_run(claim.compare) != named->of_run) {
+        reject_value(*in.find("estimator"), fmt::format("does not go with {}", claim.compare),
+                     named->of_run ? "Compare a number of the whole run, as onset_size_phi."
+                                   : "Compare a number of checkpoints, as phi.");
+      }
+    }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
     if (published != nullptr && claim.published && !claim.published->value) {
