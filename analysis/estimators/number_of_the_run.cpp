@@ -14,7 +14,8 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
     for (const std::string& name : names) {
       const Measure* measure = find_measure(name, MeasureKind::run);
       if (measure == nullptr) continue;
-      if (const RunValue one = measure->of_run(run); one.missing != Missing::nothing) return one;
+      const Missing why = measure->of_run(run).missing;
+      if (why != Missing::nothing) return RunValue{0, why};
     }
     return measured(number(run));
   };

@@ -2,6 +2,7 @@
 // The growth of a column in each run: the slope of a straight line through its checkpoints.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,7 +24,8 @@ const Estimator slope_over_cycles = {
           if (std::floor(cycle) != cycle || cycle < first || cycle > last) continue;
           points.emplace_back(cycle, number(run, &checkpoint));
         }
-        if (run.end < last) return {0, Missing::too_short};
+        const double end = run.checkpoints.empty() ? 0 : run.checkpoints.back().cycle;
+        if (std::max(run.end, end) < last) return {0, Missing::too_short};
         if (static_cast<double>(points.size()) != last - first + 1) {
           return {0, Missing::checkpoint};
         }

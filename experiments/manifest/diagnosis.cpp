@@ -19,6 +19,7 @@
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
+#include "experiments/manifest/expand.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers per run, pairs, missing checkpoints: comparisons with known answers.
-#include "analysis/estimators.hpp"
-#include "analysis/onset.hpp"
+#include "analysis/claims.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "analysis/estimators.hpp"
+#include "analysis/looks.hpp"
+#include "analysis/onset.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"
 
@@ -197,6 +199,92 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);
   EXPECT_EQ(waits[1].cycle, 29) << "phi = 0.622 + 0.029";
+}
+
+/// Runs of these seeds, whose phi is `phi` and differs a little.
+std::vector<FrameRun> with_seeds(std::initializer_list<std::uint64_t> seeds, double phi) {
+  std::vector<FrameRun> runs;
+  for (const std::uint64_t seed : seeds) {
+    runs.push_back(made_up_run("fluid", "still", seed, 1, [&](int, Measures& m) {
+      m.numbers["phi"] = phi + 1e-5 * static_cast<double>(seed % 3);
+    }));
+  }
+  return runs;
+}
+
+/// That phi is 0.6, within 0.001.
+Verdict at_looks(const Frame& frame) {
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "still"}}, nlohmann::json::object()}},
+                        .published = PublishedSpec{.label = "", .source = "a", .value = 0.6},
+                        .margin = 0.001};
+  return claim_figure(claim).make(frame).verdicts.at(0);
+}
+
+/// Seeds 1 to 6, of which `ended` have ended.
+Frame planned(std::initializer_list<std::uint64_t> ended, double phi,
+              std::vector<std::size_t> looks = {}) {
+  Frame frame(with_seeds(ended, phi));
+  frame.seeds = {1, 2, 3, 4, 5, 6};
+  frame.looks = std::move(looks);
+  for (const FrameRun& run : with_seeds({1, 2, 3, 4, 5, 6}, phi)) {
+    if (std::ranges::find(ended, run.place.seed) == ended.end()) frame.pending.push_back(run);
+  }
+  return frame;
+}
+
+TEST(PlannedLooks, GiveNoVerdictBetweenThem) {
+  const Verdict early = at_looks(planned({1, 2}, 0.6, {3, 6}));
+  EXPECT_EQ(early.ruling, Ruling::undecided);
+  EXPECT_EQ(early.look, 0U);
+  EXPECT_TRUE(has(early.note, "2 of 6 seeds have ended; the next look is at 3"));
+  const Verdict gap = at_looks(planned({1, 3, 4, 5, 6}, 0.6, {3, 6}));
+  EXPECT_EQ(gap.ruling, Ruling::undecided) << "never the first that finished";
+  EXPECT_TRUE(has(gap.note, "1 of 6 seeds have ended; the next look is at 3"));
+  const Verdict between = at_looks(planned({1, 2, 3, 4}, 0.601, {3, 6}));
+  EXPECT_EQ(between.ruling, Ruling::undecided);
+  EXPECT_EQ(between.runs, 4U) << "numbers of all that have ended";
+  EXPECT_TRUE(has(between.note, "the next look is at 6"));
+  EXPECT_TRUE(has(between.note, "with probability 0."));
+}
+
+TEST(PlannedLooks, TheFirstVerdictIsFinal) {
+  const double level = look_level(std::vector<std::size_t>{3, 6});
+  Frame frame = planned({1, 2, 3}, 0.6, {3, 6});
+  EXPECT_EQ(at_looks(frame).ruling, Ruling::agrees);
+  for (FrameRun& run : with_seeds({4, 5, 6}, 0.7)) frame.runs.push_back(run);
+  frame.pending.clear();
+  const Verdict verdict = at_looks(frame);
+  EXPECT_EQ(verdict.ruling, Ruling::agrees) << "whatever later runs say";
+  EXPECT_EQ(verdict.runs, 3U);
+  EXPECT_EQ(verdict.look, 3U);
+  EXPECT_EQ(verdict.level, level);
+  const nlohmann::json json = to_json({{verdict}}).at("claims").at(0);
+  EXPECT_EQ(json.at("looks"), (std::vector{3, 6}));
+  EXPECT_EQ(json.at("look"), 3);
+  EXPECT_NEAR(json.at("level").get<double>(), level, 1e-6);
+  const Verdict later = at_looks(planned({1, 2, 3, 4, 5, 6}, 0.7, {4, 6}));
+  EXPECT_EQ(later.ruling, Ruling::differs);
+  EXPECT_EQ(later.look, 4U);
+}
+
+TEST(PlannedLooks, WithoutThemThereIsOneAtAllSeeds) {
+  EXPECT_EQ(at_looks(planned({1, 2, 3, 4, 5}, 0.6)).ruling, Ruling::undecided);
+  const Verdict all = at_looks(planned({1, 2, 3, 4, 5, 6}, 0.6));
+  EXPECT_EQ(all.ruling, Ruling::agrees);
+  EXPECT_EQ(all.level, confidence_level);
+  EXPECT_FALSE(to_json({{all}}).at("claims").at(0).contains("look"));
+}
+
+TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
+  Frame frame = planned({1, 2, 3, 4, 5, 6}, 0.6);
+  for (FrameRun& run : with_seeds({70, 71, 72, 73}, 0.7)) frame.runs.push_back(run);
+  const Verdict verdict = at_looks(frame);
+  EXPECT_EQ(verdict.ruling, Ruling::agrees);
+  EXPECT_EQ(verdict.runs, 6U);
+  EXPECT_TRUE(has(verdict.note, "unplanned look, with 4 seeds more: 0.04"));
 }
 
 }  // namespace

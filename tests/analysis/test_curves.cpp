@@ -347,7 +347,9 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
                   .margin = 0.001};
   const Verdict phi = claim_figure(claim).make(runs).verdicts.at(0);
-  EXPECT_NEAR(phi.estimate.value(), 0.02, 1e-9);
+  EXPECT_NEAR(phi.estimate.value(), 0.02, 1e-8) << "a run ends far before its onset";
+  EXPECT_EQ(phi.censored, 1U);
+  EXPECT_TRUE(has(to_csv(entered_table({{phi}})), ",ends before,0.63"));
   EXPECT_EQ(phi.ruling, Ruling::differs);
   claim.compare = "onset_size_cycle";
   const Verdict cycle = claim_figure(claim).make(runs).verdicts.at(0);

@@ -207,8 +207,8 @@ TEST(FigureB5, PausesCompactFaster) {
         c.measures.numbers["phi_at_rest"] = c.measures.numbers["phi"];
       run.parameters["protocol"] = run.place.swept["protocol"];
     }
-    EXPECT_EQ(rulings("B5", runs), (Rulings{ruling, ruling, agrees, agrees}))
-        << "as drawn, and at rest";
+    EXPECT_EQ(rulings("B5", runs), (Rulings{ruling, ruling, ruling, agrees, agrees}))
+        << "as drawn, at rest, and its growth";
   }
 }
 
@@ -408,7 +408,8 @@ TEST(FigureS6, GravityDoesNotMatter) {
   EXPECT_EQ(rulings("S6", nucleating_runs(0.6475, 0.655)), (Rulings{differs, differs, agrees}));
   std::vector<FrameRun> late = nucleating_runs(0.6475, 0.6475);
   for (std::size_t k : {1U, 3U}) late[k].checkpoints.resize(20);
-  EXPECT_EQ(rulings("S6", late), Rulings(3, undecided)) << "too short, too few";
+  EXPECT_EQ(rulings("S6", late), (Rulings{agrees, agrees, undecided}))
+      << "censored onsets; too short for the percentage";
 }
 
 TEST(FigureS5, OnsetAndInteriorGrainsAreThoseOfTheSupplement) {

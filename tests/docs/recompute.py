@@ -85,7 +85,7 @@ def quantile(density, probability):
 
 def spread_between(rows):
     """The standard deviation between the means of variants by analysis of variance, 0, and its upper limit: with F of
-    the data divided by the 5 % quantile of F's distribution (A. Hald), and the 5 % quantile of chi-squared."""
+    the data divided by the 5 % quantile of F's distribution, and the 5 % quantile of chi-squared."""
     groups = {}
     for row in rows:
         groups.setdefault(row["group"], []).append(row)

@@ -1,4 +1,4 @@
-set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,275 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -9,8 +9,8 @@ set mytics 2
 set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'S5a.svg'
-set key maxcols 2 width -3
-set xlabel '{/:Italic A}  [rad]'
+set key maxcols 1 width -7
+set xlabel 'amplitude {/:Italic A} [rad]'
 set ylabel 'onset {/:Italic ϕ}'
 set xtics 0.02
 set format x '%.2f'
@@ -29,22 +29,22 @@ $series0 << EOD
 0.1,0.643185255,,0.000525321205
 EOD
 $series1 << EOD
-0.04,0.64509664,,0.00186819263
-0.05,0.646899377,,0.000795384575
-0.0667,0.647555914,,0.000743555013
-0.0833,0.646462164,,0.000570393623
-0.1,0.644301191,,0.000514944877
+0.041,0.64509664,,0.00186819263
+0.051,0.646899377,,0.000795384575
+0.0677,0.647555914,,0.000743555013
+0.0843,0.646462164,,0.000570393623
+0.101,0.644301191,,0.000514944877
 EOD
 $series3 << EOD
 0.01,0.645,,
 EOD
-plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title 'onset phi', \
-     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'onset slope phi', \
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 title 'largest crystallite is critical', \
+     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 13 ps 0.4 title 'steepest growth', \
      keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
      keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title 'experiment', \
      $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
-     $series1 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
+     $series1 every 1 using 1:2 with linespoints lc rgb '#009e73' lw 1.2 pt 13 ps 0.4 notitle, \
      $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
-     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
+     $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 notitle
 set output

@@ -1,4 +1,4 @@
-set terminal svg size 673,305 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 673,290 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -21,22 +21,6 @@ set xrange [*:*]
 set yrange [0:*]
 set offsets graph 0.03, graph 0.03, graph 0.05, 0
 $series0 << EOD
-0.639096458,0.0296262801,0.000153732885,0.00436648757
-0.641180559,0.0293792168,4.46435244e-05,0.00261680263
-0.643187804,0.0406488135,5.19421935e-05,0.00450846258
-0.645427325,0.0929594415,2.7994041e-05,0.0400372286
-0.646573086,0.135940902,0.000190917656,0.0608812453
-EOD
-$series1 << EOD
-0.63911274,0.0319302522,8.53070234e-05,0.0073284546
-0.641248315,0.0305825311,5.85609407e-05,0.003656886
-0.643192635,0.0511690348,5.33720779e-05,0.00912787227
-0.645254943,0.132887153,4.34922918e-05,0.0512508129
-0.646821507,0.426694783,8.40835101e-05,0.0992092494
-0.64833272,1.16041119,0.000164833081,0.302772739
-0.650158976,3.2864707,,
-EOD
-$series2 << EOD
 0.637524475,0.0294117647,,
 0.638911457,0.0354562587,8.33986622e-05,0.00679650197
 0.641172124,0.0287175003,8.43883446e-05,0.0059421037
@@ -58,7 +42,7 @@ $series2 << EOD
 0.672660764,26.5581166,0.000220731072,1.01840781
 0.676609403,34.964501,0.000492806985,4.10212652
 EOD
-$series3 << EOD
+$series1 << EOD
 0.637524475,0.0294117647,,
 0.638894863,0.033495563,5.4631108e-05,0.00586960018
 0.641148749,0.0302221444,5.84694891e-05,0.00422104941
@@ -82,7 +66,7 @@ $series3 << EOD
 0.677441312,33.9817271,,
 0.679989429,42.5253991,,
 EOD
-$series4 << EOD
+$series2 << EOD
 0.637677673,0.00984155103,9.6882668e-05,0.00984155103
 0.639188011,0.0160041364,0.000164029964,0.00453842479
 0.641071952,0.0353273599,0.000118287962,0.0125383636
@@ -105,7 +89,7 @@ $series4 << EOD
 0.674760751,33.5330686,0.000222138447,1.94926498
 0.678035507,34.0714497,,
 EOD
-$series5 << EOD
+$series3 << EOD
 0.637524475,0.0294117647,,
 0.638963668,0.0428663631,0.000105778849,0.00711899721
 0.64122346,0.0298013993,6.47883214e-05,0.00857276997
@@ -127,7 +111,7 @@ $series5 << EOD
 0.672386976,25.9084147,9.74136641e-05,1.08957675
 0.674708763,29.3259042,0.000382415952,0.342507711
 EOD
-$series6 << EOD
+$series4 << EOD
 0.637524475,0.0294117647,,
 0.638960122,0.0310682589,0.000106541516,0.00586312515
 0.641150579,0.0424771058,7.69968705e-05,0.0153741857
@@ -151,7 +135,7 @@ $series6 << EOD
 0.677552533,35.1667919,0.000432342538,2.79752516
 0.688257303,42.0324006,,
 EOD
-$series7 << EOD
+$series5 << EOD
 0.637524475,0.0294117647,,
 0.638948743,0.0334812395,7.12347981e-05,0.00410964646
 0.641096989,0.0663113815,6.97432998e-05,0.0271841691
@@ -173,7 +157,7 @@ $series7 << EOD
 0.67284764,26.7372168,0.000213646876,1.21214571
 0.674356375,25.107816,0.000319641619,3.36359591
 EOD
-$series8 << EOD
+$series6 << EOD
 0.637524475,0.0294117647,,
 0.639015794,0.0418906764,9.15927539e-05,0.00785693271
 0.640990884,0.0290816787,8.8163935e-05,0.00664404271
@@ -197,7 +181,7 @@ $series8 << EOD
 0.677309059,29.0845886,,
 0.681306664,46.4107823,,
 EOD
-$series9 << EOD
+$series7 << EOD
 0.637524475,0.0294117647,,
 0.638959326,0.0379242693,0.0001269198,0.00799887115
 0.641171834,0.0414776688,8.62377208e-05,0.00499211699
@@ -220,7 +204,7 @@ $series9 << EOD
 0.676340548,34.0470153,5.13202054e-05,0.587272038
 0.680317298,39.2063962,,
 EOD
-$series10 << EOD
+$series8 << EOD
 0.635598451,0.0292100131,0.000132898623,6.39915579e-05
 0.637181039,0.10086519,0.000121355199,0.0674493473
 0.639424386,0.888191214,0.000215298977,0.458173665
@@ -242,9 +226,7 @@ $series10 << EOD
 0.67466205,24.0630856,0.000354416952,8.11808241
 0.679148706,28.8095238,,
 EOD
-plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 4 ps 0.4 title 'gravity: g=0 m/s\^2, A=0.04 rad', \
-     keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 6 ps 0.4 title 'gravity: g=0 m/s\^2, A=0.05 rad (1 to 12 runs)', \
-     keyentry with linespoints lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 title 'drag: fluid=cell (1 to 10 runs)', \
+plot keyentry with linespoints lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 title 'drag: fluid=cell (1 to 10 runs)', \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 13 ps 0.4 title 'drag: fluid=still (1 to 10 runs)', \
      keyentry with linespoints lc rgb '#e69f00' lw 1.2 pt 5 ps 0.4 title 'moving\_wall: moving\_wall=top (1 to 10 runs)', \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 5 ps 0.4 title 'relaxation: protocol=paused (1 to 10 runs)', \
@@ -253,37 +235,31 @@ plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 4 ps 0.4 title 'gravit
      keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 title 'timestep: steps\_per\_cycle=57143 (1 to 10 runs)', \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 title 'timestep: steps\_per\_cycle=76923 (1 to 10 runs)', \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 5 ps 0.4 title 'walls: walls=smooth (1 to 5 of 6 runs)', \
-     $series10 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series9 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
-     $series8 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
-     $series7 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
-     $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series5 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
-     $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#e69f00' fs transparent solid 0.2 noborder notitle, \
-     $series3 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#56b4e9' fs transparent solid 0.2 noborder notitle, \
-     $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
-     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
-     $series10 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series10 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series9 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
-     $series9 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
-     $series8 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
-     $series8 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
-     $series7 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 notitle, \
-     $series7 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 notitle, \
-     $series6 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series6 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series5 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series5 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series4 using 1:2 with lines lc rgb '#e69f00' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series4 every 2 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 5 ps 0.4 notitle, \
-     $series3 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 13 ps 0.4 notitle, \
-     $series3 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 13 ps 0.4 notitle, \
-     $series2 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 notitle, \
-     $series2 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 notitle, \
-     $series1 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series1 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series0 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 4 ps 0.4 notitle
+     $series8 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
+     $series7 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
+     $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
+     $series5 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
+     $series4 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
+     $series3 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
+     $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#e69f00' fs transparent solid 0.2 noborder notitle, \
+     $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
+     $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#56b4e9' fs transparent solid 0.2 noborder notitle, \
+     $series8 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series8 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series7 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
+     $series7 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
+     $series6 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
+     $series6 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
+     $series5 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 notitle, \
+     $series5 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 8 ps 0.4 notitle, \
+     $series4 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series4 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series3 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series3 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series2 using 1:2 with lines lc rgb '#e69f00' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series2 every 2 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 5 ps 0.4 notitle, \
+     $series1 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series1 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series0 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series0 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 11 ps 0.4 notitle
 set output

@@ -64,9 +64,9 @@ $series3 << EOD
 6.59775684e-05,0.639128526,,0.000351163427
 3.77550046e-05,0.639028922,,0.000362450719
 EOD
-plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic P} at the top, phi', \
+plot keyentry with linespoints lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title '{/:Italic P} at the top, {/:Italic ϕ}', \
      keyentry with linespoints lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title '{/:Italic P} at the top, phi u', \
-     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic P} on the moving wall, phi', \
+     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title '{/:Italic P} on the moving wall, {/:Italic ϕ}', \
      keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title '{/:Italic P} on the moving wall, phi u', \
      $series3 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
