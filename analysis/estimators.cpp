@@ -9,7 +9,6 @@
 #include <map>
 #include <utility>
 
-#include "analysis/censored.hpp"
 #include "analysis/estimators/notes.hpp"
 #include "core/named.hpp"
 #include "provenance/words.hpp"
@@ -52,19 +51,10 @@ struct Values {
     runs += group.size();
     enough = enough && 4 * without <= group.size();
   }
-  /// The mean over the runs of each packing; censored if one of them is.
   std::vector<CensoredValue> over_packings(RunGroup group) const {
-    std::vector<CensoredValue> means;
-    for (const auto& [packing, members] : by_packing(group)) {
-      std::vector<double> values;
-      bool above = false;
-      for (const FrameRun* run : members) {
-        values.push_back(numbers.at(run).value);
-        above = above || numbers.at(run).censored;
-      }
-      if (const auto mean = over_runs(values).mean) means.push_back({*mean, above});
-    }
-    return means;
+    std::vector<CensoredValue> values;
+    for (const FrameRun* run : group) values.push_back(numbers.at(run));
+    return shearcell::over_packings(group, values);
   }
 };
 
@@ -203,6 +193,20 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   }
   return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
                   "");
+}
+
+std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values) {
+  nlohmann::ordered_map<std::string, std::pair<std::vector<double>, bool>> packings;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    auto& [of_packing, censored] = packings[packing_of(*runs[k])];
+    of_packing.push_back(values[k].value);
+    censored = censored || values[k].censored;
+  }
+  std::vector<CensoredValue> means;
+  for (const auto& [packing, found] : packings) {
+    if (const auto mean = over_runs(found.first).mean) means.push_back({*mean, found.second});
+  }
+  return means;
 }
 
 Table entered_with(const std::vector<TableColumn>& columns) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/censored.hpp"
 #include "analysis/claims.hpp"
 #include "analysis/statistics.hpp"
 
@@ -84,6 +85,10 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 /// The mean of `of` over items of runs, such as nuclei: the bootstrap draws the packings with all
 /// their items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
+
+/// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if
+/// one of its values is. Values that are not finite are left out.
+std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 
 /// The name of a measure in sentences.
 std::string words_of_column(const std::string& column);

@@ -21,6 +21,8 @@
 #include "analysis/binning.hpp"
 #include "analysis/claims.hpp"
 #include "analysis/error.hpp"
+#include "analysis/estimators.hpp"
+#include "analysis/estimators/notes.hpp"
 #include "analysis/styles.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
@@ -155,6 +157,8 @@ struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
   Missing missing = Missing::nothing;  ///< why the run has no y, a measure of the whole run
+  /// Of the columns: what the run's number exceeds, if the run ended before the event; else NaN.
+  std::vector<double> above = {};
 };
 
 struct Curve {
@@ -193,8 +197,12 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
       sample.y.push_back(is_y ? value_of(column, one, checkpoint) : column(*one.run, row));
     }
   };
-  if (const Measure* measure = find_measure(plot.y, MeasureKind::run)) {
-    trace.missing = measure->of_run(*one.run).missing;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const Measure* measure =
+        find_measure(k == 0 ? plot.y : plot.also[k - 1].measure, MeasureKind::run);
+    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*one.run);
+    if (k == 0) trace.missing = value.missing;
+    trace.above.push_back(one.partners.empty() ? value.above : std::nan(""));
   }
   switch (against(plot)) {
     case Against::curve:
@@ -404,6 +412,20 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 
 // --- Average ---
 
+/// Mean over packings and its error, of numbers that some runs only exceed; `runs` counts the
+/// packings with a number.
+RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
+  const std::vector<CensoredValue> means = over_packings(runs, values);
+  RunStatistics found;
+  found.runs =
+      static_cast<std::size_t>(std::ranges::count(means, false, &CensoredValue::censored));
+  const std::optional<Estimate> estimate = censored_mean(means);
+  if (!estimate || !std::isfinite(estimate->value)) return found;
+  found.mean = estimate->value;
+  found.standard_error = estimate->spread / std::sqrt(static_cast<double>(means.size()));
+  return found;
+}
+
 /// Means over the runs of a curve at one cycle, in one bin of phi or at one x.
 struct Bin {
   double at = 0;  ///< the cycle, the lower end of the bin of phi, or x
@@ -421,7 +443,8 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
   const bool by_x = what == Against::number_of_run || what == Against::curve;
   struct Members {
     std::vector<const FrameRun*> runs;
-    std::vector<std::vector<double>> values;  // x, then y, of each run
+    std::vector<std::vector<double>> values;        // x, then y, of each run
+    std::vector<const std::vector<double>*> above;  // Trace::above of each run
     std::map<Missing, std::size_t> missing;
   };
   std::map<double, Members> bins;
@@ -456,6 +479,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (what == Against::phi && !std::isfinite(values[1])) continue;
       bins[at].runs.push_back(trace.run);
       bins[at].values.push_back(std::move(values));
+      bins[at].above.push_back(&trace.above);
     }
   }
   std::vector<Bin> found;
@@ -473,7 +497,15 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
     };
     bin.x = over(0, [](const auto& values) { return over_runs(values); });
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      bin.y.push_back(over(k + 1, [&](const auto& values) { return columns[k].over(values); }));
+      std::vector<CensoredValue> values;
+      for (std::size_t r = 0; r < members.runs.size(); ++r) {
+        const double above = (*members.above[r])[k];
+        values.push_back(
+            {std::isnan(above) ? members.values[r][k + 1] : above, !std::isnan(above)});
+      }
+      const bool censored = std::ranges::count(values, true, &CensoredValue::censored) > 0;
+      bin.y.push_back(censored ? mean_with_censored(members.runs, values)
+                               : over(k + 1, [&](const auto& of) { return columns[k].over(of); }));
     }
     bin.values = static_cast<std::size_t>(std::ranges::count_if(
         members.values, [](const auto& of_run) { return std::isfinite(of_run[1]); }));
@@ -748,9 +780,21 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
                        panel.plot.cycle ? "" : ", the last that all runs have");
   }
   const std::size_t runs = panel.selected.size();
-  if (with_value == runs) return "";
-  return fmt::format("{} of {} runs have no value and are left out of the means", runs - with_value,
-                     runs);
+  std::size_t censored = 0;
+  for (const Curve& curve : panel.curves) {
+    censored += static_cast<std::size_t>(std::ranges::count_if(
+        curve.traces, [](const Trace& trace) { return std::isfinite(trace.above.front()); }));
+  }
+  std::string note;
+  if (censored > 0) {
+    add_note(note, fmt::format("{} of {} runs end before it: they enter the means as censored",
+                               censored, runs));
+  }
+  if (const std::size_t without = runs - with_value - censored; without > 0) {
+    add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,
+                               runs));
+  }
+  return note;
 }
 
 /// Throws AnalysisError if two curves have the same title.

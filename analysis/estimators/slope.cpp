@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/censored.hpp"
 #include "analysis/estimators.hpp"
 #include "provenance/words.hpp"
 

@@ -128,7 +128,9 @@ void leave_out_unselected(const Store& store, const RunSelection& runs,
   for (const Run& run : select_runs(store, runs)) selected.insert(run.place.experiment);
   for (const WantedFigure& figure : figures) {
     const std::string& name = figure.experiment;
-    if (!name.empty() && !selected.contains(name)) others.insert(name);
+    const auto is_selected = [&](const std::string& one) { return selected.contains(one); };
+    const bool any = std::ranges::any_of(figure.figure.of, is_selected) || is_selected(name);
+    if (!name.empty() && !any) others.insert(name);
   }
   if (selected.empty() || others.empty()) return;
   std::erase_if(figures, [&](const auto& figure) { return others.contains(figure.experiment); });

@@ -10,9 +10,11 @@
 #include <tuple>
 #include <utility>
 
+#include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {
@@ -95,8 +97,27 @@ Place first_place(const Stage& stage) {
   return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
 }
 
+namespace {
+
+/// The experiments, each that has no runs (`of`) replaced by those whose runs it compares.
+std::vector<std::string> with_members(const Store& store,
+                                      const std::vector<std::string>& experiments) {
+  std::vector<std::string> all;
+  for (const std::string& experiment : experiments) {
+    std::vector<std::string> members;
+    for (const RegisteredManifest& one : newest_manifests(store)) {
+      if (one.experiment == experiment) members = recorded_manifest(one.text).of;
+    }
+    if (members.empty()) members = {experiment};
+    all.insert(all.end(), members.begin(), members.end());
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection) {
-  Filter experiment(selection.experiments), scale(selection.scales);
+  Filter experiment(with_members(store, selection.experiments)), scale(selection.scales);
   Filter seed(selection.seeds), variant(selection.variants);
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;

@@ -15,20 +15,20 @@ set xlabel '{/:Italic A}  [rad]'
 set ylabel 'onset {/:Italic ϕ}'
 set xtics 0.002
 set format x '%.3f'
-set ytics 0.0005
-set format y '%.4f'
+set ytics 0.001
+set format y '%.3f'
 set xrange [*:*]
-set yrange [0.644321881:0.647322087]
+set yrange [0.644728408:0.649317323]
 set offsets graph 0.03, graph 0.03, 0, 0
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#000000'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#000000'
 $series0 << EOD
-0.04,0.645821984,,0.00136373009
-0.05,0.646327402,,0.000304148377
+0.04,0.647069089,,0.00203964783
+0.05,0.646449837,,0.000314596568
 EOD
 $series1 << EOD
-0.04,0.645009919,,0.000346073308
-0.05,0.646452507,,0.000334470341
+0.04,0.645606733,,0.000669738573
+0.05,0.64660154,,0.000359838519
 EOD
 plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title 'g=0 m/s\^2 (2 to 11 runs)', \
      keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 7 ps 0.4 title 'g=9.81 m/s\^2 (4 to 11 runs)', \

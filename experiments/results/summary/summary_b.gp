@@ -18,13 +18,13 @@ set format x '%.0f'
 set ytics 0.0005
 set format y '%.4f'
 set xrange [*:*]
-set yrange [0.644606698:0.647278451]
+set yrange [0.644599618:0.647427139]
 set offsets graph 0.03, graph 0.03, 0, 0
 set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '#000000'
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#000000'
 $series0 << EOD
-5200,0.64677253,,0.000384477601
-11400,0.645694276,,0.000459299487
+5200,0.646945985,,0.000352630558
+11400,0.645926316,,0.000646336318
 18200,0.645158536,,0.000430394366
 EOD
 plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 9 runs', \
