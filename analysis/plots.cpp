@@ -197,7 +197,7 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
       sample.y.push_back(is_y ? value_of(column, one, checkpoint) : column(*one.run, row));
     }
   };
-  for (std::size_t k = 0; k < columns.size(); ++k) {
+  for (std::size_t k = 0; k <= plot.also.size(); ++k) {
     const Measure* measure =
         find_measure(k == 0 ? plot.y : plot.also[k - 1].measure, MeasureKind::run);
     const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*one.run);

@@ -15,6 +15,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/words.hpp"
 
@@ -177,6 +178,9 @@ void figures(FigureArguments& options, Context& context) {
     }
   }
   warn_of_primary(store, how.runs, drawn);
+  if (!drawn.empty() && !find_program("rsvg-convert")) {
+    print_stderr("no PDF: rsvg-convert is not installed (Debian package librsvg2-bin)\n");
+  }
   if (context.json) print_json({{"figures", list}});
 }
 

@@ -120,6 +120,33 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
+// What the next planned look of each experiment takes.
+void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
+                std::vector<std::string>& notes) {
+  for (const Plan& plan : plans) {
+    for (const Scale& scale : scales_of(plan.manifest)) {
+      const auto left_at = [&](std::uint64_t look) {
+        const std::span seeds = std::span(scale.seeds.values).first(look);
+        double left = 0;
+        for (const Line& line : lines) {
+          const Place& place = line.run->place;
+          const bool enters = place.experiment == plan.manifest.experiment &&
+                              std::ranges::count(seeds, place.seed) > 0;
+          left += enters ? line.look.particle_steps : 0;
+        }
+        return left;
+      };
+      const auto next = std::ranges::find_if(
+          scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
+      if (scale.name != plan.scale || next == scale.looks.end()) continue;
+      notes.push_back(fmt::format(
+          "{}: the next look is at {} of {} seeds, {:.3g} particle-steps away; the notes of the "
+          "verdicts say how probable it is to decide",
+          plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
+    }
+  }
+}
+
 // Particle-steps that are left if runs end where others with the same `until` ended; null without
 // `until`, or where no such run has ended.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
@@ -237,6 +264,7 @@ void plan(const PlanOptions& options, Context& context) {
     notes.push_back(fmt::format("too little disk space: {} are free in {}", format_bytes(free),
                                 place.string()));
   }
+  note_looks(plans, lines, notes);
   if (longer > 0) {
     notes.push_back(fmt::format(
         "`run` also continues {} to the number of cycles that an earlier command asked for",

@@ -76,6 +76,7 @@ code=0
 shearcell figures S2 --store $at/store --out $at/figures 2> "$folder/said" || code=$?
 if [ "$at" = /tmp ]; then
   [ $code = 1 ] || wrong "figures without gnuplot: exit code $code"
+  grep -q "no PDF: rsvg-convert" "$folder/said" || wrong "figures did not say that rsvg-convert is missing"
   grep "gnuplot is not installed" "$folder/said" | head -1
 fi
 for file in S2a.csv S2a.gp S2.caption.txt S2.verdict.json S2.verdict.csv S2.lineage.json; do

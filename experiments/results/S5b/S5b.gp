@@ -10,7 +10,7 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'S5b.svg'
 set key maxcols 1 width -5
-set xlabel '{/:Italic N}'
+set xlabel 'grains {/:Italic N}'
 set ylabel 'onset {/:Italic ϕ}'
 set xtics 2000
 set format x '%.0f'

@@ -11,7 +11,7 @@ set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'summary_b.svg'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set key maxcols 2 width -3
-set xlabel '{/:Italic N}'
+set xlabel 'grains {/:Italic N}'
 set ylabel 'onset {/:Italic ϕ}'
 set xtics 2000
 set format x '%.0f'
