@@ -178,6 +178,31 @@ TEST_F(DrawFigure, AClaimMayNameAValueThatTheRecordLeavesOut) {
   EXPECT_EQ(verdict.at("claims").at(0).at("note").get<std::string>().find("1 and 1 indep"), 0U);
 }
 
+// The manifest states how many seeds a claim is decided by, whatever the command ran.
+TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
+  const std::string manifest = tiny_manifest(
+      "  grains: 100\n",
+      "seeds: 4\nlooks: [3, 4]\nprimary: [own.dense]\n"
+      "claims: [{id: own.dense, compare: phi, at_cycle: 1, margin: 0.5, of: {fluid: still},"
+      " published: {value: 0.6, source: a guess}}]\n");
+  const auto claim = [&](std::uint64_t seeds) {
+    compute(store_, manifest, {.cycles = 1, .seeds = seeds});
+    draw("own", "own");
+    return nlohmann::json::parse(contents("own").at("own.verdict.json")).at("claims").at(0);
+  };
+  const nlohmann::json early = claim(2);
+  EXPECT_EQ(early.at("verdict"), "undecided");
+  EXPECT_EQ(early.at("look"), 0);
+  EXPECT_TRUE(has(early.at("note").get<std::string>(),
+                  "2 of 4 seeds have ended; the next look is at 3"));
+  EXPECT_TRUE(early.at("primary"));
+  const nlohmann::json decided = claim(3);
+  EXPECT_EQ(decided.at("verdict"), "agrees");
+  EXPECT_EQ(decided.at("look"), 3);
+  EXPECT_EQ(decided.at("looks"), (std::vector{3, 4}));
+  EXPECT_EQ(claim(4).at("estimate"), decided.at("estimate")) << "the first verdict is final";
+}
+
 // Two variants share a curve, which the label of neither names.
 TEST_F(DrawFigure, CurvesByAKeyHaveItsLabelsAndPoolNoOtherKey) {
   compute(store_,
