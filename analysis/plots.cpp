@@ -787,8 +787,9 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   }
   std::string note;
   if (censored > 0) {
-    add_note(note, fmt::format("{} of {} runs end before it: they enter the means as censored",
-                               censored, runs));
+    add_note(note, fmt::format("{} of {} runs end before {} and enter the means as censored",
+                               censored, runs,
+                               find_measure(panel.plot.y, MeasureKind::run)->reach));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,

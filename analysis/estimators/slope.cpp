@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The slope of a number of the run against another column, by least squares over the runs.
+// The slope of a number of the run against another column, by maximum likelihood over the runs (censored.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -83,6 +83,9 @@ TEST(Onset, CountsCensoredRuns) {
   EXPECT_NEAR(std::get<double>(cell("onset_slope_phi_mean")), 0.646, 0.0006);
   EXPECT_GT(std::get<double>(cell("onset_slope_phi_standard_error")), 0);
   for (FrameRun& run : runs) run.packing = "of all";
+  EXPECT_EQ(cell("runs"), TableCell(std::size_t{0})) << "the mean of the packing is censored, too";
+  EXPECT_EQ(cell("onset_slope_phi_mean"), TableCell());
+  runs.pop_back();
   EXPECT_EQ(cell("runs"), TableCell(std::size_t{1}));
   EXPECT_EQ(cell("onset_slope_phi_standard_error"), TableCell()) << "of one packing";
 }
