@@ -181,7 +181,7 @@ TEST_F(DrawFigure, AClaimMayNameAValueThatTheRecordLeavesOut) {
 // The manifest states how many seeds a claim is decided by, whatever the command ran.
 TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
   const std::string manifest = tiny_manifest(
-      "  grains: 100\n",
+      "",
       "seeds: 4\nlooks: [3, 4]\nprimary: [own.dense]\n"
       "claims: [{id: own.dense, compare: phi, at_cycle: 1, margin: 0.5, of: {fluid: still},"
       " published: {value: 0.6, source: a guess}}]\n");
@@ -193,8 +193,8 @@ TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
   const nlohmann::json early = claim(2);
   EXPECT_EQ(early.at("verdict"), "undecided");
   EXPECT_EQ(early.at("look"), 0);
-  EXPECT_TRUE(has(early.at("note").get<std::string>(),
-                  "2 of 4 seeds have ended; the next look is at 3"));
+  EXPECT_TRUE(
+      has(early.at("note").get<std::string>(), "2 of 4 seeds have ended; the next look is at 3"));
   EXPECT_TRUE(early.at("primary"));
   const nlohmann::json decided = claim(3);
   EXPECT_EQ(decided.at("verdict"), "agrees");
