@@ -94,10 +94,14 @@ trajectory() { run "$1" free "$2"; }
 each trajectory
 "$bench" compare "$folder" "$grains" "$simd"
 
-# "Loop time of T on 1 procs for S steps with A atoms": the rate of the grains alone, without wall grains.
+# "Loop time of T on 1 procs for S steps with A atoms", "U% CPU use": the rate of the grains alone, without wall grains, in
+# processor time, so that other programs on the machine matter less. LIGGGHTS prints no use; its time is the clock's.
 rate() {
   run "$1" speed "$2"
-  awk -v n="$grains" '/^Loop time/ && $9 > 1 {printf "%.4f\n", n * $9 / $4 * 1e-6}' "$1-$2.out" >>"$1-$2.rates"
+  awk -v n="$grains" '/^Loop time/ && $9 > 1 {time = $4; steps = $9; use = 100}
+    /CPU use/ && steps > 0 {use = $1}
+    /^Loop time/ && $9 == 0 {exit}
+    END {printf "%.4f\n", n * steps / (time * use / 100) * 1e-6}' "$1-$2.out" >>"$1-$2.rates"
 }
 for _ in $(seq "$rounds"); do
   "$bench" ours "$folder" "$grains" "$simd" >>shearcell.rates
