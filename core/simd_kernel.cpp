@@ -21,7 +21,8 @@ namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
 // Neighbours of a lane whose factors are computed side by side, since each operation of the series
-// waits for the one before. Four fit in 32 registers if the coefficients are not kept there.
+// waits for the one before. Four fit in 32 registers if the coefficients are not kept there. With
+// 16 registers several are slower than one (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // contact_factor(s) of kCount numbers up to the end of the series.
@@ -47,22 +48,25 @@ HWY_INLINE V exact_beyond(V s, V series) {
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// Adds (1/r - 1) dr over the touching ones of kCount neighbours of each lane, one after the other.
-template <bool kSeam, std::size_t kCount>
-HWY_INLINE void add_slots(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
-                          const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
-  V x[kCount], y[kCount], z[kCount], s[kCount], factor[kCount];
+// The separations from kLanes neighbours, one for each lane.
+template <bool kSeam>
+HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows,
+                             const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
+  V margin;
+  const Vectors other = load_rows(
+      rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[lane]}; }, margin);
+  return separation<kSeam>(own, other, depth, per_depth);
+}
+
+// Adds (1/r - 1) dr over the touching ones of kCount separations of each lane, one after the other.
+template <std::size_t kCount>
+HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
+  V s[kCount], factor[kCount];
   V deepest = hn::Zero(kD);
   HWY_UNROLL(4)
   for (std::size_t k = 0; k < kCount; ++k) {
-    V margin;
-    const Vectors other = load_rows(
-        rows, [&](std::size_t lane) HWY_ATTR { return std::ptrdiff_t{list[k * kLanes + lane]}; },
-        margin);
-    const Vectors dr = separation<kSeam>(own, other, depth, per_depth);
-    x[k] = dr.x, y[k] = dr.y, z[k] = dr.z;
-    s[k] = hn::NegMulAdd(dr.y, dr.y, hn::NegMulAdd(dr.x, dr.x, hn::Set(kD, 1.0)));
-    s[k] = hn::NegMulAdd(dr.z, dr.z, s[k]);
+    s[k] = hn::NegMulAdd(y[k], y[k], hn::NegMulAdd(x[k], x[k], hn::Set(kD, 1.0)));
+    s[k] = hn::NegMulAdd(z[k], z[k], s[k]);
     s[k] = hn::Max(s[k], hn::Zero(kD));  // not touching: the factor is 0
     deepest = k == 0 ? s[k] : hn::Max(deepest, s[k]);
   }
@@ -84,12 +88,27 @@ template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
                              V per_depth) {
-  for (; slots >= kSlots; slots -= kSlots, list += kSlots * kLanes) {
-    add_slots<kSeam, kSlots>(sum, own, rows, list, depth, per_depth);
+  if constexpr (kSlots > 1) {
+    for (; slots >= kSlots; slots -= kSlots, list += kSlots * kLanes) {
+      V x[kSlots], y[kSlots], z[kSlots];
+      HWY_UNROLL(4)
+      for (std::size_t k = 0; k < kSlots; ++k) {
+        const Vectors dr = load_slot<kSeam>(own, rows, list + k * kLanes, depth, per_depth);
+        x[k] = dr.x, y[k] = dr.y, z[k] = dr.z;
+      }
+      add_slots<kSlots>(sum, x, y, z);
+    }
   }
-  for (; slots > 0; --slots, list += kLanes) {
-    add_slots<kSeam, 1>(sum, own, rows, list, depth, per_depth);
+  if (slots == 0) return;
+  // Each slot is loaded before the slot in front of it is added, so that no series waits for rows.
+  Vectors dr = load_slot<kSeam>(own, rows, list, depth, per_depth);
+  for (; slots > 1; --slots) {
+    list += kLanes;
+    const Vectors next = load_slot<kSeam>(own, rows, list, depth, per_depth);
+    add_slots<1>(sum, &dr.x, &dr.y, &dr.z);
+    dr = next;
   }
+  add_slots<1>(sum, &dr.x, &dr.y, &dr.z);
 }
 
 HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& plane) {
@@ -157,35 +176,46 @@ HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
 }
 
+// Velocities and positions at the next step of the block at grain g; raises `excess`.
+HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vectors& own, V margin,
+                           const Vectors& sum) {
+  const V factor = hn::Set(kD, t.velocity_factor);
+  const V kick = hn::Set(kD, t.contact_kick);
+  V vx = hn::MulAdd(kick, sum.x, hn::Mul(factor, hn::LoadU(kD, t.velocity[0] + g)));
+  V vy = hn::MulAdd(kick, sum.y, hn::Mul(factor, hn::LoadU(kD, t.velocity[1] + g)));
+  const V vz = hn::MulAdd(kick, sum.z, hn::Mul(factor, hn::LoadU(kD, t.velocity[2] + g)));
+  if (t.fluid_step != 0) {
+    vx =
+        hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)), vx);
+  }
+  vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
+  hn::StoreU(vx, kD, t.velocity[0] + g);
+  hn::StoreU(vy, kD, t.velocity[1] + g);
+  hn::StoreU(vz, kD, t.velocity[2] + g);
+  const V dt = hn::Set(kD, t.time_step);
+  const Vectors next{hn::MulAdd(dt, vx, own.x), hn::MulAdd(dt, vy, own.y),
+                     hn::MulAdd(dt, vz, own.z)};
+  store_rows(next, margin, t.next_rows + 4 * g);
+  return raise_excess(excess, t, g, next, margin);
+}
+
+// A block is advanced after the next one is summed, when its own sum is no longer waited for.
 double step(const StepTask& t, std::size_t first, std::size_t last) {
+  if (first == last) return -1;
   const V depth = hn::Set(kD, t.depth);
   const V per_depth = hn::Set(kD, t.per_depth);
   V excess = hn::Set(kD, -1.0);
-  for (std::size_t block = first; block < last; ++block) {
-    const std::size_t g = block * kLanes;
-    V margin;
-    const Vectors own = load_block(t, g, margin);
-    const Vectors sum = contact_sum(t, block, own, depth, per_depth);
-
-    const V factor = hn::Set(kD, t.velocity_factor);
-    const V kick = hn::Set(kD, t.contact_kick);
-    V vx = hn::MulAdd(kick, sum.x, hn::Mul(factor, hn::LoadU(kD, t.velocity[0] + g)));
-    V vy = hn::MulAdd(kick, sum.y, hn::Mul(factor, hn::LoadU(kD, t.velocity[1] + g)));
-    const V vz = hn::MulAdd(kick, sum.z, hn::Mul(factor, hn::LoadU(kD, t.velocity[2] + g)));
-    if (t.fluid_step != 0) {
-      vx = hn::MulAdd(hn::Set(kD, t.fluid_step), hn::Sub(own.y, hn::Set(kD, t.fluid_rest_height)),
-                      vx);
-    }
-    vy = hn::Add(vy, hn::Set(kD, t.gravity_step));
-    hn::StoreU(vx, kD, t.velocity[0] + g);
-    hn::StoreU(vy, kD, t.velocity[1] + g);
-    hn::StoreU(vz, kD, t.velocity[2] + g);
-    const V dt = hn::Set(kD, t.time_step);
-    const Vectors next{hn::MulAdd(dt, vx, own.x), hn::MulAdd(dt, vy, own.y),
-                       hn::MulAdd(dt, vz, own.z)};
-    store_rows(next, margin, t.next_rows + 4 * g);
-    excess = raise_excess(excess, t, g, next, margin);
+  V margin;
+  Vectors own = load_block(t, first * kLanes, margin);
+  Vectors sum = contact_sum(t, first, own, depth, per_depth);
+  for (std::size_t block = first + 1; block < last; ++block) {
+    V next_margin;
+    const Vectors next_own = load_block(t, block * kLanes, next_margin);
+    const Vectors next_sum = contact_sum(t, block, next_own, depth, per_depth);
+    excess = advance_block(excess, t, (block - 1) * kLanes, own, margin, sum);
+    own = next_own, margin = next_margin, sum = next_sum;
   }
+  excess = advance_block(excess, t, (last - 1) * kLanes, own, margin, sum);
   return hn::GetLane(hn::MaxOfLanes(kD, excess));
 }
 

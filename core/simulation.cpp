@@ -118,7 +118,7 @@ void Simulation::set_state(const State& state) {
   }
   copy_in(state);
   pose_ = pose_at(Drive{}, step_);
-  if (counts_.builds > 0) walls_.place(pose_, rows_[0].data() + wall_offset(id_.size()));
+  if (counts_.builds > 0) walls_.place(pose_, rows_[0].data() + wall_offset(id_.size()), team_);
   was_set_ = true;
 }
 
@@ -198,7 +198,7 @@ void Simulation::step_once(const Drive& drive) {
   }
   (cell_.moving == MovingWall::bottom ? next.bottom : next.top) = wall_height_;
   pose_ = next;
-  walls_.place(pose_, rows_[1].data() + wall_offset(id_.size()));
+  walls_.place(pose_, rows_[1].data() + wall_offset(id_.size()), team_);
   std::swap(rows_[0], rows_[1]);
   ++step_;
   if (!lists_.inner_valid(excess, pose_)) refresh_lists(drive);

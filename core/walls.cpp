@@ -39,22 +39,25 @@ void Walls::choose_active(const WallPose& pose, double reach) {
 }
 
 // The same operations in the same order as wall_grain_position().
-void Walls::place(const WallPose& pose, double* rows) const {
+void Walls::place(const WallPose& pose, double* rows, Team& team) const {
   const double bottom_x = (pose.bottom - pose.top) * pose.tan_theta;
   const double bottom_y = pose.bottom - cell_.bottom;
   const double top_y = pose.top - cell_.top;
-  for (const std::int32_t w : active_) {
-    const auto& [side, p] = cell_.wall_grains[static_cast<std::size_t>(w)];
-    double* row = rows + 4 * static_cast<std::ptrdiff_t>(w);
-    if (side == WallSide::bottom) {
-      row[0] = p.x() + bottom_x;
-      row[1] = p.y() + bottom_y;
-    } else if (side == WallSide::top) {
-      row[1] = p.y() + top_y;
-    } else {
-      row[0] = p.x() + (p.y() - pose.top) * pose.tan_theta;
+  team.run(active_.size(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const auto w = static_cast<std::size_t>(active_[k]);
+      const auto& [side, p] = cell_.wall_grains[w];
+      double* row = rows + 4 * w;
+      if (side == WallSide::bottom) {
+        row[0] = p.x() + bottom_x;
+        row[1] = p.y() + bottom_y;
+      } else if (side == WallSide::top) {
+        row[1] = p.y() + top_y;
+      } else {
+        row[0] = p.x() + (p.y() - pose.top) * pose.tan_theta;
+      }
     }
-  }
+  });
 }
 
 }  // namespace shearcell

@@ -10,6 +10,7 @@
 
 #include "core/cell.hpp"
 #include "core/kernel.hpp"
+#include "core/team.hpp"
 
 namespace shearcell {
 
@@ -35,7 +36,7 @@ class Walls {
   const std::vector<std::int32_t>& active() const { return active_; }
 
   /// Updates the active wall grains in rows that place_all has filled.
-  void place(const WallPose& pose, double* rows) const;
+  void place(const WallPose& pose, double* rows, Team& team) const;
 
   std::size_t bytes() const { return sizeof(WallGrain) * size() + 4 * active_.size(); }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One packing for three programs: `bench_peers prepare DIR N` writes it for LAMMPS and LIGGGHTS,
-// `ours DIR N` times the same steps here, `compare DIR N` compares the positions of every dump in
-// DIR with ours. peers.sh runs them.
+// One packing for three programs: `bench_peers prepare DIR N SIMD` writes it for LAMMPS and
+// LIGGGHTS, `ours DIR N SIMD` times the same steps here (processor time), `compare DIR N SIMD`
+// compares the positions of every dump in DIR with ours. peers.sh runs them. SIMD is avx-512, avx2,
+// neon, scalar, or best.
 //
 // The scene: the rough cell of Table I, pressed, then upright with all walls fixed (a moving wall
 // of huge mass), random velocities, no gravity.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -55,15 +57,28 @@ Kicked prepare(std::size_t grains) {
   return kicked;
 }
 
+// The implementation with this name in lower case, or the fastest one for "best".
+const Kernels* kernels_named(const std::string& simd) {
+  for (const Kernels* kernels : kernels_here()) {
+    std::string name = kernels->name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (simd == "best" || simd == name) return kernels;
+  }
+  throw std::runtime_error("this machine has no " + simd);
+}
+
 // The leapfrog needs velocities half a step earlier.
-Simulation simulate(const Kicked& kicked, double drag_rate) {
+Simulation simulate(const Kicked& kicked, double drag_rate, const Kernels* kernels) {
   Scene scene = kicked.scene;
   scene.drag_rate = drag_rate;
   State state = kicked.state;
-  Simulation start(kicked.cell, scene, state);
+  SimulationSettings settings;
+  settings.kernels = kernels;
+  Simulation start(kicked.cell, scene, state, settings);
   state.velocity -=
       0.5 * scene.time_step * (start.forces().on_grain - drag_rate * kicked.state.velocity);
-  return Simulation(kicked.cell, scene, state);
+  return Simulation(kicked.cell, scene, state, settings);
 }
 
 void write_data(const Kicked& kicked, const fs::path& folder) {
@@ -162,8 +177,8 @@ double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b, double dep
   return difference.colwise().norm().maxCoeff();
 }
 
-void compare(const Kicked& kicked, const fs::path& folder) {
-  Simulation simulation = simulate(kicked, 0);
+void compare(const Kicked& kicked, const fs::path& folder, const Kernels* kernels) {
+  Simulation simulation = simulate(kicked, 0, kernels);
   simulation.advance(Drive{}, kAccuracySteps);
   std::set<fs::path> dumps;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -183,34 +198,35 @@ void compare(const Kicked& kicked, const fs::path& folder) {
   if (!agree) throw std::runtime_error("the trajectories disagree");
 }
 
-void time_ours(const Kicked& kicked) {
-  Simulation simulation = simulate(kicked, 64);
-  const Stopwatch watch;
+void time_ours(const Kicked& kicked, const Kernels* kernels) {
+  Simulation simulation = simulate(kicked, 64, kernels);
+  const double start = thread_seconds();
   simulation.advance(Drive{}, kSpeedSteps);
   const auto work = 1e-6 * static_cast<double>(kSpeedSteps * simulation.grains());
-  fmt::print("{:.4f}\n", work / watch.seconds());
+  fmt::print("{:.4f}\n", work / (thread_seconds() - start));
 }
 
 int run(int argc, char** argv) {
-  if (argc != 4) throw std::runtime_error("usage: bench_peers prepare|ours|compare DIR N");
+  if (argc != 5) throw std::runtime_error("usage: bench_peers prepare|ours|compare DIR N SIMD");
   const std::string what = argv[1];
   const fs::path folder = argv[2];
   const Kicked kicked = prepare(std::stoul(argv[3]));
+  const Kernels* kernels = kernels_named(argv[4]);
   if (what == "prepare") {
     const nlohmann::json host = host_facts();
     const nlohmann::json& build = host["build"];
     fmt::print("{}\nshearcell: {}, {}, {}\n", host["cpu"].get<std::string>(),
                build["compiler"].get<std::string>(), build["flags"].get<std::string>(),
-               host["simd"].get<std::string>());
+               kernels->name);
     write_data(kicked, folder);
     write_input(kicked, folder, "free", 0, kAccuracySteps);
     write_input(kicked, folder, "speed", 64, kSpeedSteps);
     write_liggghts(kicked, folder, "liggghts-free", 0, kAccuracySteps);
     write_liggghts(kicked, folder, "liggghts-speed", 64, kSpeedSteps);
   } else if (what == "ours") {
-    time_ours(kicked);
+    time_ours(kicked, kernels);
   } else {
-    compare(kicked, folder);
+    compare(kicked, folder, kernels);
   }
   return 0;
 }

@@ -1,18 +1,30 @@
 #!/bin/sh
 # Compares our engine with LAMMPS (gran/hooke) and LIGGGHTS (hooke/stiffness) on one packing and one core each:
-#   sh tests/bench/peers.sh [--native] [N] [rounds]
-# Both are Debian's packages. --native also compiles Debian's source of LAMMPS for this machine and measures it, without
-# and with LAMMPS's package OPENMP. This takes ten minutes; later calls find the program in ~/.cache/shearcell-peers.
+#   sh tests/bench/peers.sh [--native] [--simd avx2] [N] [rounds]
+# N is the number of grains (5200). Both are Debian's packages. --native also compiles Debian's source of LAMMPS for this
+# machine and measures it, without and with LAMMPS's package OPENMP. This takes ten minutes; later calls find the program
+# in ~/.cache/shearcell-peers. --simd avx2 runs our engine, and compiles LAMMPS, without AVX-512.
 # Every program runs with each neighbour skin. First the trajectories, then the speed, in turn, with the ratio of the
-# speeds in each round.
+# speeds in each round (5 rounds).
 set -eu
 cd "$(dirname "$0")/../.."
-native=no
-if [ "${1:-}" = --native ]; then native=yes; shift; fi
-grains=${1:-5200}
-rounds=${2:-5}
+native=no simd=best
 skins="0.02 0.04 0.06 0.1 0.15"  # [d]
 flags="-O3 -march=native -ffast-math -fopenmp"
+while [ $# -gt 0 ]; do
+  case $1 in
+    -h | --help) sed -n '2,/^set/s/^# //p' tests/bench/peers.sh; exit 0 ;;
+    --native) native=yes; shift ;;
+    --simd)
+      [ "${2:-}" = avx2 ] || { echo "peers.sh: --simd ${2:-}: only avx2 can be chosen" >&2; exit 2; }
+      simd=avx2 flags="$flags -mno-avx512f"
+      shift 2 ;;
+    -*) echo "peers.sh: $1 is not an option; see --help" >&2; exit 2 ;;
+    *) break ;;
+  esac
+done
+grains=${1:-5200}
+rounds=${2:-5}
 
 sh .ci/setup peers
 cmake --preset release >/dev/null
@@ -38,7 +50,7 @@ compile_lammps() {
     nice make -C lammps-*/src -j2 serial CCFLAGS="$flags -std=c++11" LINKFLAGS="$flags"
 }
 
-"$bench" prepare "$folder" "$grains"
+"$bench" prepare "$folder" "$grains" "$simd"
 echo "LAMMPS: Debian's $(dpkg-query -W -f '${Version}' lammps), $(lmp -h | sed -n 's/^Compiler: //p'), -O2"
 echo "LIGGGHTS: Debian's $(dpkg-query -W -f '${Version}' liggghts), -O2"
 programs="LAMMPS LIGGGHTS"
@@ -80,15 +92,19 @@ each() { for program in $programs; do for skin in $skins; do "$1" "$program" "$s
 
 trajectory() { run "$1" free "$2"; }
 each trajectory
-"$bench" compare "$folder" "$grains"
+"$bench" compare "$folder" "$grains" "$simd"
 
-# "Loop time of T on 1 procs for S steps with A atoms": the rate of the grains alone, without wall grains.
+# "Loop time of T on 1 procs for S steps with A atoms", "U% CPU use": the rate of the grains alone, without wall grains, in
+# processor time, so that other programs on the machine matter less. LIGGGHTS prints no use; its time is the clock's.
 rate() {
   run "$1" speed "$2"
-  awk -v n="$grains" '/^Loop time/ && $9 > 1 {printf "%.4f\n", n * $9 / $4 * 1e-6}' "$1-$2.out" >>"$1-$2.rates"
+  awk -v n="$grains" '/^Loop time/ && $9 > 1 {time = $4; steps = $9; use = 100}
+    /CPU use/ && steps > 0 {use = $1}
+    /^Loop time/ && $9 == 0 {exit}
+    END {printf "%.4f\n", n * steps / (time * use / 100) * 1e-6}' "$1-$2.out" >>"$1-$2.rates"
 }
 for _ in $(seq "$rounds"); do
-  "$bench" ours "$folder" "$grains" >>shearcell.rates
+  "$bench" ours "$folder" "$grains" "$simd" >>shearcell.rates
   each rate
 done
 
