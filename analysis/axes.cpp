@@ -33,16 +33,6 @@ SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
           .runs = "runs"};
 }
 
-std::vector<ReferenceLine> onset_lines(bool vertical) {
-  std::vector<ReferenceLine> lines;
-  for (const double error : {-published_onset_error, published_onset_error}) {
-    lines.push_back({.at = published_onset_phi + error,
-                     .vertical = vertical,
-                     .title = "the supplement's onset, 0.646 ± 0.001"});
-  }
-  return lines;
-}
-
 ReferenceLine critical_line(double size, const std::string& colour) {
   return {.at = size, .colour = colour, .title = "the supplement's critical sizes"};
 }

@@ -24,9 +24,6 @@ inline const Axis overlap_axis = {
 inline const Axis amplitude_axis = {
     .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
 inline const Axis onset_axis = {.name = "onset", .symbol = formula("$ϕ$")};
-
-/// Dashed lines at phi = 0.646 +- 0.001, the supplement's onset.
-std::vector<ReferenceLine> onset_lines(bool vertical = false);
 /// The supplement's critical size [grains] of one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 

@@ -48,9 +48,10 @@ void print_verdicts(const ComputedFigure& result) {
   if (result.verdicts.empty()) return;
   print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
-    print_text("    {}: {}\n      {}: {}{}{}\n", name_of(verdict.ruling), verdict.claim,
-               verdict.quantity, numbers_of(verdict), verdict.note.empty() ? "" : "; ",
-               verdict.note);
+    const bool named = verdict.id.empty() || verdict.claim.starts_with(verdict.id);
+    print_text("    {}: {}{}\n      {}: {}{}{}\n", name_of(verdict.ruling),
+               named ? "" : verdict.id + ": ", verdict.claim, verdict.quantity, numbers_of(verdict),
+               verdict.note.empty() ? "" : "; ", verdict.note);
   }
 }
 
