@@ -148,6 +148,13 @@ std::string numbers_of(const Verdict& verdict) {
   text += fmt::format(", margin {:.3g}, {}{}", verdict.margin,
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");
+  if (verdict.is_log2 && verdict.estimate && any_end) {
+    const double least = std::exp2(low), most = std::exp2(high);
+    text += std::isinf(high)  ? fmt::format(" (a ratio of at least {:.2g}", least)
+            : std::isinf(low) ? fmt::format(" (a ratio of at most {:.2g}", most)
+                              : fmt::format(" (a ratio from {:.2g} to {:.2g}", least, most);
+    text += fmt::format("; margin: a factor of {:.3g})", std::exp2(verdict.margin));
+  }
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
   if (verdict.censored > 0) text += fmt::format(", {} censored", verdict.censored);
   if (verdict.primary) text += ", primary claim";

@@ -50,6 +50,7 @@ struct Verdict {
   std::optional<double> estimate;  ///< none if too few runs have the quantity
   Interval interval;               ///< only with an estimate
   double level = confidence_level;
+  bool is_log2 = false;  ///< of a ratio, which numbers_of() states too
   double margin = 0;
   Ruling ruling = Ruling::undecided;
   std::size_t runs = 0;  ///< as `counted` says

@@ -88,8 +88,11 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
       enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
     }
   }
-  return decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
-                estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
+  Verdict verdict =
+      decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
+             runs, std::move(note), std::move(entered), Counted::runs_per_variant);
+  verdict.is_log2 = true;
+  return verdict;
 }
 
 bool compares_waits(const ClaimSpec& claim) {

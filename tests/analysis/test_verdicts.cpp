@@ -100,6 +100,12 @@ TEST(Verdict, WordsHaveNoInfinities) {
   verdict.estimate = 2;
   verdict.interval = {1.5, infinity};
   EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs");
+  verdict.is_log2 = true;
+  EXPECT_EQ(numbers_of(verdict),
+            "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs "
+            "(a ratio of at least 2.8; margin: a factor of 2)");
+  verdict.interval = {1, 3};
+  EXPECT_TRUE(has(numbers_of(verdict), "(a ratio from 2 to 8; margin: a factor of 2)"));
 }
 
 TEST(Verdict, JsonHasSixDigitsAndNull) {
