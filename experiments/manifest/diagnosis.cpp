@@ -423,13 +423,11 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// To the earliest checkpoint that a measure or expression needs besides its own.
-std::uint64_t cycles_back(string_view text) {
+/// To the earliest checkpoint that a column needs besides its own.
+std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
-  for (const string& name : names_in(text)) {
-    if (const Measure* found = find_measure(name)) {
-      most = std::max(most, provider_of(*found).cycles_back);
-    }
+  for (const string& name : providers_of({&column, 1})) {
+    most = std::max(most, provider(name).cycles_back);
   }
   return most;
 }
@@ -579,11 +577,6 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   return found;
 }
 
-/// A claim of the plan.
-struct Said {
-  string id, text;
-};
-
 struct ClaimProblems {
   std::vector<string> refusals;  // why `figures` will refuse the claim
   std::vector<string> lacks;     // why the claim will be undecided
@@ -606,40 +599,24 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   return found;
 }
 
-/// Warns of the plots and claims that `source` states: of its own ones if `figure` is "", else of
-/// those of a figure that the manifest lists. Adds to `said` what the claims say.
-void warn_of_stated(const Manifest& source, const string& figure, const Manifest& manifest,
-                    const ScaleRuns& here, std::span<const ScaleRuns> all, std::vector<Said>& said,
-                    std::vector<string>& warnings) {
-  const auto is_of = [&](const auto& one) { return figure.empty() || figure_of(one) == figure; };
-  const auto warn_of = [&](const char* kind, const auto& one, const string& name,
-                           const std::vector<string>& problems) {
-    const string place = figure.empty()
-                             ? format("{}:{}:{}", manifest.file, one.at.line, one.at.column)
-                             : format("{}: figure {}", manifest.file, figure);
-    for (const string& problem : problems) {
-      if (!problem.empty()) warnings.push_back(format("{}: {} {}: {}", place, kind, name, problem));
-    }
-  };
-  for (const auto& plot : source.plots) {
-    if (is_of(plot)) warn_of("plot", plot, plot.name, problems_of(plot, here, all));
-  }
-  for (const auto& stated_claim : source.claims) {
-    if (!is_of(stated_claim)) continue;
-    for (const ClaimSpec& claim : each_of(stated_claim, here.runs)) {
-      said.push_back({claim.id, stated(claim, sides_of(claim, here.runs).names).text});
-      const ClaimProblems found = problems_of(claim, here);
-      if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
-      warn_of("claim", stated_claim, claim.id, found.refusals);
-      // A small scale is for trying: nothing is said where another one can decide the claim.
-      const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
-        if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
-        const ClaimProblems there = problems_of(claim, other);
-        return there.refusals.empty() && there.lacks.empty();
-      });
-      if (!decided) warn_of("claim", stated_claim, claim.id, found.lacks);
+/// The plots or claims of the figures that the manifest lists, then its own ones, each with its
+/// place for messages.
+template <class Spec>
+std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
+    const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
+  std::vector<std::pair<string, const Placed<Spec>*>> found;
+  for (const string& figure : manifest.figures) {
+    for (const Manifest& shipped : shipped_manifests()) {
+      for (const Placed<Spec>& one : shipped.*list) {
+        if (figure_of(one) != figure) continue;
+        found.emplace_back(format("{}: figure {}", manifest.file, figure), &one);
+      }
     }
   }
+  for (const Placed<Spec>& one : manifest.*list) {
+    found.emplace_back(format("{}:{}:{}", manifest.file, one.at.line, one.at.column), &one);
+  }
+  return found;
 }
 
 void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
@@ -659,23 +636,41 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const Scale& one : scales) {
     all.push_back({one, one.seeds.values.size(), planned_runs(manifest, one, variants_of(one))});
   }
-  std::vector<Said> said;
-  for (const string& figure : manifest.figures) {
-    for (const Manifest& shipped : shipped_manifests()) {
-      warn_of_stated(shipped, figure, manifest, here, all, said, warnings);
+  const auto warn_of = [&](const string& what, const std::vector<string>& problems) {
+    for (const string& problem : problems) {
+      if (!problem.empty()) warnings.push_back(format("{}: {}", what, problem));
+    }
+  };
+  for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
+    warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
+  }
+  std::map<string, string> said;  // ids of claims, by what they say
+  std::vector<string> ids;
+  for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
+    for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
+      ids.push_back(claim.id);
+      said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
+      const ClaimProblems found = problems_of(claim, here);
+      if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
+      warn_of(format("{}: claim {}", place, claim.id), found.refusals);
+      // A small scale is for trying: nothing is said where another one can decide the claim.
+      const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
+        if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
+        const ClaimProblems there = problems_of(claim, other);
+        return there.refusals.empty() && there.lacks.empty();
+      });
+      if (!decided) warn_of(format("{}: claim {}", place, claim.id), found.lacks);
     }
   }
-  warn_of_stated(manifest, "", manifest, here, all, said, warnings);
   for (const string& primary : here.scale.primary) {
     if (primary.find(' ') == string::npos) continue;  // an id, which the reader has found
-    const auto found = std::ranges::find(said, primary, &Said::text);
+    const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
             ? format("{}: primary: '{}' is a statement; write the claim's id, {}.", manifest.file,
-                     primary, found->id)
+                     primary, found->second)
             : format("{}: primary: no claim has the statement '{}'; write the id of a claim: {}.",
-                     manifest.file, primary,
-                     fmt::join(std::views::transform(said, &Said::id), ", ")));
+                     manifest.file, primary, fmt::join(ids, ", ")));
   }
 }
 

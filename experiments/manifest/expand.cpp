@@ -133,23 +133,17 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
   std::vector<nlohmann::json> swept;
   for (const Variant& variant : variants) swept.push_back(variant.swept);
   const auto names = variant_names(swept, manifest.labels);
+  Membership common{{.experiment = manifest.experiment, .scale = scale.name}};
+  common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   std::vector<FrameRun> runs;
   for (const Variant& variant : variants) {
-    const Parameters& p = variant.parameters;
-    FrameRun& run = runs.emplace_back();
-    run.place = {.experiment = manifest.experiment,
-                 .scale = scale.name,
-                 .variant = variant.name,
-                 .swept = variant.swept};
+    const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
+    FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    const Stage packing = prepare_stage(variant.packing, 1);
-    run.stage = last_stage(p, 1, packing);
     // With `start`, the packing is not known yet, and several variants may share it.
-    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = packing.id;
-    for (const Field& field : schema()) run.parameters[field.name] = field.get(p);
-    run.ask.target_cycles = target_cycles(p);
-    const bool stiffens = p.protocol == ProtocolKind::stiffen;
-    run.ask.checkpoint_every = stiffens ? 1 : scale.checkpoints.every_cycles;
+    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = planned.prepare->id;
+    for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
+    if (planned.parameters.protocol == ProtocolKind::stiffen) run.ask.checkpoint_every = 1;
   }
   return runs;
 }

@@ -260,25 +260,23 @@ class PackingReader {
 
   // --- The formats: each finds units, box and named columns, and names what else there is ---
 
-  /// Reads `count` lines, and requires that nothing follows.
-  void read_rows(std::uint64_t count, string_view stated_in) {
-    const int stated_at = place(stated_in).line;
-    for (std::uint64_t k = 0; k < count; ++k) {
-      if (!next_line()) {
-        refuse_line(line_,
-                    fmt::format("the file ends after {} of the {} grains that line {} states", k,
-                                count, stated_at),
-                    "Write the whole file, or correct the number.");
-      }
-      grains_.rows.push_back(line_);
-    }
+  /// The rest of the file: the grains, whose number a line may have stated.
+  void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
-      if (trimmed(line_).empty()) continue;
-      refuse_line(
-          line_,
-          fmt::format("the file goes on after the {} grains that line {} states", count, stated_at),
-          "Keep one frame, or correct the number.");
+      if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
     }
+    const std::size_t found = grains_.rows.size();
+    if (!count || found == *count) return;
+    const int at = place(stated_in).line;
+    if (found < *count) {
+      refuse_line(line_,
+                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
+                              *count, at),
+                  "Write the whole file, or correct the number.");
+    }
+    refuse_line(grains_.rows[*count],
+                fmt::format("the file goes on after the {} grains that line {} states", *count, at),
+                "Keep one frame, or correct the number.");
   }
 
   Box& box() {
@@ -372,7 +370,7 @@ class PackingReader {
     }
     if (values.contains("Lattice")) read_lattice(values["Lattice"], values["Origin"]);
     if (values.contains("Properties")) read_properties(values["Properties"]);
-    read_rows(*read_number<std::uint64_t>(trimmed(counted_in)), counted_in);
+    read_rows(read_number<std::uint64_t>(trimmed(counted_in)), counted_in);
   }
 
   void read_properties(string_view text) {
@@ -516,7 +514,7 @@ class PackingReader {
         grains_ = {.header = line_,
                    .remedy = "Write them: dump ... custom ... id x y z vx vy vz.",
                    .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
-        return read_rows(*count, stated_in);
+        return read_rows(count, stated_in);
       }
       const bool bounds = item.starts_with("ITEM: BOX BOUNDS");
       require_line("the rest of the dump");
@@ -576,9 +574,7 @@ class PackingReader {
                .columns = columns_of(header, separator_of(header)),
                .separator = separator_of(header)};
     units_in_names_ = true;
-    while (next_line()) {
-      if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
-    }
+    read_rows();
   }
 
   // --- What is read of it ---

@@ -70,7 +70,8 @@ Names numbers() {
 
 void fields(Checkpoints& checkpoints, const auto& visit) {
   visit(checkpoints.every_cycles, {.name = "every_cycles", .range = {1, StoreLimits::cycles}});
-  visit(checkpoints.phases, {.name = "phases", .example = "[0.25, 0.5, 0.75]"});
+  visit(checkpoints.phases,
+        {.name = "phases", .range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
 }
 
 // Of a measure as a key of `until`.
@@ -506,6 +507,13 @@ struct Reader {
   void reject_key(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.key_at, in.path, problem, "", remedy);
   }
+  // Of a key that is stated and may not be.
+  void reject_if(bool wrong, const Node* in, const string& problem, const string& remedy) {
+    if (wrong && in != nullptr) reject(*in, problem, remedy);
+  }
+  void reject_value_if(bool wrong, const Node* in, const string& problem, const string& remedy) {
+    if (wrong && in != nullptr) reject_value(*in, problem, remedy);
+  }
 
   // Reports that the key is not one of those `allowed` in its map, with the nearest of them.
   void reject_unknown(const Node& in, const Names& allowed) {
@@ -598,23 +606,13 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Formulas stand between two `$`.
-  void check_formulas(const Node* in) {
-    if (in != nullptr && std::ranges::count(in->text, '$') % 2 == 1) {
-      reject_value(*in, "has a $ without its partner", "A formula stands between two $.");
-    }
-  }
-
   // Reads a parameter and its value into `where`.
   void read_where(const Node& in, json& where) {
     static const Field experiment = {.name = "experiment", .longest = kLongestName};
     if (in.key == experiment.name) {
-      std::vector<string> any;
-      if (in.kind == Node::Kind::list) {
-        read(in, {.name = "of", .longest = kLongestName}, any);
-      } else {
-        read(in, experiment, any.emplace_back());
-      }
+      std::vector<string> any(in.kind == Node::Kind::list ? 0 : 1);
+      any.empty() ? read(in, {.name = "of", .longest = kLongestName}, any)
+                  : read(in, experiment, any.front());
       where[in.key] = any;
       return;
     }
@@ -724,6 +722,8 @@ struct Reader {
                            fmt::format("It takes one text of at most {} bytes.", about.longest));
       }
       value = text;
+      reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
+                      "has a $ without its partner", "A formula stands between two $.");
     } else if (in.is_scalar() && is_name(text)) {
       value = text;
     } else {
@@ -734,35 +734,44 @@ struct Reader {
     }
   }
 
-  // A first and a last cycle, of a key without example the same one, or the ends of a window.
+  // The two sides of a claim, a first and a last cycle, of a key without example the same one, or
+  // the ends of a window.
   template <class T>
-  requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
-                                              std::array<T, 2>& ends) {
-    const Field end = with_type<T>({.range = about.range});
+  void read(const Node& in, const Field& about, std::array<T, 2>& both) {
+    constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
+    const Field each = sides ? about : with_type<T>({.range = about.range});
     if (about.example.empty()) {
-      read(in, end, ends[0]);
-      ends[1] = ends[0];
+      read(in, each, both[0]);
+      both[1] = both[0];
       return;
     }
     const std::size_t problems_before = problems.size();
     const std::span<const Node> parts = items_of(in, about.example);
-    for (std::size_t k = 0; k < std::min(parts.size(), ends.size()); ++k) {
-      read(parts[k], end, ends[k]);
+    for (std::size_t k = 0; k < std::min<std::size_t>(parts.size(), 2); ++k) {
+      if (!sides || parts[k].is_map() || parts[k].is_scalar()) read(parts[k], each, both[k]);
     }
-    const bool in_order = ends[0] < ends[1] || (end.whole && ends[0] == ends[1]);
-    if ((parts.size() != 2 || !in_order) && problems.size() == problems_before) {
-      reject(in,
-             end.whole ? "is not a first and a last cycle"
-                       : "is not a window from a low to a high value",
-             remedy_of(about));
+    bool fits = parts.size() == 2;
+    if constexpr (sides) {
+      fits = fits && !both[0].empty() && !both[1].empty();
+    } else {
+      fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
     }
+    if (fits || problems.size() > problems_before) return;
+    reject(in,
+           sides   ? "does not name two variants"
+           : whole ? "is not a first and a last cycle"
+                   : "is not a window from a low to a high value",
+           remedy_of(about));
   }
 
-  // Measures, or names of columns and their measures.
-  void read(const Node& in, const Field& about, std::vector<ColumnSpec>& columns) {
-    const bool named = in.is_map();
-    if (in.is_scalar() && about.name == "y") return read(in, about, columns.emplace_back().measure);
-    for (const Node& one : named ? std::span(in.parts) : items_of(in, about.example)) {
+  // Measures, or names of columns and their measures. Those of `y` stand before those of `also`.
+  void read(const Node& in, const Field& about, std::vector<ColumnSpec>& all) {
+    const bool named = in.is_map(), is_y = about.name == "y", one_y = is_y && in.is_scalar();
+    std::vector<ColumnSpec> columns;
+    for (const Node& one : one_y ? std::span(&in, 1)
+                           : named
+                               ? std::span(in.parts)
+                               : items_of(in, is_y ? "[phi_uncorrected, phi]" : about.example)) {
       ColumnSpec& column = columns.emplace_back();
       if (named) {
         read({.kind = Node::Kind::scalar, .at = one.key_at, .text = one.key, .path = one.path}, {},
@@ -770,6 +779,7 @@ struct Reader {
       }
       read(one, about, column.measure);
     }
+    all.insert(is_y ? all.begin() : all.end(), columns.begin(), columns.end());
   }
 
   template <HasFields T>
@@ -786,7 +796,6 @@ struct Reader {
       SeriesSpec& one = series.emplace_back();
       read(part, {.example = "{label: a name, colour: blue, marker: circle}"}, one);
       one.where = part.key.find('=') == string::npos ? json{{"", part.key}} : read_selector(part);
-      check_formulas(part.find("label"));
     }
   }
 
@@ -817,32 +826,23 @@ struct Reader {
     for (const Node& part : in.parts) read_where(part, where);
   }
 
-  // Numbers of seeds.
-  void read(const Node& in, const Field& about, std::vector<std::uint64_t>& looks) {
+  // Ascending numbers: of seeds, or phases of a cycle.
+  template <class T>
+  requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
+                                              std::vector<T>& numbers) {
+    constexpr bool phases = !std::is_integral_v<T>;
     for (const Node& item : items_of(in, about.example)) {
-      std::uint64_t look = 0;
-      read(item, {.range = about.range, .whole = true}, look);
-      if (look != 0 && !looks.empty() && look <= looks.back()) {
-        reject_value(item, "is not greater than the look before it",
-                     "List them in ascending order.");
-      }
-      looks.push_back(look);
-    }
-  }
-
-  // Phases of a cycle.
-  void read(const Node& in, const Field& about, std::vector<double>& phases) {
-    for (const Node& item : items_of(in, about.example)) {
-      const auto read = read_scalar(item, {.range = {-kInfinity, kInfinity}});
+      const auto read = read_scalar(item, with_type<T>({.range = about.range}));
       if (!read) continue;
-      const auto phase = read->get<double>();
-      if (!(phase > 0 && phase < 1)) {
+      const T number = read->template get<T>();
+      if (phases && !(number > 0 && number < 1)) {
         reject_value(item, "is not within a cycle", "It takes fractions p of a cycle, 0 < p < 1.");
-      } else if (!phases.empty() && phase <= phases.back()) {
-        reject_value(item, "is not greater than the phase before it",
-                     "List them in ascending order, each once.");
+      } else if (!numbers.empty() && number <= numbers.back()) {
+        reject_value(item,
+                     fmt::format("is not greater than the {} before it", phases ? "phase" : "look"),
+                     fmt::format("List them in ascending order{}.", phases ? ", each once" : ""));
       } else {
-        phases.push_back(phase);
+        numbers.push_back(number);
       }
     }
   }
@@ -877,51 +877,38 @@ struct Reader {
     }
   }
 
-  // The two sides of a claim.
-  void read(const Node& in, const Field& about, std::array<json, 2>& between) {
-    const std::size_t problems_before = problems.size();
-    const auto sides = items_of(in, about.example);
-    for (std::size_t k = 0; k < std::min<std::size_t>(sides.size(), 2); ++k) {
-      if (sides[k].is_map() || sides[k].is_scalar()) read(sides[k], about, between[k]);
+  // Reads a parameter; false if it is none.
+  bool read_parameter(const Node& in, Settings& settings) {
+    const Field* field = find_field(in.key);
+    if (field == nullptr) return false;
+    if (is_auto(*field, in)) {
+      settings[in.key] = {in.text, in.at};
+    } else if (auto value = read_scalar(in, *field)) {
+      settings[in.key] = {std::move(*value), in.at};
     }
-    const bool two = sides.size() == 2 && !between[0].empty() && !between[1].empty();
-    if (!two && problems.size() == problems_before) {
-      reject(in, "does not name two variants", remedy_of(about));
-    }
-  }
-
-  // Parameters, and other keys as `read_other` reads them: it returns false for those that it does
-  // not know.
-  void read_settings(const Node& in, Settings& settings, const Names& others,
-                     const auto& read_other) {
-    if (in.kind != Node::Kind::map) {
-      return reject_type(in, "a map of parameters", "Indent `key: value` lines under it.");
-    }
-    for (const Node& part : in.parts) {
-      const Field* field = find_field(part.key);
-      if (field == nullptr) {
-        if (!read_other(part)) reject_unknown(part, joined(names_of(schema()), others));
-      } else if (is_auto(*field, part)) {
-        settings[part.key] = {part.text, part.at};
-      } else if (auto value = read_scalar(part, *field)) {
-        settings[part.key] = {std::move(*value), part.at};
-      }
-    }
+    return true;
   }
 
   // Those of `base` or of `settle`, or one of `start`.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") return read_start(in, settings);
     settings.clear();
-    read_settings(in, settings, {}, [](const Node&) { return false; });
-    if (about.name == "base" || !in.is_map()) return;
-    for (const Node& part : in.parts) {
+    for (const Node& part : settings_in(in)) {
       const Field* field = find_field(part.key);
-      if (field == nullptr || may_differ_in_settling(part.key)) continue;
-      const bool of_shear = field->identity.stage != StageKind::prepare;
-      reject_key(part, of_shear ? "has no effect on a packing" : "is one for packing and shear",
-                 "State it in `base` or in a scale.");
+      if (!read_parameter(part, settings)) {
+        reject_unknown(part, names_of(schema()));
+      } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
+        const bool of_shear = field->identity.stage != StageKind::prepare;
+        reject_key(part, of_shear ? "has no effect on a packing" : "is one for packing and shear",
+                   "State it in `base` or in a scale.");
+      }
     }
+  }
+
+  std::span<const Node> settings_in(const Node& in) {
+    if (in.kind == Node::Kind::map) return in.parts;
+    reject_type(in, "a map of parameters", "Indent `key: value` lines under it.");
+    return {};
   }
 
   // `seed`, `cycle` or `noise_d`.
@@ -951,9 +938,12 @@ struct Reader {
       scale.name = part.key;
       scale.at = part.key_at;
       if (const Node* settle = part.find("settle")) scale.settle_at = settle->key_at;
-      read_settings(part, scale.settings, names_of(keys_of<Scale>()),
-                    [&](const Node& key) { return read_key(key, scale); });
-      for (const Node& key : part.parts) scale.own.insert(key.key);
+      for (const Node& key : settings_in(part)) {
+        if (!read_parameter(key, scale.settings) && !read_key(key, scale)) {
+          reject_unknown(key, joined(names_of(schema()), names_of(keys_of<Scale>())));
+        }
+        scale.own.insert(key.key);
+      }
     }
   }
 
@@ -1145,48 +1135,33 @@ struct Reader {
 
   void check(const Node& in, const Field&, Placed<PlotSpec>& plot) {
     if (const Node* y = in.find("y"); y != nullptr && !plot.also.empty()) {
-      // The columns of `y` stand before those of `also`.
-      const std::size_t drawn = y->is_scalar() ? 1 : y->parts.size();
-      if (in.find("also") != nullptr) {
-        const auto also = std::ranges::find(in.parts, "also", &Node::key);
-        if (also < std::ranges::find(in.parts, "y", &Node::key)) {
-          std::ranges::rotate(plot.also, plot.also.end() - static_cast<std::ptrdiff_t>(drawn));
-        }
-      }
       plot.y = plot.also.front().measure;
       plot.column = plot.also.front().name;
       plot.also.erase(plot.also.begin());
-      plot.drawn = drawn - 1;
+      plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.also.size() + 1) - 1;
     }
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
-    if (curve != nullptr && x != nullptr) {
-      reject_value(*x, fmt::format("does not go with {}", curve->name),
-                   fmt::format("Leave it out: {} is drawn against {}.", curve->name, curve->x));
+    const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
+    const string not_with_curve = "does not go with " + plot.y;
+    reject_value_if(is_curve, x, not_with_curve,
+                    fmt::format("Leave it out: {} is drawn against {}.", plot.y,
+                                is_curve ? curve->x : string_view()));
+    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another one.");
+    reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
+              fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
+    if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
+      reject_key(*minus, not_with_curve, "Take a number as y: curves are not subtracted.");
     }
-    if (x != nullptr && plot.y == plot.x) {
-      reject_value(*x, "is also the y of this plot", "Name another one.");
-    }
-    if (!plot.y.empty() && is_of_run(plot.y) && !is_of_run(plot.x)) {
-      reject(in, fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
-    }
+    reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
+                    in.find("show"), fmt::format("does not go with {} as x", plot.x),
+                    "Take `cycle` or a number of the run as x.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
-    if (const Node* minus = in.find("minus"); minus != nullptr && curve != nullptr) {
-      reject_key(*minus, fmt::format("does not go with {}", curve->name),
-                 "Take a number as y: curves are not subtracted.");
-    }
-    if (plot.show == Show::rms && curve == nullptr && plot.x != "cycle" && !is_of_run(plot.x)) {
-      reject_value(*in.find("show"), fmt::format("does not go with {} as x", plot.x),
-                   "Take `cycle` or a number of the run as x.");
-    }
-    if (cycles != nullptr && (!of_runs || is_of_run(plot.x))) {
-      reject(*cycles, "draws each run along its cycles",
-             "It takes `show: traces`, and `cycle` or a measure as x.");
-    }
-    if (cycles != nullptr && !plot.figure.empty()) {
-      reject(*cycles, "does not go with figure", "Give the plot a figure of its own.");
-    }
-    if (also != nullptr && (curve != nullptr || plot.show != Show::mean)) {
+    reject_if(!of_runs || of_run, cycles, "draws each run along its cycles",
+              "It takes `show: traces`, and `cycle` or a measure as x.");
+    reject_if(!plot.figure.empty(), cycles, "does not go with figure",
+              "Give the plot a figure of its own.");
+    if (also != nullptr && (is_curve || plot.show != Show::mean)) {
       reject(*also, "goes with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
@@ -1195,11 +1170,9 @@ struct Reader {
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;
       if (field->unit != "1") plot.x_unit = field->unit;
-      if (field->is_choice()) {
-        reject_value(*x, "is not a number", "Take `by` for a curve of each of its values.");
-      }
+      reject_value_if(field->is_choice(), x, "is not a number",
+                      "Take `by` for a curve of each of its values.");
     }
-    for (const char* label : {"xlabel", "ylabel"}) check_formulas(in.find(label));
     if (const Node* series = in.find("series")) name_series(*series, plot);
     if (const Node* published = in.find("published")) {
       for (std::size_t k = 0; k < plot.published.size(); ++k) {
@@ -1220,33 +1193,32 @@ struct Reader {
         plot.series[k].column = part.key;
         continue;
       }
+      where = json::object();
       if (plot.by.empty()) {
+        where[""] = part.key;
         reject_key(part, "names no parameter",
                    "Write `\"KEY=VALUE\"`, name the parameter with `by`, or write a name of `y`.");
-        continue;
-      }
-      const Node value = {
-          .kind = Node::Kind::scalar, .at = part.key_at, .text = part.key, .path = part.path};
-      where = json::object();
-      if (plot.by == "experiment") {
+      } else if (plot.by == "experiment") {
         where[plot.by] = part.key;
-        continue;
+      } else {
+        read_where({.kind = Node::Kind::scalar,
+                    .at = part.key_at,
+                    .text = part.key,
+                    .key = plot.by,
+                    .path = part.path},
+                   where);
       }
-      if (auto read = read_scalar(value, *find_field(plot.by))) where[plot.by] = std::move(*read);
     }
   }
 
   void check_published(const Node& in, const PublishedSpec& published) {
-    check_formulas(in.find("label"));
-    if (published.label.empty()) reject(in, "lacks label", "Name it for the key of the plot.");
-    if (published.value.has_value() == !published.points.empty()) {
-      reject(in, "does not have either a value or points", "State one of them.");
-    }
+    reject_if(published.label.empty(), &in, "lacks label", "Name it for the key of the plot.");
+    reject_if(published.value.has_value() == !published.points.empty(), &in,
+              "does not have either a value or points", "State one of them.");
   }
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
-    const Node *between = in.find("between"), *published = in.find("published");
-    const Node *of = in.find("of"), *reaches = in.find("reaches");
+    const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
     // One of some, and not two.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
@@ -1263,61 +1235,49 @@ struct Reader {
       }
     };
     require_one("id", {"id", "name"});
-    if (!is_claim_id(claim.id)) {
-      reject(in, "has no id", "It takes letters, digits, -, _ and dots: `id: S2.phi`.");
-    }
+    reject_if(!is_claim_id(claim.id), &in, "has no id",
+              "It takes letters, digits, -, _ and dots: `id: S2.phi`.");
     const bool is_slope = claim.estimator == slope_against.name;
     const bool of_all = is_slope || claim.estimator == spread_of_variants.name;
     require_one(of_all ? nullptr : "between", {"between", "published"});
     require_one(is_slope ? "against" : nullptr, {"against"});
     if (const Estimator* named = find_named(all_estimators(), claim.estimator)) {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
-      if (!named->key.empty() && in.find(named->key) == nullptr && !cycle) {
-        reject(in, fmt::format("lacks {}", named->key),
-               fmt::format("`estimator: {}` takes it.", named->name));
-      }
+      reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
+                fmt::format("lacks {}", named->key),
+                fmt::format("`estimator: {}` takes it.", named->name));
       const bool any = claim.compare.empty() || claim.estimator == spread_of_variants.name;
-      if (!any && is_of_run(claim.compare) != named->of_run) {
-        reject_value(*in.find("estimator"), fmt::format("does not go with {}", claim.compare),
-                     named->of_run ? "Compare a number of the whole run, as onset_size_phi."
-                                   : "Compare a number of checkpoints, as phi.");
-      }
+      reject_value_if(!any && is_of_run(claim.compare) != named->of_run, in.find("estimator"),
+                      fmt::format("does not go with {}", claim.compare),
+                      named->of_run ? "Compare a number of the whole run, as onset_size_phi."
+                                    : "Compare a number of checkpoints, as phi.");
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
-    if (published != nullptr && claim.published && !claim.published->value) {
-      reject(*published, "lacks value", "State the published number.");
-    }
-    if (claim.where.contains("cycle")) {
-      reject(*in.find("where"), "selects checkpoints", "State `at_cycle` or `cycles`.");
-    }
-    if (of != nullptr && published == nullptr && !of_all) {
-      reject(*of, "goes with published", "Take `between` for two variants.");
-    }
+    reject_if(claim.published && !claim.published->value, published, "lacks value",
+              "State the published number.");
+    reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
+              "State `at_cycle` or `cycles`.");
+    reject_if(published == nullptr && !of_all, in.find("of"), "goes with published",
+              "Take `between` for two variants.");
     claim.relative = relative != nullptr;
     if (claim.compare.empty()) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
     if (!is_of_run(claim.compare)) {
       require_one("at_cycle or cycles", times);
-    } else {
-      for (const char* key : times) {
-        const Node* one = in.find(key);
-        if (one == nullptr) continue;
-        reject(*one, fmt::format("{} is one number of a run", claim.compare), "Leave it out.");
-        break;
-      }
+    } else if (const auto stated = std::ranges::find_if(
+                   times, [&](const char* key) { return in.find(key) != nullptr; });
+               stated != times.end()) {
+      reject(*in.find(*stated), fmt::format("{} is one number of a run", claim.compare),
+             "Leave it out.");
     }
-    if (reaches != nullptr && between == nullptr) {
-      reject(*reaches, "goes with between", "A waiting time is compared with another one.");
-    }
-    if (relative != nullptr && compares_waits(claim)) {
-      reject(*relative,
-             fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
-             "Take `margin`.");
-    }
-    if (relative != nullptr && claim.published && claim.published->value == 0.0) {
-      reject(*relative, "does not go with a published 0", "Take `margin`.");
-    }
+    reject_if(in.find("between") == nullptr, reaches, "goes with between",
+              "A waiting time is compared with another one.");
+    reject_if(compares_waits(claim), relative,
+              fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
+              "Take `margin`.");
+    reject_if(claim.published && claim.published->value == 0.0, relative,
+              "does not go with a published 0", "Take `margin`.");
   }
 
   // The ids in `primary` are those of claims that are stated here, or of figures that are listed.
@@ -1328,8 +1288,12 @@ struct Reader {
       const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
       if (listed || !figure.of.empty()) std::ranges::copy(figure.claims, std::back_inserter(known));
     }
-    const auto check = [&](const Node* primary) {
-      for (const Node& item : primary == nullptr ? std::span<const Node>() : primary->parts) {
+    std::vector<const Node*> lists = {document.find("primary")};
+    for (const Node& scale : values_of(document.find("scales"))) {
+      lists.push_back(scale.find("primary"));
+    }
+    for (const Node* list : lists) {
+      for (const Node& item : values_of(list)) {
         const string id = item.text.substr(0, item.text.find('@'));
         const bool statement = item.text.find(' ') != string::npos;  // of an older manifest
         if (statement || std::ranges::count(known, id) > 0) continue;
@@ -1337,11 +1301,11 @@ struct Reader {
                      with_nearest("is the id of no claim", id, Names(known.begin(), known.end())),
                      "State the `id` of a claim of this manifest or of its figures.");
       }
-    };
-    check(document.find("primary"));
-    const Node* scales = document.find("scales");
-    if (scales == nullptr) return;
-    for (const Node& scale : scales->parts) check(scale.find("primary"));
+    }
+  }
+
+  static std::span<const Node> values_of(const Node* list) {
+    return list == nullptr ? std::span<const Node>() : list->parts;
   }
 
   // Names of plots and claims, of their figures and of the panels of a plot differ from each other
@@ -1349,53 +1313,48 @@ struct Reader {
   // that is stated here and not in another manifest. `listed`: the `figures` of this manifest.
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
-    std::vector<const Node*> items;
+    std::vector<std::pair<const Node*, string>> names, figures;  // each with its figure
+    Names panels;
     for (const char* list : {"plots", "claims"}) {
-      const Node* own = document.find(list);
-      if (own == nullptr || own->kind != Node::Kind::list) continue;
-      for (const Node& item : own->parts) items.push_back(&item);
-    }
-    std::map<string, string> taken;  // names, and their figures
-    const auto is_panel_of_own = [&](const string& text) {
-      return std::ranges::any_of(items, [&](const Node* other) {
-        const Node* name = other->find("name");
-        return other->find("panel") != nullptr && name != nullptr &&
-               text.starts_with(name->text + "_") &&
-               text.find_first_not_of("0123456789", name->text.size() + 1) == text.npos;
-      });
-    };
-    for (const char* key : {"name", "figure"}) {
-      for (const Node* item : items) {
-        const Node *its_figure = item->find("figure"), *id = item->find("id");
-        const Node* own = id != nullptr && key == string_view("name") ? id : item->find(key);
-        if (own == nullptr || !(is_name(own->text) || is_claim_id(own->text))) continue;
-        const string& text = own->text;
-        const string of = its_figure != nullptr ? its_figure->text
-                          : id != nullptr       ? text.substr(0, text.find('.'))
-                                                : "";
-        // A figure that another manifest states, and whether it is shown as it stands there.
-        const bool is_stated = find_named(computed_figures(), of) == nullptr;
-        const bool is_listed = std::ranges::count(listed, of) > 0;
-        const auto clash = std::ranges::find_if(supplement, [&](const Figure& figure) {
-          const bool is_part = is_stated && !is_listed && of == figure.name;
-          if (is_part || !text.starts_with(figure.name)) return false;
-          const string_view rest = string_view(text).substr(figure.name.size());
-          return rest.size() < 2 || rest.front() == '_';
-        });
-        const bool is_taken = key == string_view("name")
-                                  ? !taken.emplace(text, of).second
-                                  : taken.contains(text) && taken.at(text) != text;
-        if (clash != supplement.end()) {
-          reject_value(*own, "is the name of a figure of the supplement",
-                       is_stated && of == clash->name
-                           ? fmt::format("Leave {} out of `figures`, since this manifest states "
-                                         "it, or choose another name.",
-                                         of)
-                           : "Choose another one.");
-        } else if (is_taken || is_panel_of_own(text)) {
-          reject_value(*own, "is the name of another plot or claim", "Choose another one.");
-        }
+      for (const Node& item : values_of(document.find(list))) {
+        const Node *id = item.find("id"), *figure = item.find("figure");
+        const Node* name = id != nullptr ? id : item.find("name");
+        const string of = figure != nullptr ? figure->text
+                          : id != nullptr   ? id->text.substr(0, id->text.find('.'))
+                                            : "";
+        if (name != nullptr) names.emplace_back(name, of);
+        if (figure != nullptr) figures.emplace_back(figure, of);
+        if (name != nullptr && item.find("panel") != nullptr) panels.push_back(name->text);
       }
+    }
+    names.insert(names.end(), figures.begin(), figures.end());
+    for (const auto& [own, of] : names) {
+      const string& text = own->text;
+      if (!is_claim_id(text)) continue;
+      // A figure that another manifest states, and whether it is shown as it stands there.
+      const bool is_stated = find_named(computed_figures(), of) == nullptr;
+      const bool is_listed = std::ranges::count(listed, of) > 0;
+      const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {
+        const bool is_part = is_stated && !is_listed && of == figure.name;
+        if (is_part || !text.starts_with(figure.name)) return false;
+        const string_view rest = string_view(text).substr(figure.name.size());
+        return rest.size() < 2 || rest.front() == '_';
+      });
+      const auto first =
+          std::ranges::find_if(names, [&](const auto& other) { return other.first->text == text; });
+      const bool is_taken = own->key == "figure" ? first->second != text : first->first != own;
+      const bool is_panel = std::ranges::any_of(panels, [&](string_view name) {
+        return text.starts_with(string(name) + "_") &&
+               text.find_first_not_of("0123456789", name.size() + 1) == text.npos;
+      });
+      reject_value_if(clash != supplement.end(), own, "is the name of a figure of the supplement",
+                      is_stated && clash != supplement.end() && of == clash->name
+                          ? fmt::format("Leave {} out of `figures`, since this manifest states "
+                                        "it, or choose another name.",
+                                        of)
+                          : "Choose another one.");
+      reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
+                      "is the name of another plot or claim", "Choose another one.");
     }
   }
 };

@@ -232,6 +232,7 @@ void expect_two(const std::string& file, const std::string& text, const PackingF
 TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
   expect_two("a", xyz("", "A 1 1 1\nA 3 3 3\n"), kInD);
   expect_two("a.xyz", "2\r\n\r\nA 1 1 1\r\nA 3 3 3\r\n\r\n", kInD);
+  expect_two("a.xyz", xyz("", "A 1 1 1\n\nA 3 3 3\n"), kInD);
   expect_two("a.xyz", xyz("length_unit=m", "A .003 3e-3 +3E-3 extra\nA 0.009 0.009 0.009"),
              kUnstated);
   expect_two("a.csv", "\xEF\xBB\xBF\"x\";\"y\";\"z\"\n1;1;1\n\n3;3;3\n", kInD);
