@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "analysis/published.hpp"
-
 namespace shearcell {
 
 RunStatistics MeasureColumn::over(std::span<const double> values) const {
@@ -31,16 +29,6 @@ SeriesColumns columns_against(std::string x, const MeasureColumn& y) {
           .y = column_name(y, "mean"),
           .y_error = column_name(y, "standard_error"),
           .runs = "runs"};
-}
-
-std::vector<ReferenceLine> onset_lines(bool vertical) {
-  std::vector<ReferenceLine> lines;
-  for (const double error : {-published_onset_error, published_onset_error}) {
-    lines.push_back({.at = published_onset_phi + error,
-                     .vertical = vertical,
-                     .title = "the supplement's onset, 0.646 ± 0.001"});
-  }
-  return lines;
 }
 
 ReferenceLine critical_line(double size, const std::string& colour) {
