@@ -123,7 +123,7 @@ std::vector<Provider> packing_providers() {
                    .words = words};
   };
   return {
-      {.name = "scalars",
+      {.name = scalars_provider,
        .parameters = crystal_criteria(),
        .measures = {{.name = "interior_grains",
                      .unit = "1",

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "analysis/published.hpp"
-
 namespace shearcell {
 
 RunStatistics MeasureColumn::over(std::span<const double> values) const {

@@ -23,7 +23,7 @@ inline const Axis overlap_axis = {
     .name = "mean overlap", .symbol = formula("⟨$δ$⟩"), .unit = formula("$d$")};
 inline const Axis amplitude_axis = {
     .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
-inline const Axis onset_axis = {.name = "onset", .symbol = formula("$ϕ$")};
+
 /// The supplement's critical size [grains] of one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 
@@ -49,8 +49,5 @@ void add_columns(const MeasureColumn& measure, std::vector<TableColumn>& columns
 void add_values(const RunStatistics& statistics, TableRow& row);
 /// The columns to draw: x, the measure's mean with its error, and the number of runs.
 SeriesColumns columns_against(std::string x, const MeasureColumn& y);
-
-/// Of phi at the onset.
-inline const MeasureColumn onset_column = {"onset_phi", ""};
 
 }  // namespace shearcell

@@ -41,7 +41,7 @@ struct Figure {
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};    ///< parameters that its curves compare
   std::vector<std::string> claims = {};  ///< ids of its claims, without the part after '@'
-  /// Names of the providers (measures.hpp) that it needs besides "scalars".
+  /// Names of the providers (measures.hpp) that it needs besides scalars_provider.
   std::vector<std::string> needs = {};
   /// First and last cycle whose checkpoints the figure takes, also those at phases of a cycle.
   /// Without it the figure takes whole cycles only.

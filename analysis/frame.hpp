@@ -38,7 +38,7 @@ struct FrameRun : Run {
   nlohmann::json parameters = {};  ///< of all its stages, by their keys in a manifest
   std::vector<CheckpointMeasures> checkpoints = {};  ///< by step
   double end = 0;  ///< last cycle of the run so far, also if the frame leaves it out
-  /// Computing time up to its end; known if the provider "cost" was asked for.
+  /// Computing time up to its end; known if cost_provider was asked for.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -39,6 +39,14 @@ const Provider& provider(std::string_view name) {
   return *found;
 }
 
+std::vector<std::string> provider_names(bool (*fits)(const Provider&)) {
+  std::vector<std::string> names;
+  for (const Provider& one : all_providers()) {
+    if (fits(one)) names.push_back(one.name);
+  }
+  return names;
+}
+
 namespace {
 
 bool is_of(MeasureKind wanted, const Measure& measure) {

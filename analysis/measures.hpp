@@ -146,6 +146,12 @@ struct Provider {
 std::span<const Provider> all_providers();
 /// The provider of that name, which must exist.
 const Provider& provider(std::string_view name);
+/// The names of the providers that fit.
+std::vector<std::string> provider_names(bool (*fits)(const Provider&));
+/// The provider of volume fractions and numbers of crystallites, which every measured frame has.
+inline constexpr const char* scalars_provider = "scalars";
+/// The provider of the computing time, which follows from the log (FrameRun::core_time_s).
+inline constexpr const char* cost_provider = "cost";
 
 /// The measures of one kind, of all providers. Numbers include counts.
 std::vector<const Measure*> all_measures(MeasureKind kind);

@@ -117,7 +117,7 @@ std::vector<Provider> run_providers() {
                      "largest net force on a grain of a stiffening over P d^2"}},
        .compute = record_of,
        .from = ComputedFrom::record},
-      {.name = "cost",
+      {.name = cost_provider,
        .measures = {{.name = "core_time_s",
                      .unit = "s",
                      .meaning = "processor time of the run's steps up to its end, over all "

@@ -110,17 +110,20 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
   return found == checkpoints.end() ? nullptr : &*found;
 }
 
+std::vector<Stage> chain_of(const Store& store, const std::string& id) {
+  std::vector<Stage> chain = {store.stage(id)};
+  std::set<std::string> seen = {id};  // a forged record may name itself
+  while (!chain.front().parent.empty() && seen.insert(chain.front().parent).second) {
+    chain.insert(chain.begin(), store.stage(chain.front().parent));
+  }
+  return chain;
+}
+
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
   const Store::Snapshot snapshot(store);
-  std::vector<Stage> chain = {store.stage(id)};
-  std::set<std::string> seen = {id};
-  while (!chain.back().parent.empty() && seen.insert(chain.back().parent).second) {
-    chain.push_back(store.stage(chain.back().parent));
-  }
-  std::reverse(chain.begin(), chain.end());
   std::vector<RunLineage> stages;
-  for (Stage& run : chain) {
-    RunLineage stage{std::move(run), {}, {}};
+  for (Stage& recorded : chain_of(store, id)) {
+    RunLineage stage{std::move(recorded), {}, {}};
     for (CheckpointRecord& record : store.checkpoints(stage.stage.id, Listed::all)) {
       stage.checkpoints.push_back({std::move(record), "", std::nullopt});
     }

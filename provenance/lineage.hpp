@@ -70,8 +70,11 @@ struct RunLineage {
   const CheckpointHistory* find(std::string_view sha256) const;
 };
 
-/// The run and the stages before it, the first one first. Throws NotFound for an unknown run and
-/// StoreDamaged, naming the event, for a damaged payload.
+/// The stage and those before it, the first one first. Throws NotFound for an unknown stage.
+std::vector<Stage> chain_of(const Store& store, const std::string& id);
+
+/// Those of chain_of() with their lineage. Throws StoreDamaged, naming the event, for a damaged
+/// payload.
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -93,18 +92,10 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// The checkpoints that the selected experiments ask for; of a run without places, which was named
-// by its id, those that any experiment asks for.
-std::vector<CheckpointRecord> asked_of(const Store& store, const PlacedRun& wanted) {
-  const Stage& stage = wanted.stage;
-  if (wanted.places.empty()) return checkpoints_for(store, stage, asks_of(stage.memberships));
-  std::set<std::uint64_t> steps;
-  for (const Membership& m : wanted.places) {
-    for (const CheckpointRecord& c : checkpoints_for(store, stage, m.ask, {})) steps.insert(c.step);
-  }
-  std::vector<CheckpointRecord> records = store.checkpoints(stage.id, Listed::and_pruned);
-  std::erase_if(records, [&](const CheckpointRecord& c) { return !steps.contains(c.step); });
-  return records;
+// What the selected experiments ask of the run; of one without places, which was named by its id,
+// what any experiment asks.
+std::vector<Ask> asks_of(const PlacedRun& run) {
+  return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
 
 std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
@@ -118,8 +109,11 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   std::size_t pruned = 0;
   // A single cycle may also be a checkpoint that an interruption left.
   const bool by_name = range.first == range.last;
-  const std::vector<CheckpointRecord> all =
-      by_name ? store.checkpoints(stage.id, Listed::and_pruned) : asked_of(store, wanted);
+  std::vector<CheckpointRecord> all = store.checkpoints(stage.id, Listed::and_pruned);
+  if (!by_name) {
+    all = wanted.places.empty() ? asked_checkpoints(stage, asks_of(wanted), all).made
+                                : checkpoints_for(store, stage, asks_of(wanted));
+  }
   for (const CheckpointRecord& record : all) {
     if (!range.holds(record.cycle, near)) continue;
     if (record.state == CheckpointState::pruned) ++pruned;
@@ -192,8 +186,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   const LengthUnit unit = options.metres ? LengthUnit::m : LengthUnit::d;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), unit)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every =
-      checkpoint_cadence(asks_of(run.places.empty() ? run.stage.memberships : run.places));
+  const std::uint64_t every = checkpoint_cadence(asks_of(run));
   MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {

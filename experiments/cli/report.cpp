@@ -32,7 +32,7 @@ void report(ReportCommand& command, Context& context) {
   options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
   for (std::string& run : options.packings.runs) run = store.find_stage(run).id;
   options.workers = usable_cores();
-  options.measured = terminal_counter("measuring checkpoint");
+  options.report = terminal_counter("measuring checkpoint");
   options.encoded = terminal_counter("reading checkpoint");
   const Report made = make_report(store, options);
   write_output(command.out, made.html);

@@ -46,7 +46,8 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
   for (std::size_t k = 0; k < stage.memberships.size(); ++k) {
-    for (const CheckpointRecord& c : checkpoints_for(store, stage, stage.memberships[k].ask, {})) {
+    for (const CheckpointRecord& c :
+         checkpoints_for(store, stage, {&stage.memberships[k].ask, 1})) {
       asked_by[c.step].push_back(k);
     }
   }

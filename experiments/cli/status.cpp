@@ -226,10 +226,10 @@ void print(const View& view) {
     if (problem.empty()) print_text("{}\n", describe(submission));
   }
   if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
-  for (const auto& [run, places] : view.runs) {
-    if (!run.error.empty()) print_text("{}: {}\n", run.id.substr(0, 8), run.error);
-    if (const std::string why = describe_end(end_of(run)); !why.empty()) {
-      print_text("{}: ended at cycle {:g}: {}\n", run.id.substr(0, 8), run.cycle, why);
+  for (const auto& [stage, places] : view.runs) {
+    if (!stage.error.empty()) print_text("{}: {}\n", stage.id.substr(0, 8), stage.error);
+    if (const std::string why = describe_end(end_of(stage)); !why.empty()) {
+      print_text("{}: ended at cycle {:g}: {}\n", stage.id.substr(0, 8), stage.cycle, why);
     }
   }
 }

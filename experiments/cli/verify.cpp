@@ -72,8 +72,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   const std::uint64_t seed = options.seed.value_or(seed_of(store.head()));
   std::vector<CheckpointRecord> all = replayable(store);
   std::size_t left_out = 0, skipped = 0;
-  for (const Stage& run : store.stages()) {
-    left_out += store.checkpoints(run.id, Listed::and_pruned).size();
+  for (const Stage& stage : store.stages()) {
+    left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
   }
   left_out -= all.size();
   // The first checkpoint of a stage takes no steps, so others are preferred.

@@ -26,133 +26,13 @@
 namespace shearcell {
 namespace {
 
-constexpr std::array<std::uint64_t, 2> whole_run = {0, StoreLimits::cycles};
-
-/// What the experiment asks of the run, without phases of a cycle unless the figure names cycles.
-Ask ask_for(const Figure& figure, const FrameRun& run) {
-  Ask ask = run.ask;
-  if (!figure.within) ask.checkpoint_phases.clear();
-  return ask;
-}
-
-/// The first cycle that the figure takes.
-double first_cycle(const Figure& figure) {
-  return static_cast<double>(figure.within.value_or(whole_run)[0]);
-}
-
-/// The last cycle that the figure takes of the run.
-double last_cycle(const Figure& figure, const FrameRun& run) {
-  return std::min(run.end, static_cast<double>(figure.within.value_or(whole_run)[1]));
-}
-
-/// Adds the checkpoints that the figure takes, up to the run's end. A figure that measures nothing
-/// takes only the last one.
-void add_checkpoints(const Store& store, const Figure& figure, FrameRun& run) {
-  const Ask ask = ask_for(figure, run);
-  const std::vector<CheckpointRecord> found =
-      checkpoints_for(store, run.stage, {&ask, 1}, first_cycle(figure), last_cycle(figure, run));
-  const bool last_only = figure.form == FigureForm::table;
-  for (const CheckpointRecord& record : found) {
-    if (!last_only || &record == &found.back()) run.checkpoints.push_back({record});
-  }
-}
-
-/// The number of checkpoints that the figure asks for, before the run's last one, and that are
-/// missing.
-std::size_t missing_for(const Figure& figure, const FrameRun& run) {
-  std::size_t missing = 0;
-  for (const std::uint64_t step :
-       asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last_cycle(figure, run))) {
-    const bool made =
-        std::ranges::binary_search(run.checkpoints, step, {}, &CheckpointMeasures::step);
-    missing += step < run.stage.step && !made ? 1 : 0;
-  }
-  return missing;
-}
-
-/// Notes how many checkpoints are missing up to the end of the runs: a manifest may state a denser
-/// cadence than that of the runs.
-void note_never_made(const Figure& figure, CollectedRuns& collected) {
-  struct Lack {
-    std::size_t checkpoints = 0;
-    std::set<std::string> runs;
-  };
-  std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
-  for (const FrameRun& run : collected.runs) {
-    const std::size_t missing = missing_for(figure, run);
-    if (missing == 0) continue;
-    Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
-    lack.checkpoints += missing;
-    lack.runs.insert(run.stage.id.substr(0, 8));
-  }
-  for (const auto& [of_lammps, lack] : lacks) {
-    collected.notes.push_back(fmt::format(
-        "never made: {} that the manifest asks for (runs {}); {}",
-        counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
-        of_lammps
-            ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
-              "them out, and the checkpoints cannot be made later"
-            : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
-  }
-}
-
-/// Whether the experiment asks for a checkpoint of the run that the figure takes, and that is made
-/// or can still be made.
-bool asks_for_one(const Figure& figure, const FrameRun& run) {
-  if (!figure.within || run.stage.kind != name_of(StageKind::shear)) return true;
-  double last = last_cycle(figure, run);
-  if (run.stage.state == StageState::completed) last = std::min(last, run.stage.cycle);
-  return !asked_steps(run.stage, ask_for(figure, run), first_cycle(figure), last).empty();
-}
-
-/// Removes the runs without a checkpoint for the figure; notes those and the unfinished ones.
-void leave_out_not_begun(const Store& store, const Figure& figure, CollectedRuns& collected) {
-  std::set<std::string> not_begun, never, going_on;
-  for (const FrameRun& run : collected.runs) {
-    const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
-    const std::string name =
-        fmt::format("{} seed {}{}", run.name, run.place.seed, failed ? " (failed)" : "");
-    if (run.checkpoints.empty()) {
-      (asks_for_one(figure, run) ? not_begun : never).insert(name);
-    } else if (run.stage.state != StageState::completed &&
-               run.checkpoints.back().cycle < last_cycle(figure, run)) {
-      going_on.insert(name);
-    }
-    if (!failed && not_begun.contains(name) + going_on.contains(name) > 0) {
-      collected.pending.push_back(run);
-    }
-  }
-  std::erase_if(collected.runs, [](const FrameRun& run) { return run.checkpoints.empty(); });
-  for (const auto* names : {&not_begun, &never}) {
-    if (names->empty()) continue;
-    const auto [first, last] = figure.within.value_or(whole_run);
-    const std::string which = !figure.within  ? ""
-                              : first == last ? fmt::format(" at cycle {}", first)
-                                              : fmt::format(" in cycles {} to {}", first, last);
-    collected.notes.push_back(fmt::format("left out: {} without a checkpoint{}{}: {}",
-                                          counted(names->size(), "run"), which,
-                                          names == &never ? "" : " yet", some_of(*names)));
-  }
-  if (!going_on.empty()) {
-    collected.notes.push_back(
-        fmt::format("not finished, and taken as if ended where they are: {}: {}",
-                    counted(going_on.size(), "run"), some_of(going_on)));
-  }
-}
-
 /// The stage that settled the packing from which the stage descends, or the file that all packings
 /// of its seeds are made of; "" if there is none.
-std::string packing_of(const Store& store, const Stage& stage) {
-  std::string packing = stage.parent;
-  std::set<std::string> seen;  // a forged record may name itself
-  while (!packing.empty() && seen.insert(packing).second) {
-    const Stage before = store.stage(packing);
-    const nlohmann::json file = member_of(member_of(before.resolved, "start"), "file");
-    if (file.is_string()) return file.get<std::string>();
-    if (before.parent.empty()) break;
-    packing = before.parent;
-  }
-  return packing;
+std::string packing_before(const Store& store, const Stage& stage) {
+  if (stage.parent.empty()) return "";
+  const Stage first = chain_of(store, stage.parent).front();
+  const nlohmann::json file = member_of(member_of(first.resolved, "start"), "file");
+  return file.is_string() ? file.get<std::string>() : first.id;
 }
 
 std::string unknown_name(const char* what, const std::string& name,
@@ -171,6 +51,81 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
   if (processors.size() < 2) return;
   collected.notes.push_back(
       fmt::format("core times are of different processors: {}", some_of(processors)));
+}
+
+/// Adds the checkpoints that the figure takes, up to the run's end. Removes the runs without any.
+/// Notes those, the unfinished ones, and how many checkpoints before the last one are missing: a
+/// manifest may state a denser cadence than that of the runs. A figure that measures nothing takes
+/// the last checkpoint of each run.
+void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
+                     CollectedRuns& collected) {
+  const auto [first, last] =
+      figure.within.value_or(std::array<std::uint64_t, 2>{0, StoreLimits::cycles});
+  std::set<std::string> not_begun, never, going_on;
+  struct Lack {
+    std::size_t checkpoints = 0;
+    std::set<std::string> runs;
+  };
+  std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
+  const bool last_only = figure.form == FigureForm::table;
+  for (FrameRun& run : collected.runs) {
+    run.end = last_only ? static_cast<double>(run.ask.target_cycles)
+                        : end_for(store, run.stage, run.ask, measuring);
+    const double end = std::min(run.end, static_cast<double>(last));
+    Ask ask = run.ask;
+    if (!figure.within) ask.checkpoint_phases.clear();
+    const AskedCheckpoints asked =
+        asked_checkpoints(run.stage, {&ask, 1}, store.checkpoints(run.stage.id, Listed::and_pruned),
+                          static_cast<double>(first), end);
+    for (const CheckpointRecord& record : asked.made) {
+      if (!last_only || &record == &asked.made.back()) run.checkpoints.push_back({record});
+    }
+    if (last_only) continue;
+    const bool completed = run.stage.state == StageState::completed;
+    const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
+    const std::string name =
+        fmt::format("{} seed {}{}", run.name, run.place.seed, failed ? " (failed)" : "");
+    if (asked.made.empty()) {
+      const bool can_be_made = !figure.within || run.stage.kind != name_of(StageKind::shear) ||
+                               !asked.missing.empty() || (!completed && asked.to_come > 0);
+      (can_be_made ? not_begun : never).insert(name);
+    } else if (!completed && asked.made.back().cycle < end) {
+      going_on.insert(name);
+    }
+    if (!failed && not_begun.contains(name) + going_on.contains(name) > 0) {
+      collected.pending.push_back(run);
+    }
+    if (asked.made.empty() || asked.missing.empty()) continue;
+    Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
+    lack.checkpoints += asked.missing.size();
+    lack.runs.insert(run.stage.id.substr(0, 8));
+  }
+  if (last_only) return;
+  std::erase_if(collected.runs, [](const FrameRun& run) { return run.checkpoints.empty(); });
+  for (const auto* names : {&not_begun, &never}) {
+    if (names->empty()) continue;
+    const std::string which = !figure.within  ? ""
+                              : first == last ? fmt::format(" at cycle {}", first)
+                                              : fmt::format(" in cycles {} to {}", first, last);
+    collected.notes.push_back(fmt::format("left out: {} without a checkpoint{}{}: {}",
+                                          counted(names->size(), "run"), which,
+                                          names == &never ? "" : " yet", some_of(*names)));
+  }
+  if (!going_on.empty()) {
+    collected.notes.push_back(
+        fmt::format("not finished, and taken as if ended where they are: {}: {}",
+                    counted(going_on.size(), "run"), some_of(going_on)));
+  }
+  if (std::ranges::count(figure.needs, cost_provider) > 0) add_core_times(store, collected);
+  for (const auto& [of_lammps, lack] : lacks) {
+    collected.notes.push_back(fmt::format(
+        "never made: {} that the manifest asks for (runs {}); {}",
+        counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
+        of_lammps
+            ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
+              "them out, and the checkpoints cannot be made later"
+            : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
+  }
 }
 
 /// Sets Run::name and Run::named of the runs of this experiment.
@@ -275,6 +230,11 @@ std::string last_scale(const std::vector<Run>& runs,
   return (last == runs.rend() ? runs.back() : *last).place.scale;
 }
 
+/// Whether the figure is made of the runs of several experiments.
+bool is_across(const Figure& figure) {
+  return figure.form == FigureForm::table || !figure.of.empty();
+}
+
 /// Sets WantedFigure::also.
 void share_needs(std::vector<WantedFigure>& figures) {
   std::map<std::string, std::set<std::string>> needs;  // of each experiment
@@ -292,32 +252,33 @@ void share_needs(std::vector<WantedFigure>& figures) {
 
 }  // namespace
 
-FrameRun figure_run(Run run) {
-  FrameRun made{std::move(run)};
-  made.parameters = effective_parameters(made.stage.resolved);
-  made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // where that key has no effect
-  return made;
+std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes) {
+  NewestRuns newest = newest_runs(std::move(selected));
+  std::ranges::move(newest.notes, std::back_inserter(notes));
+  std::vector<FrameRun> runs;
+  for (Run& run : newest.runs) {
+    FrameRun& made = runs.emplace_back(FrameRun{std::move(run)});
+    made.parameters = effective_parameters(made.stage.resolved);
+    made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // where it has no effect
+  }
+  return runs;
 }
 
 void leave_out_unmeasured(FrameRun& run) {
   std::erase_if(run.checkpoints, [](const CheckpointMeasures& one) {
-    return std::ranges::count(one.lacking, "scalars") > 0;
+    return std::ranges::count(one.lacking, scalars_provider) > 0;
   });
   run.end = std::min(run.end, run.stage.cycle);
 }
 
 void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome,
-                  const std::function<bool(const FrameRun&, std::size_t)>& wanted) {
+                  MeasureOutcome& outcome) {
   std::vector<ToMeasure> chosen;
   for (FrameRun& run : runs) {
-    for (std::size_t k = 0; k < run.checkpoints.size(); ++k) {
-      if (wanted && !wanted(run, k)) continue;
-      chosen.push_back({&run.checkpoints[k], run.ask.checkpoint_every});
-    }
+    for (auto& one : run.checkpoints) chosen.push_back({&one, run.ask.checkpoint_every});
   }
-  if (!chosen.empty()) outcome += measure_checkpoints(store, chosen, providers, options);
+  outcome += measure_checkpoints(store, chosen, providers, options);
 }
 
 std::string WantedFigure::path() const {
@@ -334,13 +295,12 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
       throw NotFound(unknown_name("experiment", experiment, registered));
     }
   }
-  const auto among = [](const std::vector<std::string>& some, const std::string& name) {
+  const auto among = [](const auto& some, const std::string& name) {
     return some.empty() || std::ranges::count(some, name) > 0;
   };
   std::erase_if(manifests, [&](const auto& m) { return !among(experiments, m.experiment); });
   const auto asked = [&](const std::string& name) { return among(names, name); };
   const bool named = !experiments.empty() && !names.empty();
-  const std::vector<std::string> registered_names(registered.begin(), registered.end());
   WantedFigures wanted;
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
@@ -349,8 +309,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     std::vector<Figure> stated = stated_figures(recorded_manifest(manifest.text));
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
-      const bool across = figure.form == FigureForm::table || !figure.of.empty();
-      if (across || !asked(figure.name) || !(named || lists)) continue;
+      if (is_across(figure) || !asked(figure.name) || !(named || lists)) continue;
       if (find_named(std::span<const Figure>(stated), figure.name) != nullptr) continue;
       wanted.figures.push_back({figure, manifest.experiment});
     }
@@ -364,19 +323,16 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
                                unknown_name("figure", name, supplement));
     }
   }
-  // Without names, table1 is drawn only if a manifest lists figures of the supplement.
-  const bool lists_any = std::ranges::any_of(
-      manifests, [](const RegisteredManifest& manifest) { return !manifest.figures.empty(); });
   for (const Figure& figure : all_figures()) {
-    if (manifests.empty() || !asked(figure.name)) continue;
-    const auto registers = [&](const std::string& of) { return among(registered_names, of); };
-    // A comparison of several experiments is drawn if the store has two of them.
-    const bool wanted_without_name = figure.of.empty()
-                                         ? figure.form == FigureForm::table && lists_any
-                                         : std::ranges::count_if(figure.of, registers) > 1;
-    if (figure.form != FigureForm::table && figure.of.empty()) continue;
-    if (names.empty() && !wanted_without_name) continue;
-    if (experiments.empty() || named) wanted.figures.push_back({figure, ""});
+    if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
+    // Without names, table1 is drawn if a manifest lists figures of the supplement, a comparison of
+    // several experiments if the store has two of them.
+    const auto lists_any = [](const auto& manifest) { return !manifest.figures.empty(); };
+    const auto registers = [&](const std::string& of) { return among(registered, of); };
+    const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)
+                                            : std::ranges::count_if(figure.of, registers) > 1;
+    const bool drawn = !names.empty() || (has_runs && experiments.empty());
+    if (drawn) wanted.figures.push_back({figure, ""});
   }
   for (const std::string& name : names) {
     if (!known.contains(name))
@@ -403,20 +359,18 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     collected.notes.push_back(fmt::format("left out: experiments without a run at scale {}: {}",
                                           scale_name(collected.scale), some_of(elsewhere)));
   }
-  NewestRuns newest = newest_runs(std::move(selected));
-  if (newest.runs.empty()) {
+  collected.runs = frame_runs(std::move(selected), collected.notes);
+  if (collected.runs.empty()) {
     throw NotFound(fmt::format(
         "the runs selected for figure {} are of an older version of the manifest; run the version "
         "that states them, which computes nothing new",
         wanted.path()));
   }
-  std::ranges::move(newest.notes, std::back_inserter(collected.notes));
   std::map<std::string, std::string> packings;  // by the stage before
-  for (Run& run : newest.runs) {
-    FrameRun& one = collected.runs.emplace_back(figure_run(std::move(run)));
-    const auto [packing, fresh] = packings.try_emplace(one.stage.parent);
-    if (fresh) packing->second = packing_of(store, one.stage);
-    one.packing = packing->second;
+  for (FrameRun& run : collected.runs) {
+    const auto [packing, fresh] = packings.try_emplace(run.stage.parent);
+    if (fresh) packing->second = packing_before(store, run.stage);
+    run.packing = packing->second;
   }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
@@ -440,16 +394,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
       return !known.emplace(run.place.experiment, run.stage.id).second;
     });
   }
-  for (FrameRun& run : collected.runs) {
-    run.end = measured ? end_for(store, run.stage, run.ask, measuring)
-                       : static_cast<double>(run.ask.target_cycles);
-    add_checkpoints(store, wanted.figure, run);
-  }
-  if (measured) {
-    leave_out_not_begun(store, wanted.figure, collected);
-    if (std::ranges::count(wanted.figure.needs, "cost") > 0) add_core_times(store, collected);
-    note_never_made(wanted.figure, collected);
-  }
+  add_checkpoints(store, wanted.figure, measuring, collected);
   for (const FrameRun& run : collected.runs) {
     const nlohmann::json& resolved = run.stage.resolved;
     if (resolved.is_object() &&

@@ -2,8 +2,6 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,19 +38,19 @@ struct WantedFigures {
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
-/// The run without checkpoints. Its parameters say `pressure_at: top` where P acts equally on both
-/// walls.
-FrameRun figure_run(Run run);
+/// The newest_runs() of these, without checkpoints; adds what is left out to `notes`. Their
+/// parameters say `pressure_at: top` where P acts equally on both walls.
+std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes);
 
-/// Removes the checkpoints that lack "scalars"; the run ends where its stage has ended so far.
+/// Removes the checkpoints that lack scalars_provider; the run ends where its stage has ended so
+/// far.
 void leave_out_unmeasured(FrameRun& run);
 
-/// Measures the checkpoints of the runs (those for which `wanted(run, place)` holds), with the
-/// cadence that each run's experiment asks for. Adds what could not be read to the outcome.
+/// Measures the checkpoints of the runs, with the cadence that each run's experiment asks for. Adds
+/// what could not be read to the outcome.
 void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome,
-                  const std::function<bool(const FrameRun&, std::size_t)>& wanted = {});
+                  MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
   std::string scale;  ///< one figure never mixes scales

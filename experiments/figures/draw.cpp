@@ -204,7 +204,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   std::vector<std::string> providers;  // none of a table, which is not measured
   if (figure.form != FigureForm::table) {
     providers = figure.needs;
-    providers.insert(providers.begin(), "scalars");
+    providers.insert(providers.begin(), scalars_provider);
   }
   measure_runs(store, runs, providers, measuring, made);
   std::ranges::for_each(runs, leave_out_unmeasured);

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,26 +18,12 @@ namespace {
 
 constexpr std::size_t kAtOnce = 500;  // checkpoints whose results are in memory at a time
 
-bool is_simulated(const std::string& name) {
-  return provider(name).from == ComputedFrom::simulation;
-}
-
 /// Whether the provider needs a file that was pruned before. Such a measure was lost then, as where
 /// a pruned run was continued.
 bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
                          std::uint64_t every, const Provider& provider) {
   const CheckpointRecord* earlier = sources.earlier(record, provider, every);
   return earlier != nullptr && earlier->state == CheckpointState::pruned;
-}
-
-/// The figures that the store's manifests list and that need simulations, by experiment.
-std::map<std::string, std::vector<Figure>> simulating_figures(const Store& store) {
-  std::map<std::string, std::vector<Figure>> figures;
-  for (WantedFigure& wanted : wanted_figures(store).figures) {
-    if (std::ranges::none_of(wanted.figure.needs, is_simulated)) continue;
-    figures[wanted.experiment].push_back(std::move(wanted.figure));
-  }
-  return figures;
 }
 
 /// Writes the cache to the disk. DerivedCache does not, because measures can be recomputed; after a
@@ -56,14 +41,18 @@ void sync_cache(const Store& store) {
 
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options) {
-  std::vector<std::string> analyses;
-  for (const Provider& one : all_providers()) {
-    if (one.is_kept() && !is_simulated(one.name)) analyses.push_back(one.name);
-  }
-  std::map<std::string, std::vector<Figure>> simulating = simulating_figures(store);
+  const std::vector<std::string> analyses = provider_names(
+      [](const Provider& one) { return one.is_kept() && one.from != ComputedFrom::simulation; });
+  std::vector<WantedFigure> simulating = wanted_figures(store).figures;
+  std::erase_if(simulating, [](const WantedFigure& wanted) {
+    return std::ranges::none_of(wanted.figure.needs, [](const std::string& name) {
+      return provider(name).from == ComputedFrom::simulation;
+    });
+  });
   MeasureOutcome outcome;
   std::set<std::string> unmeasured;  // SHA-256
   std::vector<FrameRun> batch;
+  std::size_t in_batch = 0;  // checkpoints
   const auto measure_batch = [&] {
     measure_runs(store, batch, analyses, options, outcome);
     MeasureSources sources(store);
@@ -77,36 +66,33 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       }
     }
     batch.clear();
+    in_batch = 0;
   };
   std::set<std::string> seen;
-  std::size_t in_batch = 0;
   for (const CheckpointRecord& record : records) {
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
     if (stage.memberships.empty())
       stage.memberships.emplace_back();  // no experiment of a damaged store has it
-    std::set<std::uint64_t> cadences;
     for (const auto& [place, ask, newest] : stage.memberships) {
       FrameRun run{{place, ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
-      for (const Figure& figure : simulating[place.experiment]) {
+      in_batch += run.checkpoints.size();
+      batch.push_back(run);
+      for (const auto& [figure, experiment, also] : simulating) {
+        if (experiment != place.experiment) continue;
         // Only of the cycles that figures take, since a simulation takes longer than an analysis.
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;
-        names.insert(names.begin(), "scalars");
+        names.insert(names.begin(), scalars_provider);
         std::vector<FrameRun> alone = {run};
         measure_runs(store, alone, names, some, outcome);
       }
-      if (!cadences.insert(ask.checkpoint_every).second) continue;
-      in_batch += run.checkpoints.size();
-      batch.push_back(std::move(run));
     }
-    if (in_batch < kAtOnce) continue;
-    measure_batch();
-    in_batch = 0;
+    if (in_batch >= kAtOnce) measure_batch();
   }
   measure_batch();
   std::erase_if(records, [&](const CheckpointRecord& c) {

@@ -12,7 +12,6 @@
 #include <set>
 
 #include "analysis/onset.hpp"
-#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/outlook.hpp"
@@ -55,14 +54,27 @@ Column of_checkpoint(std::string_view name, std::string_view meaning, Value valu
           }};
 }
 
-std::vector<Column> names(const VariantNames& variants) {
+/// A number of a checkpoint, or of a whole run.
+Column column_of(const Measure& measure) {
+  return {{std::string(measure.name), std::string(measure.meaning)},
+          [&measure](const Row& row) -> TableCell {
+            const bool of_run = measure.kind == MeasureKind::run;
+            if (of_run ? row.history == nullptr : row.checkpoint == nullptr) return {};
+            const double value = of_run ? measure.of_run(*row.history).or_nan()
+                                        : row.checkpoint->measures.number(measure.name);
+            const bool count = measure.kind == MeasureKind::count && std::isfinite(value);
+            return count ? TableCell(static_cast<std::int64_t>(value)) : number(value);
+          }};
+}
+
+std::vector<Column> names() {
   return {
       of_run("experiment", "name of the manifest's experiment",
              [](const Run& s) { return s.place.experiment; }),
       of_run("scale", "scale of the manifest",
              [](const Run& s) { return scale_name(s.place.scale); }),
       of_run("variant", "its label in the manifest, or what varies in it",
-             [variants](const Run& s) { return variants.of(s.stage, s.place); }),
+             [](const Run& s) { return s.name; }),
       of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
       of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
   };
@@ -80,14 +92,8 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
   for (const Measure* measure : all_measures(MeasureKind::number)) {
     const Provider& by = provider_of(*measure);
-    const bool listed = std::ranges::find(simulated, by.name) != simulated.end();
-    if (by.from == ComputedFrom::simulation && !listed) continue;
-    columns.push_back(
-        of_checkpoint(measure->name, measure->meaning, [measure](const CheckpointMeasures& c) {
-          const double value = c.measures.number(measure->name);
-          const bool count = measure->kind == MeasureKind::count && std::isfinite(value);
-          return count ? TableCell(static_cast<std::int64_t>(value)) : number(value);
-        }));
+    const bool listed = std::ranges::count(simulated, by.name) > 0;
+    if (by.from != ComputedFrom::simulation || listed) columns.push_back(column_of(*measure));
   }
   return columns;
 }
@@ -103,13 +109,7 @@ Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
 
 std::vector<Column> ends() {
   std::vector<Column> columns;
-  for (const Measure* measure : all_measures(MeasureKind::run)) {
-    columns.push_back(
-        {{std::string(measure->name), std::string(measure->meaning)}, [measure](const Row& row) {
-           if (row.history == nullptr) return TableCell();
-           return number(measure->of_run(*row.history).or_nan());
-         }});
-  }
+  for (const Measure* one : all_measures(MeasureKind::run)) columns.push_back(column_of(*one));
   columns.push_back(outcome_of("onset_size", "method 1", onset_by_size));
   columns.push_back(outcome_of("onset_slope", "method 2", onset_by_slope));
   columns.insert(
@@ -127,39 +127,25 @@ std::vector<Column> ends() {
   return columns;
 }
 
-/// The value of a parameter that some variants sweep: from the variant, or from the run's
-/// record; null if it does not affect the run, or its record cannot be read.
-json swept_value(const Field& field, const Run& run) try {
-  const auto value = run.place.swept.find(field.name);
-  if (value != run.place.swept.end()) return *value;
-  const StageInputs record = read_stage(run.stage.resolved);
-  const bool has_effect = enters(field.identity, record.stage, record.parameters.protocol, nullptr);
-  return has_effect ? field.get(record.parameters) : json();
-} catch (const UnreadableRecord&) {
-  return nullptr;
-}
-
 /// The columns that distinguish runs.
-std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs,
-                                    const VariantNames& variants) {
+std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs) {
   std::set<std::string> swept = {"grains"};  // a column of every table
   for (const FrameRun& run : runs) {
     for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
-  std::vector<Column> columns = names(variants);
+  std::vector<Column> columns = names();
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
-    columns.push_back(of_run(field.name, field.doc, [&field](const Run& run) {
-      return cell_of(swept_value(field, run));
+    columns.push_back(of_run(field.name, field.doc, [&field](const FrameRun& run) {
+      return cell_of(parameter_of(run, std::string(field.name)));
     }));
   }
   return columns;
 }
 
 std::vector<Column> columns_for(const std::vector<FrameRun>& runs, RowPer per,
-                                const VariantNames& variants,
                                 std::span<const std::string> simulated) {
-  std::vector<Column> columns = columns_of_runs(runs, variants);
+  std::vector<Column> columns = columns_of_runs(runs);
   std::ranges::move(measures(simulated), std::back_inserter(columns));
   if (per == RowPer::run) std::ranges::move(ends(), std::back_inserter(columns));
   return columns;
@@ -167,12 +153,11 @@ std::vector<Column> columns_for(const std::vector<FrameRun>& runs, RowPer per,
 
 std::vector<FrameRun> select(const Store& store, const RunSelection& selection,
                              const MeasureOptions& options, RunTable& table) {
-  NewestRuns newest = newest_runs(select_runs(store, selection));
-  table.notes = std::move(newest.notes);
-  std::vector<FrameRun> runs;
-  for (Run& selected : newest.runs) {
-    FrameRun& run = runs.emplace_back(figure_run(std::move(selected)));
-    for (CheckpointRecord& record : checkpoints_for(store, run.stage, run.ask, options)) {
+  std::vector<FrameRun> runs = frame_runs(select_runs(store, selection), table.notes);
+  const VariantNames names(store);
+  for (FrameRun& run : runs) {
+    run.name = names.of(run.stage, run.place);
+    for (CheckpointRecord& record : checkpoints_for(store, run.stage, {&run.ask, 1}, options)) {
       run.checkpoints.push_back({std::move(record)});
     }
   }
@@ -200,20 +185,13 @@ void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
 }  // namespace
 
 std::vector<std::string> table_providers() {
-  std::vector<std::string> names;
-  for (const Provider& one : all_providers()) {
-    const bool analyses = one.from == ComputedFrom::checkpoint && one.has(MeasureKind::number);
-    if (analyses) names.push_back(one.name);
-  }
-  return names;
+  return provider_names([](const Provider& one) {
+    return one.from == ComputedFrom::checkpoint && one.has(MeasureKind::number);
+  });
 }
 
 std::vector<std::string> simulating_providers() {
-  std::vector<std::string> names;
-  for (const Provider& one : all_providers()) {
-    if (one.from == ComputedFrom::simulation) names.push_back(one.name);
-  }
-  return names;
+  return provider_names([](const Provider& one) { return one.from == ComputedFrom::simulation; });
 }
 
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
@@ -221,16 +199,19 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
   RunTable made;
   std::vector<FrameRun> runs = select(store, selection, options, made);
   std::vector<std::string> names = table_providers();
-  const std::vector<std::string> scalars = {names.front()};
   names.insert(names.end(), simulated.begin(), simulated.end());
-  const auto has_row = [per](const FrameRun& run, std::size_t k) {
-    return per == RowPer::checkpoint || k + 1 == run.checkpoints.size();
-  };
-  measure_runs(store, runs, names, options, made, has_row);
-  // Onsets need only the scalars of the other checkpoints.
-  measure_runs(store, runs, scalars, options, made, std::not_fn(has_row));
+  std::vector<ToMeasure> in_rows, others;
+  for (FrameRun& run : runs) {
+    for (CheckpointMeasures& one : run.checkpoints) {
+      const bool has_row = per == RowPer::checkpoint || &one == &run.checkpoints.back();
+      (has_row ? in_rows : others).push_back({&one, run.ask.checkpoint_every});
+    }
+  }
+  made += measure_checkpoints(store, in_rows, names, options);
+  const std::string scalars = scalars_provider;  // all that onsets need
+  made += measure_checkpoints(store, others, {&scalars, 1}, options);
   note_lacking(runs, made);
-  const std::vector<Column> columns = columns_for(runs, per, VariantNames(store), simulated);
+  const std::vector<Column> columns = columns_for(runs, per, simulated);
   made.table.columns.assign(columns.begin(), columns.end());
   const auto add = [&](const Row& row) {
     TableRow& cells = made.table.rows.emplace_back();
@@ -260,7 +241,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
   std::vector<FrameRun> runs = select(store, selection, options, made);
   measure_runs(store, runs, {&provider, 1}, options, made);
   note_lacking(runs, made);
-  std::vector<Column> columns = columns_of_runs(runs, VariantNames(store));
+  std::vector<Column> columns = columns_of_runs(runs);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));
   made.table.columns.assign(columns.begin(), columns.end());
   made.table.columns.push_back(std::string(measure.x));
@@ -281,8 +262,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
 }
 
 std::vector<TableColumn> table_columns() {
-  const std::vector<Column> columns =
-      columns_for({}, RowPer::run, VariantNames(), simulating_providers());
+  const std::vector<Column> columns = columns_for({}, RowPer::run, simulating_providers());
   return {columns.begin(), columns.end()};
 }
 

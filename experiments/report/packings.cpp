@@ -71,9 +71,9 @@ std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<
   for (const Run& run : runs) {
     if (run.place.experiment != experiment) continue;
     std::vector<CheckpointRecord> checkpoints =
-        checkpoints_for(store, run.stage, asks_of(run.stage.memberships));
-    std::erase_if(checkpoints,
-                  [](const CheckpointRecord& c) { return c.state != CheckpointState::recorded; });
+        asked_checkpoints(run.stage, asks_of(run.stage.memberships),
+                          store.checkpoints(run.stage.id))
+            .made;
     if (checkpoints.empty()) continue;
     auto same = std::ranges::find(last, run.place.variant,
                                   [](const ChosenRun& one) { return one.place.variant; });
@@ -211,7 +211,7 @@ bool enters_page(const Provider& one) {
 }
 
 json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
-                UnreadCheckpoints& unread) {
+                MeasureOutcome& unread) {
   const Checkpoint checkpoint = sources.load(record);
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
@@ -297,8 +297,7 @@ std::vector<std::size_t> evenly(std::size_t size, std::size_t count) {
 
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
-                          std::size_t workers,
-                          const std::function<void(std::size_t, std::size_t)>& report) {
+                          std::size_t workers, const ReadProgress& report) {
   Packings packings;
   std::vector<ChosenRun> runs = choose(store, experiments, selection, choice);
   const VariantNames names(store);
@@ -314,10 +313,10 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
     }
   }
   std::vector<json> frames(records.size());  // null if a checkpoint cannot be read
-  std::vector<UnreadCheckpoints> unread(records.size());
+  std::vector<MeasureOutcome> unread(records.size());
   const auto make = [&](std::size_t k) { frames[k] = make_frame(records[k], sources, unread[k]); };
   packings += read_in_parallel(records.size(), workers, make, report);
-  for (const UnreadCheckpoints& earlier : unread) packings += earlier;
+  for (const MeasureOutcome& earlier : unread) packings += earlier;
   auto next = frames.begin();
   for (const ChosenRun& run : runs) {
     json list = json::array();

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -25,7 +24,7 @@ struct PackingChoice {
   std::size_t budget = 9'000'000;       ///< bytes of all packings in the page
 };
 
-struct Packings : UnreadCheckpoints {
+struct Packings : MeasureOutcome {
   /// [{id, label, experiment, grains, wall_grains, frames: [{name, sha256, facts, cell, fields,
   /// profiles, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
   nlohmann::json runs = nlohmann::json::array();
@@ -40,8 +39,7 @@ struct Packings : UnreadCheckpoints {
 /// same value.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
-                          std::size_t workers,
-                          const std::function<void(std::size_t, std::size_t)>& report);
+                          std::size_t workers, const ReadProgress& report);
 
 /// `count` evenly spaced indices of 0 .. size - 1, including the first and the last; for 1, the
 /// last.

@@ -476,7 +476,7 @@ json parts_of(const Content& content) {
 
 /// The runs in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi, ...}]. The
 /// cycle and each scalar measure are arrays over the checkpoints, null where a value is unknown.
-json traces_of(const RunTable& made, const RunLineages& lineages) {
+json traces_of(const RunTable& made) {
   const Table& runs = made.table;
   constexpr int significant = 6;
   json all = json::array();
@@ -484,7 +484,7 @@ json traces_of(const RunTable& made, const RunLineages& lineages) {
     json& run = all.emplace_back(json::object());
     for (const CheckpointMeasures& checkpoint : made.histories[k].checkpoints) {
       run["cycle"].push_back(checkpoint.cycle);
-      for (const Measure& measure : provider(table_providers().front()).measures) {
+      for (const Measure& measure : provider(scalars_provider).measures) {
         run[std::string(measure.name)].push_back(
             rounded(checkpoint.measures.number(measure.name), significant));
       }
@@ -492,7 +492,7 @@ json traces_of(const RunTable& made, const RunLineages& lineages) {
     const TableRow& row = runs.rows[k];
     for (const char* key : {"scale", "variant", "seed"}) run[key] = json_of(row[runs.place(key)]);
     run["id"] = json_of(row[runs.place("run")]);
-    run["kind"] = lineages.at(run["id"].get<std::string>()).stage.kind;
+    run["kind"] = made.histories[k].stage.kind;
   }
   return all;
 }
@@ -520,7 +520,7 @@ json script_data(const Content& content) {
     experiments.push_back({{"experiment", experiment.manifest.experiment},
                            {"columns", std::move(columns)},
                            {"rows", rows_json(experiment.table.table)},
-                           {"runs", traces_of(experiment.table, content.runs)}});
+                           {"runs", traces_of(experiment.table)}});
   }
   return {{"charts", content.charts},
           {"packings", content.packings.runs},
@@ -573,10 +573,7 @@ void add_figures(Content& content) {
   const WantedFigures wanted = wanted_figures(content.store, {}, content.options.runs.experiments);
   std::set<std::string>& notes = content.report.notes;
   notes.insert(wanted.unknown.begin(), wanted.unknown.end());
-  FigureOptions how;
-  how.runs = content.options.runs;
-  how.workers = content.options.workers;
-  how.report = content.options.measured;
+  const FigureOptions how{content.options, {}, content.options.runs};
   for (const WantedFigure& figure : wanted.figures) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
@@ -617,12 +614,11 @@ void add_runs(Content& content) {
 /// Report::notes.
 void add_run_tables(Content& content) {
   const ReportOptions& options = content.options;
-  const MeasureOptions measuring{.workers = options.workers, .report = options.measured};
   for (Experiment& experiment : content.experiments) {
     RunSelection selection = options.runs;
     selection.experiments = {experiment.manifest.experiment};
     try {
-      experiment.table = run_table(content.store, selection, RowPer::run, measuring);
+      experiment.table = run_table(content.store, selection, RowPer::run, options);
       // Another program may have declared runs since they were listed.
       for (const FrameRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);

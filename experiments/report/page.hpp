@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,13 +13,11 @@
 
 namespace shearcell {
 
-struct ReportOptions {
+struct ReportOptions : MeasureOptions {
   RunSelection runs;  ///< for figures, tables and packings; a figure has one scale
   PackingChoice packings;
-  bool interactive = true;  ///< false: drawings only, as in a build without Node
-  std::size_t workers = 1;
-  std::function<void(std::size_t done, std::size_t total)> measured;  ///< may be empty
-  std::function<void(std::size_t done, std::size_t total)> encoded;   ///< may be empty
+  bool interactive = true;    ///< false: drawings only, as in a build without Node
+  ReadProgress encoded = {};  ///< called as packings are encoded
 };
 
 /// Whether this build holds the front end. Building that needs Node.

@@ -155,7 +155,7 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
     const Checkpoint checkpoint = store.load_checkpoint(record);
     const Analysis analysis = analyse(checkpoint);
     for (const CachedMeasure& one : cached) {
-      UnreadCheckpoints unread;
+      MeasureOutcome unread;
       const auto computed =
           sources.compute(*one.provider, record, one.every, &checkpoint, &analysis, unread);
       if (!computed) continue;
@@ -188,13 +188,13 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
   const auto note = [&](const std::string& run, const std::string& what) {
     check.findings.push_back({Finding::Severity::error, "measures", run, what});
   };
-  for (const Stage& run : store.stages()) {
-    sources.read_run(run.id);
-    for (const CheckpointRecord& record : store.checkpoints(run.id, Listed::and_pruned)) {
+  for (const Stage& stage : store.stages()) {
+    sources.read_run(stage.id);
+    for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       if (record.state != CheckpointState::pruned) continue;
       const auto found = sources.compare_pruned(record, cache);
       if (found.named == 0) ++check.not_covered;
-      if (!found.altered.empty()) note(run.id, found.altered);
+      if (!found.altered.empty()) note(stage.id, found.altered);
       check.absent += found.absent;
     }
   }
@@ -231,8 +231,8 @@ std::string copy_measures(Store& store, DerivedCache& from) {
 std::vector<CheckpointRecord> replayable(const Store& store) {
   std::vector<CheckpointRecord> found;
   RunLineages known;
-  for (const Stage& run : store.stages()) {
-    std::ranges::copy_if(store.checkpoints(run.id, Listed::and_pruned), std::back_inserter(found),
+  for (const Stage& stage : store.stages()) {
+    std::ranges::copy_if(store.checkpoints(stage.id, Listed::and_pruned), std::back_inserter(found),
                          [&](const auto& c) { return !why_not_again(store, c, known); });
   }
   return found;

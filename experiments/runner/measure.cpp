@@ -65,9 +65,8 @@ class Measuring {
       const auto wanted = std::span(results_[i]).first(wanted_);
       if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
     }
-    UnreadCheckpoints& unread = outcome_;
     try {
-      unread = read_in_parallel(
+      outcome_ += read_in_parallel(
           todo_.size(), options_.workers, [this](std::size_t n) { compute(todo_[n]); },
           options_.report);
     } catch (...) {
@@ -75,7 +74,6 @@ class Measuring {
       throw;
     }
     flush();
-    unread += unread_earlier_;
     for (std::size_t k = 0; k < place_.size(); ++k) {
       read(*checkpoints_[k].checkpoint, results_[place_[k]]);
     }
@@ -102,7 +100,7 @@ class Measuring {
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
            {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
-        if (!damage.empty()) unread_earlier_.damage.insert(damage);
+        if (!damage.empty()) outcome_.damage.insert(damage);
       }
     }
     for (std::size_t k = 0; k < keys_.size(); ++k) {
@@ -125,7 +123,7 @@ class Measuring {
     const Checkpoint checkpoint = sources_.load(record);
     std::optional<Analysis> analysis;  // once, for the first that takes it
     std::vector<DerivedObject> objects;
-    UnreadCheckpoints unread;
+    MeasureOutcome unread;
     for (std::size_t p = 0; p < providers_.size(); ++p) {
       if (!results_[i][p].is_null()) continue;
       const bool analyses = providers_[p]->from != ComputedFrom::simulation;
@@ -138,7 +136,7 @@ class Measuring {
     }
     const std::lock_guard lock(mutex_);
     outcome_.measured.insert(record.sha256);
-    unread_earlier_ += unread;
+    outcome_ += unread;
     std::move(objects.begin(), objects.end(), std::back_inserter(pending_));
     if (pending_.size() >= kBatch) flush();
   }
@@ -178,29 +176,23 @@ class Measuring {
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
   MeasureOutcome outcome_;
-  UnreadCheckpoints unread_earlier_;
 };
 
 }  // namespace
 
-UnreadCheckpoints& UnreadCheckpoints::operator+=(const UnreadCheckpoints& more) {
+MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
   damage.insert(more.damage.begin(), more.damage.end());
   pruned.insert(more.pruned.begin(), more.pruned.end());
-  return *this;
-}
-
-MeasureOutcome& MeasureOutcome::operator+=(const MeasureOutcome& more) {
-  *this += static_cast<const UnreadCheckpoints&>(more);
   measured.insert(more.measured.begin(), more.measured.end());
   earlier.insert(more.earlier.begin(), more.earlier.end());
   if (!more.cache_trouble.empty()) cache_trouble = more.cache_trouble;
   return *this;
 }
 
-UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
-                                   const std::function<void(std::size_t)>& work,
-                                   const ReadProgress& progress) {
-  UnreadCheckpoints unread;
+MeasureOutcome read_in_parallel(std::size_t count, std::size_t workers,
+                                const std::function<void(std::size_t)>& work,
+                                const ReadProgress& progress) {
+  MeasureOutcome unread;
   std::exception_ptr error;
   std::size_t done = 0;
   std::mutex mutex;  // guards the three above
@@ -245,6 +237,7 @@ Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkp
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options) {
+  if (checkpoints.empty()) return {};
   return Measuring(store, checkpoints, providers, options).run();
 }
 

@@ -33,20 +33,13 @@ struct MeasureOptions {
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
-/// A line for each checkpoint that could not be read.
-struct UnreadCheckpoints {
-  std::set<std::string> damage;
-  std::set<std::string> pruned;  ///< whose files were pruned
-
-  UnreadCheckpoints& operator+=(const UnreadCheckpoints& more);
-};
-
-struct MeasureOutcome : UnreadCheckpoints {
+struct MeasureOutcome {
+  std::set<std::string> damage;    ///< a line for each checkpoint that could not be read
+  std::set<std::string> pruned;    ///< likewise, where its file was pruned
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints that were analysed now
   std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that entered measures
   std::string cache_trouble;       ///< why results cannot be cached; "" if they can
 
-  using UnreadCheckpoints::operator+=;
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
@@ -72,8 +65,8 @@ Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkp
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. StoreDamaged and FilePruned
 /// become lines; the first other exception ends the work and is rethrown.
-UnreadCheckpoints read_in_parallel(std::size_t count, std::size_t workers,
-                                   const std::function<void(std::size_t)>& work,
-                                   const ReadProgress& progress);
+MeasureOutcome read_in_parallel(std::size_t count, std::size_t workers,
+                                const std::function<void(std::size_t)>& work,
+                                const ReadProgress& progress);
 
 }  // namespace shearcell

@@ -117,7 +117,7 @@ const CheckpointRecord* MeasureSources::earlier(const CheckpointRecord& record,
 
 std::optional<nlohmann::json> MeasureSources::compute(
     const Provider& provider, const CheckpointRecord& record, std::uint64_t every,
-    const Checkpoint* checkpoint, const Analysis* analysis, UnreadCheckpoints& unread) const {
+    const Checkpoint* checkpoint, const Analysis* analysis, MeasureOutcome& unread) const {
   Checkpoint other;
   const auto load_earlier = [&]() -> const Checkpoint* {
     const CheckpointRecord* found = earlier(record, provider, every);
@@ -137,7 +137,7 @@ std::optional<nlohmann::json> MeasureSources::compute(
 }
 
 void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& measures) const {
-  UnreadCheckpoints none;
+  MeasureOutcome none;
   for (const Provider& one : all_providers()) {
     if (one.from != ComputedFrom::record) continue;
     if (const auto result = compute(one, record, 1, nullptr, nullptr, none)) {
@@ -149,7 +149,7 @@ void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& meas
 Measures MeasureSources::measures_of(const CheckpointRecord& record, std::uint64_t every,
                                      const Checkpoint& checkpoint, const Analysis& analysis,
                                      bool (*wanted)(const Provider&),
-                                     UnreadCheckpoints& unread) const {
+                                     MeasureOutcome& unread) const {
   Measures measures;
   for (const Provider& one : all_providers()) {
     if (!wanted(one)) continue;

@@ -60,7 +60,7 @@ class MeasureSources {
   /// read. `checkpoint` may be null if the provider needs only the record.
   std::optional<nlohmann::json> compute(const Provider& provider, const CheckpointRecord& record,
                                         std::uint64_t every, const Checkpoint* checkpoint,
-                                        const Analysis* analysis, UnreadCheckpoints& unread) const;
+                                        const Analysis* analysis, MeasureOutcome& unread) const;
 
   /// Adds the measures that follow from the log.
   void add_recorded(const CheckpointRecord& record, Measures& measures) const;
@@ -69,7 +69,7 @@ class MeasureSources {
   /// log. Measures whose earlier checkpoint cannot be read are left out, with a line in `unread`.
   Measures measures_of(const CheckpointRecord& record, std::uint64_t every,
                        const Checkpoint& checkpoint, const Analysis& analysis,
-                       bool (*wanted)(const Provider&), UnreadCheckpoints& unread) const;
+                       bool (*wanted)(const Provider&), MeasureOutcome& unread) const;
 
  private:
   struct Run {

@@ -156,39 +156,16 @@ double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-/// Steps from `first` to `last` at which a cadence has a checkpoint, at most so many.
-std::vector<std::uint64_t> steps_between(std::span<const CheckpointCadence> cadences,
-                                         const Drive& drive, std::uint64_t first, double last,
-                                         std::size_t most) {
-  std::vector<std::uint64_t> steps;
-  std::uint64_t step = first == 0 ? 0 : next_checkpoint(cadences, drive, first - 1);
-  for (; static_cast<double>(step) <= last && steps.size() < most;
-       step = next_checkpoint(cadences, drive, step)) {
-    steps.push_back(step);
-  }
-  return steps;
-}
-
 /// Of a shear, whose end is known.
 void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
                std::span<const Ask> asks, std::span<const CheckpointRecord> checkpoints,
                Outlook& look) {
-  const auto whole = static_cast<double>(cycle_steps(motion));
-  const double length = look.end * whole, now = static_cast<double>(stage.step);
-  const std::vector<CheckpointCadence> cadences = cadences_of(stage, asks, motion);
-  const std::uint64_t next = checkpoints.empty() ? 0 : stage.step + 1;
-  const auto to_come = steps_between(cadences, motion, next, length, kMostCounted);
-  look.checkpoints = static_cast<double>(to_come.size());
-  if (look.checkpoints == kMostCounted) {
-    look.checkpoints *= (length - now) / (static_cast<double>(to_come.back()) - now);
-  }
+  const double length = look.end * static_cast<double>(cycle_steps(motion));
+  const auto now = static_cast<double>(stage.step);
+  AskedCheckpoints asked = asked_checkpoints(stage, asks, checkpoints, 0, look.end);
+  look.checkpoints = asked.to_come;
+  if (engine == EngineKind::shearcell) look.missing = std::move(asked.missing);
   double steps = std::max(0.0, length - now);
-  if (stage.step > 0 && engine == EngineKind::shearcell) {
-    std::set<std::uint64_t> known;
-    for (const CheckpointRecord& one : checkpoints) known.insert(one.step);
-    look.missing = steps_between(cadences, motion, 0, std::min(now - 1, length), kMostListed);
-    std::erase_if(look.missing, [&](std::uint64_t step) { return known.contains(step); });
-  }
   // The last checkpoint before a step that has a file; nothing to begin with the stage.
   const auto recorded_before = [&](std::uint64_t step) {
     const CheckpointRecord* last = nullptr;
@@ -265,14 +242,40 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
   return cadences;
 }
 
-std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
-                                       double last) {
+AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
+                                   std::span<const CheckpointRecord> checkpoints, double first,
+                                   double last) {
+  AskedCheckpoints asked;
   const std::optional<Drive> motion = shear_drive(stage);
-  if (!motion || !(first >= 0 && last <= static_cast<double>(StoreLimits::cycles))) return {};
+  if (asks.empty() || !motion) {
+    std::ranges::copy_if(checkpoints, std::back_inserter(asked.made), [&](const auto& record) {
+      const double cycle = record.cycle;
+      return cycle == std::floor(cycle) && cycle >= first && cycle <= last;
+    });
+    return asked;
+  }
   const auto whole = static_cast<double>(cycle_steps(*motion));
-  return steps_between(cadences_of(stage, {&ask, 1}, *motion), *motion,
-                       static_cast<std::uint64_t>(std::ceil(first * whole)), last * whole,
-                       kMostListed);
+  const double end = std::min(last, static_cast<double>(StoreLimits::cycles)) * whole;
+  const std::vector<CheckpointCadence> cadences = cadences_of(stage, asks, *motion);
+  const auto begin = static_cast<std::uint64_t>(std::ceil(first * whole));
+  std::uint64_t step = begin == 0 ? 0 : next_checkpoint(cadences, *motion, begin - 1);
+  auto next = checkpoints.begin();
+  for (std::size_t k = 0; k < kMostListed && static_cast<double>(step) <= end; ++k) {
+    const auto known =
+        std::ranges::equal_range(next, checkpoints.end(), step, {}, &CheckpointRecord::step);
+    next = known.end();
+    if (!known.empty()) {
+      asked.made.insert(asked.made.end(), known.begin(), known.end());
+    } else if (step < stage.step) {
+      asked.missing.push_back(step);
+    } else if (++asked.to_come == kMostCounted) {
+      const auto now = static_cast<double>(stage.step);
+      asked.to_come *= (end - now) / (static_cast<double>(step) - now);
+      break;
+    }
+    step = next_checkpoint(cadences, *motion, step);
+  }
+  return asked;
 }
 
 std::uint64_t checkpoint_cadence(std::span<const Ask> asks) {
@@ -320,8 +323,9 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
   // These come from the same analysis, and figures need them.
-  const MeasureOptions also = {
-      .workers = options.workers, .report = options.report, .also = {"scalars", "crystallites"}};
+  const MeasureOptions also = {.workers = options.workers,
+                               .report = options.report,
+                               .also = {scalars_provider, "crystallites"}};
   measure_checkpoints(store, todo, providers, also);
   if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
@@ -389,9 +393,9 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
   return stages;
 }
 
-Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
-               std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
-               const MeasureOptions& options) {
+Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const Ask> asks,
+                         std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
+                         const MeasureOptions& options) {
   for (;;) {
     Outlook look = outlook(stage, asks, checkpoints, measures);
     if (!look.undecided) return look;
@@ -407,31 +411,22 @@ double end_for(const Store& store, const Stage& stage, const Ask& ask,
   }
   KnownMeasures measures;
   const auto checkpoints = store.checkpoints(stage.id, Listed::and_pruned);
-  return decide(store, stage, {&ask, 1}, checkpoints, measures, options).end;
+  return measured_outlook(store, stage, {&ask, 1}, checkpoints, measures, options).end;
 }
 
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
-                                              std::span<const Ask> asks, double first,
-                                              double last) {
-  std::vector<CheckpointRecord> found = store.checkpoints(stage.id, Listed::and_pruned);
-  const double end = found.empty() ? 0 : std::min(last, found.back().cycle);
-  const bool every = asks.empty() || !shear_drive(stage);
+                                              std::span<const Ask> asks,
+                                              const MeasureOptions& options) {
+  std::vector<CheckpointRecord> all = store.checkpoints(stage.id, Listed::and_pruned);
   std::set<std::uint64_t> steps;
   for (const Ask& ask : asks) {
-    const auto asked = asked_steps(stage, ask, first, end);
-    steps.insert(asked.begin(), asked.end());
+    const double end = end_for(store, stage, ask, options);
+    for (const auto& one : asked_checkpoints(stage, {&ask, 1}, all, 0, end).made) {
+      steps.insert(one.step);
+    }
   }
-  std::erase_if(found, [&](const CheckpointRecord& record) {
-    const bool asked =
-        every ? record.cycle == std::floor(record.cycle) : steps.contains(record.step);
-    return record.cycle < first || record.cycle > last || !asked;
-  });
-  return found;
-}
-
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
-                                              const Ask& ask, const MeasureOptions& options) {
-  return checkpoints_for(store, stage, {&ask, 1}, 0, end_for(store, stage, ask, options));
+  std::erase_if(all, [&](const CheckpointRecord& one) { return !steps.contains(one.step); });
+  return all;
 }
 
 json end_of(const Stage& stage) {
@@ -512,8 +507,8 @@ double checkpoint_bytes(const Geometry& shape) {
          kBytesPerWallGrain * wall_grain_count(shape);
 }
 
-Rates::Rates(const std::vector<Stage>& runs) {
-  for (const Stage& stage : runs) {
+Rates::Rates(const std::vector<Stage>& stages) {
+  for (const Stage& stage : stages) {
     Sum& sum = sums_[engine_of(stage.resolved)];
     sum.steps += stage.particle_steps;
     sum.seconds += stage.wall_seconds;

@@ -68,10 +68,22 @@ std::optional<Drive> shear_drive(const Stage& stage);
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
-/// Steps of a shear, from cycle `first` to cycle `last`, at which `ask` wants a checkpoint;
-/// ascending, at most a million. Empty if there is no shear_drive().
-std::vector<std::uint64_t> asked_steps(const Stage& stage, const Ask& ask, double first,
-                                       double last);
+/// The checkpoints that asks want of a stage: on their cadences, at their phases and at their last
+/// cycles. Checkpoints that interruptions and other experiments left are not among them, so that
+/// figures and tables do not depend on those.
+struct AskedCheckpoints {
+  std::vector<CheckpointRecord> made = {};
+  /// Ascending steps before the stage's last checkpoint that were never recorded; at most a
+  /// million.
+  std::vector<std::uint64_t> missing = {};
+  double to_come = 0;  ///< how many are left after it; of more than 10,000 an estimate
+};
+
+/// Those of cycles `first` to `last`; `checkpoints` as in outlook(). If the stage is not a shear,
+/// or without asks: what was made at whole cycles.
+AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
+                                   std::span<const CheckpointRecord> checkpoints, double first = 0,
+                                   double last = StoreLimits::cycles);
 
 /// The longest interval [cycles] that includes the whole-cycle checkpoints of every ask.
 std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
@@ -99,25 +111,19 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
 /// a checkpoint is undecided, its measures are read from the cache, or computed and cached, and
 /// added to `measures`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that
 /// may end the stage cannot be read.
-Outlook decide(const Store& store, const Stage& stage, std::span<const Ask> asks,
-               std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
-               const MeasureOptions& options);
+Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const Ask> asks,
+                         std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
+                         const MeasureOptions& options);
 
-/// The last cycle of the stage for one of its asks alone: Outlook::end. Throws as decide().
+/// The last cycle of the stage for one of its asks alone: Outlook::end. Throws as
+/// measured_outlook().
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The checkpoints of cycles `first` to `last` that one of `asks` wants: on its cadence, at its
-/// phases and at its last cycle; pruned ones too. Checkpoints that interruptions and other
-/// experiments left are not included, so that figures and tables do not depend on them. If the
-/// stage is not a shear, or without asks: all checkpoints at whole cycles.
+/// AskedCheckpoints::made of one of the asks, each of which ends at end_for(); pruned ones too.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
-                                              std::span<const Ask> asks, double first = 0,
-                                              double last = StoreLimits::cycles);
-
-/// The checkpoints of one ask, up to end_for().
-std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
-                                              const Ask& ask, const MeasureOptions& options);
+                                              std::span<const Ask> asks,
+                                              const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended of a stage that was completed before its last cycle, else null.
 /// "cycles_asked" is added if the stage later went on to a length that another experiment asked
@@ -151,7 +157,7 @@ struct Rate {
 /// Particle-steps/s of recorded runs.
 class Rates {
  public:
-  explicit Rates(const std::vector<Stage>& runs);
+  explicit Rates(const std::vector<Stage>& stages);
 
   /// The mean rate of the stage's engine in these runs; without such runs, the rate that was
   /// measured on another machine for this number of grains.

@@ -27,7 +27,6 @@ struct RegisteredManifest : ManifestText {
 /// differ follow: "packing N=600".
 class VariantNames {
  public:
-  VariantNames() = default;  ///< knows none
   explicit VariantNames(const Store& store);
   /// The name of the stage in this place; if unknown, the variant.
   std::string of(const Stage& stage, const Place& place) const;

@@ -536,7 +536,7 @@ class StageAttempt {
     const std::vector<Ask> asks = asks_of(now.memberships);
     const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
     if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
-    const nlohmann::json ended = decide(store_, now, asks, seen_, measures_, {}).ended;
+    const nlohmann::json ended = measured_outlook(store_, now, asks, seen_, measures_, {}).ended;
     recorded_.restart();  // measuring is not computing
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();

@@ -34,9 +34,10 @@ Outlook left_of(const PlannedRun& run, const Stage& planned, double cycle = -1) 
     stage.cycle = cycle;
     stage.step = static_cast<std::uint64_t>(std::llround(cycle * kStepsPerCycle));
     seen.emplace_back();
-    for (const std::uint64_t step : asked_steps(stage, run.ask, 0, cycle)) {
+    for (const std::uint64_t step : asked_checkpoints(stage, {&run.ask, 1}, {}, 0, cycle).missing) {
       seen.emplace_back().step = step;
     }
+    seen.emplace_back().step = stage.step;
   }
   return outlook(stage, asks_of(run.stage.memberships), seen);
 }
@@ -48,6 +49,25 @@ double bytes_of(const Store& store, const std::string& run) {
     EXPECT_EQ(record.size, std::filesystem::file_size(store.folder() / record.file));
   }
   return bytes;
+}
+
+TEST(Cost, AskedCheckpointsAreMadeMissingOrToCome) {
+  const PlannedRun run = only_run(tiny_manifest("  cycles: 4\n"));
+  constexpr std::uint64_t cycle = kStepsPerCycle;
+  Stage stage = run.stage;
+  stage.step = 2 * cycle;
+  std::vector<CheckpointRecord> seen(3);
+  seen[1].step = cycle + 1;  // an interruption left it
+  seen[2].step = 2 * cycle;
+  const AskedCheckpoints all = asked_checkpoints(stage, {&run.ask, 1}, seen);
+  ASSERT_EQ(all.made.size(), 2U);
+  EXPECT_EQ(all.made[1].step, 2 * cycle);
+  EXPECT_EQ(all.missing, std::vector<std::uint64_t>{cycle});
+  EXPECT_EQ(all.to_come, 2);
+  const AskedCheckpoints some = asked_checkpoints(stage, {&run.ask, 1}, seen, 2, 3);
+  EXPECT_EQ(some.made.size(), 1U);
+  EXPECT_TRUE(some.missing.empty());
+  EXPECT_EQ(some.to_come, 1);
 }
 
 TEST(Cost, CountsParticleSteps) {

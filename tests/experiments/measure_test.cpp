@@ -320,7 +320,7 @@ TEST_F(Measure, WorksWithoutAWritableCache) {
 
 TEST(ReadInParallel, CountsWhatCannotBeReadToo) {
   std::size_t last = 0;
-  const UnreadCheckpoints unread = read_in_parallel(
+  const MeasureOutcome unread = read_in_parallel(
       3, 2,
       [](std::size_t i) {
         if (i == 1) throw StoreDamaged("cut off");
