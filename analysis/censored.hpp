@@ -35,9 +35,9 @@ struct CensoredValue {
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 
-/// mean(a) - mean(b) from the normal intervals of both means, which may differ in sigma: G. Y. Zou and
-/// A. Donner, Stat. Med. 27, 1693 (2008). Independent groups have Welch's degrees of freedom. If
-/// `paired`, a[k] and b[k] share a packing, and the errors have the correlation of the residuals
+/// mean(a) - mean(b) from the normal intervals of both means, which may differ in sigma: G. Y. Zou
+/// and A. Donner, Stat. Med. 27, 1693 (2008). Independent groups have Welch's degrees of freedom.
+/// If `paired`, a[k] and b[k] share a packing, and the errors have the correlation of the residuals
 /// (G. Y. Zou, Psychol. Methods 12, 399 (2007)), of a censored value its expectation. Pairs with
 /// one or two censored values count; a[k] - b[k] as a censored value would be biased, as b[k]
 /// decides whether it is censored. Without censoring the intervals are those of Welch and Student.

@@ -100,10 +100,11 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   const Places places = places_of(runs, axis, Seen::first);
   std::vector<std::vector<double>> sides;  // of each packing
   for (const std::vector<double>& packing : places.packings) {
-    std::vector<double>& own = sides.emplace_back();
+    std::vector<double> own;
     for (const double place : packing) {
       if (const std::optional<int> counted = side(place)) own.push_back(*counted);
     }
+    sides.push_back(std::move(own));
   }
   const std::size_t packings = places.packings.size();
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
