@@ -108,7 +108,9 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   if (claim.published) {
     const double published = *claim.published->value;
     if (claim.margin > 0) return compare_with(stated, scalar, a, published);
-    return compare_with({stated.text, published, stated.claimed, stated.id}, scalar, a, 0);
+    Claim bound = stated;
+    bound.margin = published;
+    return compare_with(bound, scalar, a, 0);
   }
   Verdict verdict = compare(stated, scalar, a, b);
   note_early_onsets(claim, {a, b}, verdict);
@@ -155,12 +157,9 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     verdict = of_first(taken = look);
   }
   const auto next = std::ranges::upper_bound(looks, ended);
-  if (verdict.ruling == Ruling::undecided && ended != taken) {
-    verdict = of_first(ended);
-    verdict.ruling = Ruling::undecided;
-  }
-  if (taken == 0 && ended == 0) {
-    verdict = of_first(seeds.size());
+  const std::size_t shown = ended > 0 ? ended : seeds.size();
+  if (verdict.ruling == Ruling::undecided && shown != taken) {
+    verdict = of_first(shown);
     verdict.ruling = Ruling::undecided;
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {

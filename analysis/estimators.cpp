@@ -32,10 +32,11 @@ struct Values {
     std::size_t without = 0;
     for (const FrameRun* run : group) {
       const RunValue value = scalar.of(*run);
-      CensoredValue found = {number(value.or_nan()), false};
+      CensoredValue found = censored_value(value);
+      found.value = number(found.value);
+      found.censored = found.censored && std::isfinite(found.value);
       TableRow row = {value.or_nan(), std::string(name_of(value.missing))};
-      if (value.missing == Missing::too_short && std::isfinite(number(value.above))) {
-        found = {number(value.above), true};
+      if (found.censored) {
         ++censored;
         if (entered.columns.size() < 6) entered.columns.emplace_back("above");
         row.emplace_back(value.above);
@@ -193,6 +194,11 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   }
   return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
                   "");
+}
+
+CensoredValue censored_value(const RunValue& value) {
+  const bool above = value.missing == Missing::too_short && std::isfinite(value.above);
+  return {above ? value.above : value.or_nan(), above};
 }
 
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values) {

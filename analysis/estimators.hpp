@@ -86,6 +86,10 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 /// their items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
+/// The number of a run, or what it exceeds if the run ended before the event; NaN if neither is
+/// known.
+CensoredValue censored_value(const RunValue& value);
+
 /// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if
 /// one of its values is. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);

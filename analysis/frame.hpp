@@ -157,7 +157,7 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 /// together with `first`, `first` is returned.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
-/// Those of the runs.
+/// The swept keys that distinguish the variants of the runs.
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
 /// If there is one curve for each set of values of `keys`: a swept key whose values differ within

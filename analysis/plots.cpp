@@ -417,8 +417,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
   RunStatistics found;
-  found.runs =
-      static_cast<std::size_t>(std::ranges::count(means, false, &CensoredValue::censored));
+  found.runs = static_cast<std::size_t>(std::ranges::count(means, false, &CensoredValue::censored));
   const std::optional<Estimate> estimate = censored_mean(means);
   if (!estimate || !std::isfinite(estimate->value)) return found;
   found.mean = estimate->value;
@@ -787,9 +786,9 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   }
   std::string note;
   if (censored > 0) {
-    add_note(note, fmt::format("{} of {} runs end before {} and enter the means as censored",
-                               censored, runs,
-                               find_measure(panel.plot.y, MeasureKind::run)->reach));
+    add_note(note,
+             fmt::format("{} of {} runs end before {} and enter the means as censored", censored,
+                         runs, find_measure(panel.plot.y, MeasureKind::run)->reach));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,

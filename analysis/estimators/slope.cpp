@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The slope of a number of the run against another column, by maximum likelihood over the runs (censored.hpp).
+// The slope of a number of the run against another column, by maximum likelihood over the runs
+// (censored.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,13 +30,12 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
     if (run->checkpoints.empty()) continue;
     const double x = against(*run, &run->checkpoints.front());
     const RunValue found = number.of(*run);
-    const bool above = found.missing == Missing::too_short && std::isfinite(found.above);
-    const double value = above ? found.above : found.or_nan();
-    if (!std::isfinite(x) || !std::isfinite(value)) continue;
-    values.push_back({value, above});
+    const CensoredValue value = censored_value(found);
+    if (!std::isfinite(x) || !std::isfinite(value.value)) continue;
+    values.push_back(value);
     at.push_back(x);
     variants.insert(run->place.variant);
-    censored += above ? 1 : 0;
+    censored += value.censored ? 1 : 0;
     enter(*run, {x, found.or_nan(), std::string(name_of(found.missing)), found.above}, entered);
   }
   std::optional<Estimate> estimate;

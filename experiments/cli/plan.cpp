@@ -125,6 +125,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
                 std::vector<std::string>& notes) {
   for (const Plan& plan : plans) {
     for (const Scale& scale : scales_of(plan.manifest)) {
+      if (scale.name != plan.scale) continue;
       const auto left_at = [&](std::uint64_t look) {
         const std::span seeds = std::span(scale.seeds.values).first(look);
         double left = 0;
@@ -136,9 +137,9 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
         }
         return left;
       };
-      const auto next = std::ranges::find_if(
-          scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
-      if (scale.name != plan.scale || next == scale.looks.end()) continue;
+      const auto next =
+          std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
+      if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
           "{}: the next look is at {} of {} seeds, {:.3g} particle-steps away; the notes of the "
           "verdicts say how probable it is to decide",

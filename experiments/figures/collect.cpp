@@ -146,6 +146,11 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
 
 /// Sets Frame::seeds, Frame::looks, and in Frame::pending the planned runs that are not declared.
 void add_planned(const Manifest& manifest, CollectedRuns& collected) {
+  std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
+  for (const FrameRun& run : collected.runs) {
+    if (run.place.experiment != manifest.experiment) continue;
+    declared.emplace(run.place.seed, run.place.swept);
+  }
   for (const Scale& scale : scales_of(manifest)) {
     if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
       continue;
@@ -159,11 +164,7 @@ void add_planned(const Manifest& manifest, CollectedRuns& collected) {
     for (std::size_t k = 0; k < variants.size(); ++k) {
       for (const std::uint64_t seed :
            std::span(seeds).first(std::min<std::size_t>(variants[k].seeds, seeds.size()))) {
-        const bool declared = std::ranges::any_of(collected.runs, [&](const FrameRun& run) {
-          return run.place.seed == seed && run.place.experiment == manifest.experiment &&
-                 run.place.swept == variants[k].swept;
-        });
-        if (declared) continue;
+        if (declared.contains({seed, variants[k].swept})) continue;
         collected.pending.push_back(runs[k]);
         collected.pending.back().place.seed = seed;
       }

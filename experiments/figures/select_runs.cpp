@@ -103,9 +103,11 @@ namespace {
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
+  if (experiments.empty()) return all;
+  const std::vector<RegisteredManifest> manifests = newest_manifests(store);
   for (const std::string& experiment : experiments) {
     std::vector<std::string> members;
-    for (const RegisteredManifest& one : newest_manifests(store)) {
+    for (const RegisteredManifest& one : manifests) {
       if (one.experiment == experiment) members = recorded_manifest(one.text).of;
     }
     if (members.empty()) members = {experiment};

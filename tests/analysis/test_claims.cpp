@@ -270,6 +270,19 @@ TEST(PlannedLooks, TheFirstVerdictIsFinal) {
   EXPECT_EQ(later.look, 4U);
 }
 
+TEST(PlannedLooks, WidenTheIntervalOfABound) {
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "still"}}, nlohmann::json::object()}},
+                        .published = PublishedSpec{.label = "", .source = "a", .value = 0.7},
+                        .is = Relation::lower};
+  const Verdict bound = claim_figure(claim).make(planned({1, 2, 3}, 0.6, {3, 6})).verdicts.at(0);
+  EXPECT_EQ(bound.ruling, Ruling::supported);
+  EXPECT_EQ(bound.margin, 0.7);
+  EXPECT_EQ(bound.level, look_level(std::vector<std::size_t>{3, 6}));
+}
+
 TEST(PlannedLooks, WithoutThemThereIsOneAtAllSeeds) {
   EXPECT_EQ(at_looks(planned({1, 2, 3, 4, 5}, 0.6)).ruling, Ruling::undecided);
   const Verdict all = at_looks(planned({1, 2, 3, 4, 5, 6}, 0.6));

@@ -341,7 +341,8 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
                                "onset_size_phi_standard_error,runs,runs_ended_before,"
                                "runs_began_after,runs_unclear\nall,0.001,0.621,"))
       << to_csv(drawn.tables.at(0));
-  EXPECT_TRUE(has(caption_of("", drawn.tables), "1 of 9 runs end before the onset and enter the means as censored"));
+  EXPECT_TRUE(has(caption_of("", drawn.tables),
+                  "1 of 9 runs end before the onset and enter the means as censored"));
   ClaimSpec claim{.id = "own",
                   .compare = "onset_size_phi",
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
