@@ -119,6 +119,10 @@ __attribute__((used, noreturn)) static void launch(const long* stack) {
   join(loader, own, folder, "lib/ld-linux-x86-64.so.2");
   join(library, own, folder, "lib");
   join(program, own, folder, "lib/program");
+  for (const char* c = library; *c != '\0'; ++c) {
+    if (*c == ':' || *c == ';')
+      give_up(": the path of the archive must not contain ':' or ';': move the archive\n");
+  }
   const unsigned long base = map_loader();
   const Elf64_Ehdr* head = (const Elf64_Ehdr*)image;
 

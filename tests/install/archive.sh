@@ -95,6 +95,14 @@ states "$folder/build.json" > "$folder/b"
 [ "$(grep -c state_hash "$folder/b")" -ge 4 ]
 diff "$folder/a" "$folder/b" && echo "the same bits as the built program"
 
+# The loader splits the path of its libraries at ':' and ';', so the launcher refuses such a path.
+mkdir "$folder/a:b"
+tar -xJf "$folder"/out/*.tar.xz -C "$folder/a:b" --no-same-owner
+code=0
+"$folder"/a:b/shearcell-*/shearcell --version 2> "$folder/said" || code=$?
+[ $code = 1 ] && grep "must not contain ':' or ';'" "$folder/said" || wrong "a colon in the path: exit code $code"
+rm -r "$folder/a:b"
+
 # The wheel, by Debian's Python without network and packages. Its command is a script of a line or two.
 if ! /usr/bin/python3 -m pip --version > /dev/null 2>&1; then
   echo "the wheel was not installed: python3-pip is missing"
