@@ -90,7 +90,8 @@ def panel(state, left, top):
 
 
 def text(x, y, words, size=17, weight="normal", anchor="middle"):
-    return (f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="{anchor}" font-size="{size}" font-weight="{weight}">{words}</text>')
+    return (f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="{anchor}" font-size="{size}" '
+            f'font-weight="{weight}">{words}</text>')
 
 
 def main():

@@ -25,20 +25,22 @@ HEADLINES = [
     ("S1", "S1.fall", "fall of the uncorrected phi (Eq. S2) as k grows a hundredfold", "about 2 %"),
     ("S1", "S1.phi", "change of the corrected phi (Eq. S4) as k grows a hundredfold", "none"),
     ("S3", "S3_overlap", "mean overlap [d]", "less than 0.001"),
-    ("B5", "B5_phi", "gain of phi by a pause after each cycle, both at rest", "positive"),
+    ("B5", "B5_phi", "gain of phi by pauses after each cycle, measured at rest", "positive"),
     ("summary", "summary.percentage",
-     "standard deviation of the percentage crystalline between drags, time steps, pauses and moving walls "
-     "(chosen after seeing)",
+     "standard deviation of the percentage crystalline over experiments with other drags, time steps, pauses and walls "
+     "(claim chosen after the runs)",
      "negligible"),
     ("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
-    ("S5b", "S5b.slope", "change of phi at the onset per factor of e in the interior grains", "none from 6000 on"),
-    ("nucleation", "nucleation.volume", "exponent of the nucleation rate against the number of interior grains",
+    ("S5b", "S5b.slope", "change of phi at the onset, if the number of interior grains grows by a factor of e",
+     "none from 6000 on"),
+    ("nucleation", "nucleation.volume", "exponent of the nucleation rate in the number of interior grains",
      "1 (homogeneous)"),
     ("C", "C.critical_size@amplitude_rad=0.0833",
-     "critical size [grains], A = 0.0833, by growing less shrinking crystallites", "about 16"),
-    ("committor", "committor.size@amplitude_rad=0.0833", "critical size [grains], A = 0.0833, by the committor", "about 16"),
-    ("S7", "S7.inner", "share of nuclei in the inner half of the width, less the share in the outer half", "0"),
-    ("S7", "S7.top", "share of nuclei in the upper third of the height, less the share in the lower third", "over 0.2"),
+     "critical size [grains], A = 0.0833: as many crystallites of this size grow as shrink", "about 16"),
+    ("committor", "committor.size@amplitude_rad=0.0833",
+     "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow", "about 16"),
+    ("S7", "S7.inner", "share of nuclei in the inner half of the width less the share in the outer half", "0"),
+    ("S7", "S7.top", "share of nuclei in the upper third of the height less the share in the lower third", "over 0.2"),
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
 SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
