@@ -4,7 +4,7 @@
 
     PYTHONPATH=experiments/python python3 experiments/results/grains.py experiments/results/grains.svg [STORE]
 
-Computes the run if STORE (default: grains-store) lacks it, a minute on one core, and writes an SVG file. The same state
+Computes the run if STORE (default: shearcell-store-grains) lacks it, a minute on one core, and writes an SVG file. The same state
 gives the same bytes. Needs the program shearcell, numpy and h5py.
 """
 import csv
@@ -95,7 +95,7 @@ def text(x, y, words, size=17, weight="normal", anchor="middle"):
 
 
 def main():
-    store = shearcell.run(MANIFEST, store=sys.argv[2] if len(sys.argv) > 2 else "grains-store")
+    store = shearcell.run(MANIFEST, store=sys.argv[2] if len(sys.argv) > 2 else "shearcell-store-grains")
     run = store.runs(experiment="grains")[0]
     rows = csv.DictReader(io.StringIO(store.call("table", "--experiment", "grains", "--out", "-")))
     percent = {float(row["cycle"]): float(row["crystalline_percent"]) for row in rows}
