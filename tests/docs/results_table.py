@@ -20,24 +20,27 @@ import sys
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
 
-# A row of README.md: for each claim its figure, its id (of older manifests its name), and the cells "claim" and "supplement".
+# The rows of README.md, one claim each: figure, id (in older manifests: name), and the cells "claim" and "supplement".
 HEADLINES = [
-    [("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001")],
-    [("S5b", "S5b.slope", "change of phi at the onset with ln N_inves", "none from 6000 on"),
-     ("S5b", "S5b.onset@grains=18200", "phi at the onset in the largest cells", "0.646 +- 0.001")],
-    [("summary", "summary.percentage", "standard deviation between variants of the percentage crystalline (chosen after seeing)", "negligible")],
-    [("summary", "summary.onset", "standard deviation between variants of phi at the onset (chosen after seeing)", "similar")],
-    [("S1", "S1.fall", "fall of phi_u over a hundredfold k", "about 2 %"),
-     ("S1", "S1.phi", "change of phi", "none")],
-    [("S3", "S3_overlap", "mean overlap [d]", "less than 0.001")],
-    [("B5", "B5_drawn", "phi with pauses minus without, as drawn", "grows faster"),
-     ("B5", "B5_phi", "at rest", "grows faster")],
-    [("C", "C.critical_size@amplitude_rad=0.0833", "critical size [grains], A = 0.0833, by delta_rho with the supplement's scatter", "about 16"),
-     ("committor", "committor.size@amplitude_rad=0.0833", "by the committor", "about 16"),
-     ("C", "C.growth", "its relative growth with A at n_bin = 5", "grows")],
-    [("nucleation", "nucleation.volume", "exponent of the nucleation rate against N_inves", "1 (homogeneous)")],
-    [("S7", "S7.inner", "share of nuclei in the inner minus the outer half", "equal"),
-     ("S7", "S7.top", "in the upper minus the lower third", "more near the top, by over 0.2")],
+    ("S1", "S1.fall", "fall of the uncorrected phi (Eq. S2) as k grows a hundredfold", "about 2 %"),
+    ("S1", "S1.phi", "change of the corrected phi (Eq. S4) as k grows a hundredfold", "none"),
+    ("S3", "S3_overlap", "mean overlap [d]", "less than 0.001"),
+    ("B5", "B5_phi", "gain of phi by pauses after each cycle, measured at rest", "positive"),
+    ("summary", "summary.percentage",
+     "standard deviation of the percentage crystalline over experiments with other drags, time steps, pauses and walls "
+     "(claim chosen after the runs)",
+     "negligible"),
+    ("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
+    ("S5b", "S5b.slope", "change of phi at the onset, if the number of interior grains grows by a factor of e",
+     "none from 6000 on"),
+    ("nucleation", "nucleation.volume", "exponent of the nucleation rate in the number of interior grains",
+     "1 (homogeneous)"),
+    ("C", "C.critical_size@amplitude_rad=0.0833",
+     "critical size [grains], A = 0.0833: as many crystallites of this size grow as shrink", "about 16"),
+    ("committor", "committor.size@amplitude_rad=0.0833",
+     "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow", "about 16"),
+    ("S7", "S7.inner", "share of nuclei in the inner half of the width less the share in the outer half", "0"),
+    ("S7", "S7.top", "share of nuclei in the upper third of the height less the share in the lower third", "over 0.2"),
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
 SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
@@ -130,17 +133,13 @@ def best_of(found):
 
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "margin", "packings", "verdict"])
-    for parts in HEADLINES:
-        cells = []
-        for figure, identity, name, supplement in parts:
-            found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
-                     if of == figure and claim.get("id") == identity]
-            if found:
-                _, drawing, claim = best_of(found)
-                cells.append([name, supplement, measured(claim), margin(claim), runs(claim),
-                              link(claim["verdict"], drawing, page)])
-        if cells:
-            text += row(["; ".join(column) for column in zip(*cells)])
+    for figure, identity, name, supplement in HEADLINES:
+        found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
+                 if of == figure and claim.get("id") == identity]
+        if found:
+            _, drawing, claim = best_of(found)
+            text += row([name, supplement, measured(claim), margin(claim), runs(claim),
+                         link(claim["verdict"], drawing, page)])
     return text
 
 
