@@ -22,7 +22,7 @@ inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", 
 /// A sphere of diameter d fixed to a rough wall.
 struct WallGrain {
   WallSide side;
-  /// Centre [d] in the untilted cell, with its wall plane at the height it has in `Cell`.
+  /// Centre [d] in the untilted cell, while the plane of its wall is at its height in `Cell`.
   Eigen::Vector3d position;
 };
 
@@ -34,8 +34,8 @@ inline constexpr double kLongestCell = 1e5;
 /// boundaries.
 inline constexpr double kShallowestCell = 3;
 
-/// The largest volume of a cell, divided by N + 100 [d^3]. An analysis takes memory for each layer
-/// of the cell.
+/// The largest volume of a cell, divided by N + 100 [d^3]. This limits the memory of an analysis,
+/// which is proportional to the number of layers in the cell.
 inline constexpr double kLoosestCell = 1e4;
 
 /// Geometry that does not change during a run. Lengths in grain diameters d.
@@ -65,7 +65,7 @@ inline WallSide moving_side(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
 }
 
-/// Sign of y from the moving wall into the cell.
+/// 1 if the cell lies above the moving wall, -1 if it lies below.
 inline double inwards(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? 1 : -1;
 }
@@ -83,7 +83,8 @@ inline double distance_to(const WallPlane& plane, double x, double y) {
 /// The planes in a pose, indexed by WallSide.
 std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose);
 
-/// Tilt angle [rad] and height [d] of the moving plane -> pose. Portable to the last bit.
+/// The pose at a tilt angle [rad] and a height of the moving plane [d]. It has the same bits on
+/// every machine.
 WallPose wall_pose(const Cell& cell, double theta, double wall_height);
 
 /// Centre of one wall grain in a pose [d].

@@ -6,16 +6,17 @@
 
 namespace shearcell {
 
-// A kernel that passes through the sites in order finds most neighbours in the row of cells below,
-// its own and the one above. Strips make a row short enough that all three stay in the cache.
+// A kernel that visits the sites in order finds most neighbours in three rows of cells: the row
+// below, the row of the site, and the row above. Strips keep the rows so short that all three stay
+// in the cache.
 void CellOrder::choose_strip(std::size_t sites) {
   Grid& cells = grid_.cells;
   constexpr double kSitesPerRow = 1200;
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // The row above, one line more on either side, and a fifth for rows fuller than the mean. A small
-  // cell is in the cache as a whole.
+  // The row above, one more line on either side, and a fifth for rows that are fuller than the
+  // mean. A small cell fits in the cache as a whole.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));
@@ -41,7 +42,7 @@ void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, cons
   site_.resize(sites.size());
   id_.assign(padded(sites.size()) + 8, 0);  // a run may be read up to a vector beyond its end
   for (auto& axis : row_) axis.resize(padded(sites.size()) + 8);
-  std::vector<std::uint32_t>& next = cell_;  // free until the end
+  std::vector<std::uint32_t>& next = cell_;  // cell_ is filled only after `next` was used
   next.assign(begin_.begin(), begin_.end());
   for (std::size_t s = 0; s < sites.size(); ++s) {
     site_[next[cell_of_site_[s]]++] = static_cast<std::int32_t>(s);

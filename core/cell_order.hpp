@@ -22,16 +22,17 @@ struct Site {
 
 class CellOrder {
  public:
-  /// Sorts sites (kernel.hpp's rows) into cells for pairs up to `reach` [d] apart.
+  /// Sorts the sites, whose positions are in `rows` (kernel.hpp), into cells. Two sites at most
+  /// `reach` [d] apart lie in the same cell or in neighbouring cells.
   void build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
              const std::vector<Site>& sites, Team& team);
 
   const CellGrid& grid() const { return grid_; }
   std::size_t size() const { return site_.size(); }
-  /// Distance in places from a site to its farthest neighbours, roughly, as a multiple of 8; 0 in a
+  /// About how many places lie between a site and its farthest neighbours, a multiple of 8; 0 for a
   /// cell that fits in a core's cache.
   std::size_t ahead() const { return ahead_; }
-  /// Index in the given sites of the site at each place.
+  /// For each place the index of its site in the list that build() was given.
   const std::vector<std::int32_t>& site() const { return site_; }
   std::size_t bytes() const;
 

@@ -23,12 +23,12 @@ struct Contact {
   Eigen::Vector3d normal;  ///< unit vector towards `grain`
 };
 
-/// Calls visit for every contact of `grains` (3 x N [d], z unwrapped); a pair of grains once, with
-/// grain < other. Grain by grain in ascending id.
+/// Calls visit for every contact of `grains` (3 x N [d], z unwrapped), in ascending id of the
+/// grain. A pair of grains is visited once, with grain < other.
 void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& grains, const WallPose& pose,
                       const std::function<void(const Contact&)>& visit);
 
-/// Unit of the tolerances on forces: P d^2, or without pressure m g, at least 1 [m d/s^2].
+/// Unit of the tolerances on forces [m d/s^2]: P d^2; without pressure m g, but at least 1.
 double force_unit(const Scene& scene);
 
 struct Diagnostics {

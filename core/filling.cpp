@@ -19,8 +19,8 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
 
-// Each draw has a stream per wall side. Draws after the first follow the stream of the filling,
-// with one unused between draws.
+// Each draw has one stream of random numbers per wall side. The streams of later draws come after
+// kFillStream, with one unused stream between two draws.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }
@@ -29,7 +29,7 @@ double wrapped_difference(double dz, double depth) {
   return dz - depth * std::nearbyint(dz / depth);
 }
 
-// Random numbers of one attempt. They depend on seed, number of grains, stream and attempt.
+// Random numbers of one attempt to place a grain.
 std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t stream,
                            std::uint64_t attempt) {
   const auto n = static_cast<std::uint32_t>(grains);
@@ -166,7 +166,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
   state.velocity = Eigen::Matrix3Xd::Zero(3, n);
   state.wall_height = cell.moving == MovingWall::bottom ? cell.bottom : cell.top;
 
-  // Wall grains come first in `sites`, so that one search serves both.
+  // Wall grains come first in `sites`, so that one search finds wall grains and grains.
   std::vector<Eigen::Vector3d> sites;
   LinkedCells near(cell, {.bottom = cell.bottom, .top = cell.top}, 1.0,
                    geometry.grains + cell.wall_grains.size());

@@ -34,18 +34,18 @@ struct Geometry {
 /// volume fraction. Rough walls take up a layer of 0.175 d each: the volume of their grains.
 double cell_width(const Geometry& geometry);
 
-/// Called about every millisecond of a long placement; may throw to give it up.
+/// Called about every millisecond during a long placement. It may throw to stop the placement.
 using Poll = std::function<void()>;
 
-/// Distance of the bottom and the top plane [d] at which the loose grains are placed.
+/// Distance [d] between the bottom and the top plane when the loose grains are placed.
 double fill_height(const Geometry& geometry);
 
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains: wider or higher than kLongestCell; larger than
-/// half of kLoosestCell, since the wall may still move outwards; or with more than 10^4 + 1000 N
-/// wall grains, each of which may take 6000 attempts to place.
+/// Whether the cell is too large for its grains. It is if its width or height exceeds kLongestCell,
+/// if its volume per grain exceeds half of kLoosestCell (the wall may still move outwards), or if
+/// it has more than 10^4 + 1000 N wall grains, each of which may take 6000 attempts to place.
 bool too_large(const Geometry& geometry);
 
 /// The cell at its fill height, with its wall grains placed by random sequential addition.

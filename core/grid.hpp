@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cell cut into the cells of a grid that are at least as wide as a search distance, so that all
-// near points lie in 27 of them.
+// The cell of a simulation, cut into the cells of a grid. A grid cell is at least as wide as the
+// search distance, so all points near to a point lie in its grid cell or in the 26 around it.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace shearcell {
 
-/// Cells [begin, end) of consecutive numbers.
+/// Cells with the numbers begin, ..., end - 1.
 struct CellRange {
   std::size_t begin, end;
 };
@@ -28,8 +28,8 @@ struct Grid {
   std::array<double, 3> per_cell{};  ///< cells per d in x, y, z
 
   Grid() = default;
-  /// As many cells of at least these sizes [d] as fit, but at most about four for each point, so
-  /// that a nearly empty grid costs no more than its points. One strip.
+  /// As many cells of at least these sizes [d] as fit, in one strip. There are at most about four
+  /// cells for each point, so that a nearly empty grid costs no more than its points.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
   /// The number of cells.

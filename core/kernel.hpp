@@ -3,9 +3,9 @@
 //
 // Each loop has a scalar reference implementation (scalar_kernel.cpp) and a SIMD version
 // (simd_kernel.cpp, simd_lists.cpp); both give the same bits. The rules that make this possible:
-//  1. One grain per lane: a grain's force is summed by its own lane, over the plane and the
-//     grains of the moving wall, the other planes, then the other walls' grains and its
-//     neighbours in ascending permanent id. No sum crosses lanes.
+//  1. One grain per lane: the lane of a grain sums the force on this grain. The order is: plane and
+//     grains of the moving wall, the other planes, then the grains of the other walls and the
+//     neighbouring grains in ascending permanent id. No sum crosses lanes.
 //  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit.
 //     So the result does not depend on which non-touching neighbours a list happens to hold.
 //  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and
@@ -41,8 +41,8 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
 
-/// What some grain of a block is near to; the kernel skips the rest. kNearSeam: some neighbour's
-/// nearest image lies across the seam in z.
+/// What some grain of a block is near to; the kernel skips everything else. kNearSeam: the nearest
+/// image of some neighbour lies across the seam in z.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
@@ -65,18 +65,19 @@ struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
-  std::array<WallPlane, 4> planes;  ///< that of the moving wall first
-  /// Output, per grain of blocks near the moving wall: y of its contact sum with that wall [d].
+  std::array<WallPlane, 4> planes;  ///< the plane of the moving wall first
+  /// Output for each grain of a block near the moving wall: the y component of the sum over its
+  /// contacts with this wall [d].
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
-  /// Position of each grain when its list was built, in the frame that moves with the shear. Single
-  /// precision, which `margin_loss` allows for.
+  /// Position of each grain when its list was built, in the frame that moves with the shear.
+  /// `margin_loss` includes the rounding to single precision.
   const float* reference[3] = {};
   double frame_height = 0;  ///< height at which that frame does not move [d]
   double tan_theta = 0;     ///< of the tilt at the end of the step
   double margin_loss = 0;   ///< part of every margin used up by the shear and by rounding [d]
-  /// From a block to the rows that are fetched into the cache before they are needed
-  /// (CellOrder::ahead()); 0 fetches none.
+  /// The kernel fetches rows this far ahead of a block into the cache (CellOrder::ahead()); 0:
+  /// none.
   std::size_t ahead = 0;
   double* next_rows = nullptr;   ///< output: positions at the next step
   double* velocity[3] = {};      ///< [d/s], half a step before `rows` -> half a step after
@@ -98,8 +99,8 @@ struct CellGrid {
   const std::int32_t* id = nullptr;      ///< its permanent id: wall grains before grains
 };
 
-/// The outer list: for the grains at a range of places, the sites nearer than 1 plus both margins,
-/// in ascending id.
+/// Finds the outer lists of the grains at a range of places. The outer list of a grain holds the
+/// sites nearer than 1 plus both margins, in ascending id.
 struct SearchTask {
   CellGrid grid;
   std::int32_t first_grain = 0;                ///< smallest id of a grain; wall grains have no list
@@ -111,11 +112,12 @@ struct SearchTask {
   double depth = 0, per_depth = 0;
 };
 
-/// More neighbours than any packing has; where a cell has collapsed, rows are cut off at this
-/// length.
+/// More neighbours than a grain has in any sound packing. In a collapsed cell, lists are cut off at
+/// this length.
 inline constexpr std::size_t kMostNeighbours = 1024;
 
-/// The inner list, pruned from the outer: neighbours nearer than 1 plus both margins now.
+/// Prunes the outer lists to the inner lists: to the neighbours that are nearer than 1 plus both
+/// margins now.
 struct PruneTask {
   std::size_t grains = 0;
   const double* rows = nullptr;
@@ -123,7 +125,7 @@ struct PruneTask {
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;   ///< per grain
   std::int32_t first_wall = 0, moving_end = 0;  ///< offsets of the moving wall's grains
-  std::array<WallPlane, 4> planes;              ///< that of the moving wall first
+  std::array<WallPlane, 4> planes;              ///< the plane of the moving wall first
   double wall_margin = 0;                       ///< of the planes [d]
   std::int32_t* inner = nullptr;                ///< laid out as NeighbourRows
   std::size_t inner_stride = 0;                 ///< most slots that a block may have
@@ -137,8 +139,8 @@ struct PruneTask {
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number when a grain is farther from
-/// `reference` than its margin less the margin_loss.
+/// One implementation of the loops. `step` returns a positive number if some grain is farther from
+/// its `reference` than its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;
@@ -149,8 +151,7 @@ struct Kernels {
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
 };
 
-/// The implementations that this machine has the instructions for, the fastest first, the scalar
-/// one last.
+/// The implementations that run on this machine: the fastest first, the scalar implementation last.
 std::span<const Kernels* const> kernels_here();
 
 const Kernels& scalar_kernels();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points in the cells of a grid. Used where points are still being added and speed matters little.
+// Points in the cells of a grid, for searches while points are still being added.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace shearcell {
 
 class LinkedCells {
  public:
-  /// For points of a cell in a pose that are up to `reach` [d] apart.
+  /// For searches of points up to `reach` [d] apart in a cell with this pose.
   LinkedCells(const Cell& cell, const WallPose& pose, double reach, std::size_t points) {
     const double size = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
     grid_ = Grid(cell, pose, {size, size, size}, points);

@@ -15,8 +15,9 @@
 namespace shearcell {
 namespace {
 
-/// The smallest limit of the cgroups (version 2) around this process: its own, as of a batch job,
-/// and all above it. A container sees its own as the root. read(file) gives a limit or NaN.
+/// The smallest limit of the cgroups (version 2) that hold this process: the cgroup of a batch job,
+/// for example, and all cgroups above it. In a container, the root is the cgroup of the container.
+/// read(file) gives a limit or NaN.
 template <class Read>
 double smallest_limit(const char* name, const Read& read) {
   std::filesystem::path group = "/";
@@ -38,7 +39,7 @@ double number_in(std::istream& file) {
   return file >> number ? number : std::nan("");
 }
 
-/// Time of cores per time: `docker run --cpus`.
+/// The number of cores as `docker run --cpus` limits it: processor time per time.
 double cores_in(std::istream& file) {
   const double time = number_in(file), period = number_in(file);
   return time / period;

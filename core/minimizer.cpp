@@ -29,8 +29,8 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
   return std::max(std::sqrt(largest), wall) / force_unit(scene);
 }
 
-// Power and the squares of velocity and force, with the wall's height weighted by its mass. Plain
-// loops in the order of the ids, which the compiler must not reorder.
+// Power, and the squares of velocity and force, where the height of the wall is weighted by its
+// mass. These are plain loops in the order of the ids, since the order decides the bits.
 struct Sums {
   double power, velocity, force;
 };

@@ -23,7 +23,7 @@ float round_down(double margin) {
   return static_cast<float>(margin * (1 - 0x1p-23));
 }
 
-// Margins that no grain may exceed in a cell of this depth.
+// The largest margin of a grain in a cell of this depth [d].
 double largest_margin(double depth) {
   return 0.24 * (depth - 2);
 }
@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// While many grains are fast (a wall that presses loose ones), a wider reach costs less than a
-// search every few dozen steps.
+// While many grains are fast (when a wall presses loose grains together), wider margins cost less
+// than a search every few dozen steps.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;
@@ -166,8 +166,8 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// A pair within its inner margins must be in the outer list, so inner margins are at most the rest
-// of the outer ones. False when that rest is too small for some grain or wall.
+// A pair within its inner margins must be in the outer list, so an inner margin is at most what is
+// left of the outer margin. Returns false if too little is left for some grain or wall.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

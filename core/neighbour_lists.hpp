@@ -2,9 +2,9 @@
 // Neighbour lists: an outer list from a grid search, and an inner list pruned from it, which the
 // kernel reads.
 //
-// With one thin margin for all, bursts of fast grains would require a new search every few dozen
-// steps. So the search uses wide margins, the inner list is pruned often, and the margin of a grain
-// in both (Reference) grows with its speed. None of this changes a result (kernel.hpp).
+// If all grains had the same thin margin, bursts of fast grains would require a new search every
+// few dozen steps. So the search uses wide margins, the inner list is pruned often, and in both
+// lists the margin of a grain grows with its speed. None of this changes a result (kernel.hpp).
 #pragma once
 
 #include <array>
@@ -23,15 +23,15 @@ namespace shearcell {
 
 /// These settings change the speed, never the bits.
 struct ListSettings {
-  double outer_cutoff = 1.25;  ///< for two grains that only follow the shear [d]
-  double inner_cutoff = 1.04;  ///< the same for the inner list
-  double widest_cutoff = 1.6;  ///< for the fastest grains, where the cell is deep enough [d]
+  double outer_cutoff = 1.25;  ///< of the outer list, for two grains that only follow the shear [d]
+  double inner_cutoff = 1.04;  ///< of the inner list, for such grains [d]
+  double widest_cutoff = 1.6;  ///< for the fastest grains if the cell is deep enough [d]
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< keep grains that are near in space near in memory
 
   double outer_margin() const { return 0.5 * (outer_cutoff - 1); }  ///< smallest [d]
   double inner_margin() const { return 0.5 * (inner_cutoff - 1); }
-  /// The same, reduced so that no grain is near a neighbour across both ends of the depth [d].
+  /// Largest margin [d], such that no grain is near a neighbour across both ends of the depth.
   double widest_margin(double depth) const;
 };
 
@@ -48,7 +48,7 @@ class Reference {
 
   /// Distance [d] of the grain from where it would be if it had only followed the shear.
   double moved(const double* rows, std::size_t grain, const WallPose& pose) const;
-  /// Upper bound of the same for all wall grains and wall planes.
+  /// Upper bound of this distance [d] for all wall grains and wall planes.
   double wall_moved(const WallPose& pose) const;
   /// Part of every margin used up by the shear since and by rounding of the reference [d].
   double margin_loss(double tan_theta) const;
@@ -89,8 +89,8 @@ class NeighbourLists {
 
   /// Sets the margins of all grains and wall grains for a new outer list, at most widest_margin().
   void set_outer_margins(const Snapshot& now);
-  /// Builds the outer list and prunes the inner one from it. `order` holds the sites with those
-  /// margins; `id` is the permanent id of each grain in memory.
+  /// Builds the outer list and prunes it to the inner list. `order` holds the sites with the
+  /// margins of set_outer_margins(); `id` is the permanent id of each grain in memory.
   void build(const Snapshot& now, const std::vector<std::int32_t>& id, const CellOrder& order);
   /// Prunes the inner list again. Returns false, leaving it unusable, when the outer list must be
   /// rebuilt first.

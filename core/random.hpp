@@ -15,8 +15,8 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
 /// Two uniform numbers in [0, 1) with 53 random bits each.
 std::array<double, 2> uniform_pair(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
 
-/// A number of mean 0 and variance 1 within +-6, nearly normal: twelve uniform numbers less 6. It
-/// is the same on every machine, which a logarithm or cosine need not be. The last component of
+/// A nearly normal number of mean 0 and variance 1: the sum of twelve uniform numbers minus 6. It
+/// is the same on every machine, since it needs no logarithm or cosine. The last component of
 /// `counter` must be 0.
 double normal_number(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reference implementation of the loops: one grain at a time, the operations in the order that
-// every other version keeps. Compiled for AVX2 as well, because without its fused multiply-add each
-// std::fma calls the C library: the same bits, many times slower.
+// The reference implementation of the loops: one grain at a time. Every other implementation keeps
+// the order of these operations. This file is also compiled for AVX2, since without the fused
+// multiply-add of AVX2 each std::fma calls the C library, which is many times slower.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -70,8 +70,8 @@ Sum contact_sum(const StepTask& t, std::size_t g) {
   return add_contacts(sum, own, t.rows, list, t.neighbours.other_slots[g], t.depth, t.per_depth);
 }
 
-// The square of the distance that a grain has moved since its list was built, less that of what is
-// left of its margin: positive when the list may miss a neighbour.
+// The squared distance that a grain has moved since its list was built, minus the square of what is
+// left of its margin. If this is positive, the list may miss a neighbour.
 double margin_excess(const StepTask& t, std::size_t g, const double* at) {
   const double ry = double{t.reference[1][g]};
   const double wx = at[0] - std::fma(t.tan_theta, ry - t.frame_height, double{t.reference[0][g]});

@@ -27,10 +27,10 @@ constexpr double fluid_share(Fluid fluid) {
   return 0;
 }
 
-/// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w. A
-/// moving bottom wall also carries the grains, so the top wall bears less than P. `top`: a moving
-/// bottom wall is loaded with P A_w and the grains' weight. The top wall then bears P whichever
-/// wall moves, less what rough side walls bear.
+/// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w; since
+/// a moving bottom wall also carries the grains, the top wall then bears less than P. `top`: a
+/// moving bottom wall is loaded with P A_w and the weight of the grains, so the top wall bears P,
+/// except for what rough side walls bear.
 enum class PressureAt : std::uint8_t { moving_wall, top };
 template <>
 inline constexpr auto kNames<PressureAt> = names_in_order<PressureAt>("moving_wall", "top");

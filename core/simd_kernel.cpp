@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over contacts with one grain per vector lane: for AVX2+FMA and AVX-512, chosen at run
-// time, and for NEON. Operations and their order are those of scalar_kernel.cpp.
+// The loops over contacts with one grain per vector lane, for AVX2+FMA and AVX-512 (chosen at run
+// time) and for NEON. The operations and their order are the same as in scalar_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -20,9 +20,9 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Neighbours of a lane whose factors are computed side by side, since each operation of the series
-// waits for the one before. Four fit in 32 registers if the coefficients are not kept there. With
-// 16 registers several are slower than one (README.md).
+// The number of neighbours of a lane whose factors are computed side by side, since each operation
+// of a series waits for the operation before it. Four neighbours fit in 32 registers if the
+// coefficients are not kept there. With 16 registers one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // contact_factor(s) of kCount numbers up to the end of the series.
@@ -58,7 +58,7 @@ HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows
   return separation<kSeam>(own, other, depth, per_depth);
 }
 
-// Adds (1/r - 1) dr over the touching ones of kCount separations of each lane, one after the other.
+// Adds (1/r - 1) dr for the touching ones among kCount separations of each lane, in their order.
 template <std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   V s[kCount], factor[kCount];
@@ -83,7 +83,8 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   }
 }
 
-// Adds (1/r - 1) dr over the touching neighbours; lane l has its k-th at list[k * kLanes + l].
+// Adds (1/r - 1) dr for the touching neighbours. The k-th neighbour of lane l is
+// list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,
@@ -165,8 +166,8 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
   return sum;
 }
 
-// Positions and margins of a block. Neighbours in the next row of cells are the only rows that are
-// not in the cache yet; they follow at about the same pace, so they are fetched as a stream.
+// Positions and margins of a block. Only neighbours in the next row of cells are not in the cache
+// yet. Their places advance at the same pace as the blocks, so they are fetched as a stream.
 HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {
@@ -199,7 +200,7 @@ HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vec
   return raise_excess(excess, t, g, next, margin);
 }
 
-// A block is advanced after the next one is summed, when its own sum is no longer waited for.
+// Sums the next block before it advances a block: by then the sum of that block is complete.
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   if (first == last) return -1;
   const V depth = hn::Set(kD, t.depth);

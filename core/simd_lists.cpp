@@ -36,9 +36,9 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Writes the offsets of the ids to `outer` in ascending id, each at its rank: the number of smaller
-// ids. Two vectors hold nearly every list, and a loop that always has two is predicted; `ids` has
-// room for them behind its end.
+// Writes the offsets of the ids to `outer` in ascending id. The rank of an id is the number of
+// smaller ids. Two vectors hold nearly every list, and the branches of a loop over always two
+// vectors are predicted. `ids` has room for two vectors behind its end.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -62,8 +62,8 @@ HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   return hn::Mul(cutoff, cutoff);
 }
 
-// The sites in and around one cell, copied so that a grain's search is one long loop: the end of
-// each of nine short ones would be mispredicted.
+// The sites in and around one cell, copied so that the search of a grain is one long loop. The ends
+// of nine short loops would be mispredicted.
 class Surroundings {
  public:
   void copy(const CellGrid& grid, std::uint32_t cell) {
@@ -85,7 +85,7 @@ class Surroundings {
     }
   }
 
-  // Finds the sites near the one at `place`, without itself, in any order; returns their number.
+  // Finds the other sites near the site at `place`, in any order. Returns their number.
   std::size_t find_near(const SearchTask& t, std::size_t place,
                         std::int32_t* HWY_RESTRICT found) const {
     const V depth = hn::Set(kD, t.depth);
@@ -185,7 +185,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
   return count;
 }
 
-// The number of grains of the moving wall, which come first in a row.
+// The number of grains of the moving wall in a row, where they come first.
 HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t* kept,
                                          std::size_t count) {
   std::size_t wall = 0;

@@ -17,8 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-// Targets without a fused multiply-add would give other bits; they use the scalar kernel. Vectors
-// of SVE have no size that the compiler knows, so that no struct can hold them.
+// Targets without a fused multiply-add would give other bits; they use the scalar kernel. SVE is
+// left out because the compiler does not know the size of its vectors, so no struct can hold them.
 #define SHEARCELL_HAS_SIMD \
   (HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON)
 #if SHEARCELL_HAS_SIMD
@@ -86,8 +86,7 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
   hn::StoreU(xy_odd, kD, rows + 4);
   hn::StoreU(z_odd, kD, rows + 6);
 #else
-  // Rows of the even and odd 128-bit blocks: {x y} of one block beside {z margin} of the same
-  // block.
+  // Puts {x y} and {z margin} of the same 128-bit block side by side.
   const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
   const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
   const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));

@@ -12,7 +12,7 @@
 namespace shearcell {
 namespace {
 
-// Steps between two watchdog checks, each of which costs about four steps.
+// Steps between two watchdog checks. A check costs as much time as about four steps.
 constexpr std::uint64_t kWatchInterval = 1024;
 
 }  // namespace
@@ -47,8 +47,8 @@ void Simulation::load(const State& state) {
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
   moving_wall_force_y_.assign(room, 0.0);
-  // Spare lanes are far away on one side and the padding of the lists far away on the other, so
-  // that neither touches anything or each other. NaN would not be safe: 0 * NaN.
+  // The spare lanes are far away on one side and the padding of the lists is far away on the other,
+  // so neither touches anything. NaN would not be safe, since 0 * NaN is NaN.
   for (auto& rows : rows_) {
     rows.assign(4 * (room + 1 + walls_.size()), 0.0);
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
@@ -122,7 +122,7 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Contacts at the present positions; `tan_theta` is that of the pose at which margins are checked.
+// Prepares the contact sums at the present positions. The margins are checked at `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();
@@ -132,7 +132,7 @@ void Simulation::set_contacts(double tan_theta) {
   task_.planes = walls_.planes(pose_);
 }
 
-// The excess over the margins at the end of the step.
+// Runs the kernel on all blocks. Returns its excess over the margins at the end of the step.
 double Simulation::over_blocks(const StepTask& task) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
   ++evaluations_;
@@ -141,7 +141,7 @@ double Simulation::over_blocks(const StepTask& task) {
   });
 }
 
-// A step of no time that turns sum_ from zeros into the contact sums. False when the lists were not
+// A step of no time, which writes the contact sums into sum_. Returns false if the lists were not
 // valid.
 bool Simulation::sum_contacts() {
   set_contacts(pose_.tan_theta);
@@ -210,8 +210,8 @@ void Simulation::step_once(const Drive& drive) {
   }
 }
 
-// Drag alone reduces a velocity to a subnormal number, with which each operation takes a hundred
-// times as long. Such a velocity changes no position.
+// Drag alone reduces a velocity to a subnormal number, and operations with subnormal numbers take a
+// hundred times as long. Such a velocity changes no position.
 void Simulation::zero_slowest_velocities() {
   const auto zero = [](double& v) {
     if (v != 0 && std::fabs(v) < 0x1p-1000) v = 0;
@@ -247,7 +247,7 @@ void Simulation::watch(const WatchdogLimits& limits, double time_step) const {
                 .wall_velocity = wall_velocity_});
 }
 
-// Upwards: the load acts inwards, and contacts push the wall by minus what they push the grains by.
+// The force upwards: the load acts inwards, and contacts act on the wall opposite to the grains.
 double Simulation::force_on_wall() const {
   double contacts = 0;
   for (const std::int32_t g : lists_.at_moving_wall()) {
@@ -305,7 +305,7 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites, team_);
-  // The order in memory stays good for longer than the lists of a loose, fast packing are valid.
+  // In a loose, fast packing the order in memory stays good for longer than the lists are valid.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
@@ -315,9 +315,9 @@ void Simulation::rebuild_lists(const Drive& drive) {
   ++counts_.builds;
 }
 
-// Grains that are near in space become near in memory. Within a stretch of memory, grains near the
-// same walls or the seam, and among those grains with equally many neighbours, share a vector:
-// every lane takes as long as the one with the longest list and most branches.
+// Grains that are near in space become near in memory. Within a stretch of memory, a vector gets
+// grains that are near the same walls or the seam, and among these grains with equally many
+// neighbours, because each lane takes as long as the lane with the longest list and most branches.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());

@@ -27,12 +27,12 @@
 
 namespace shearcell {
 
-/// Settings that change the speed of a simulation and not its result.
+/// Settings that change the speed of a simulation, not its result.
 struct SimulationSettings {
   const Kernels* kernels = kernels_here().front();  ///< not null
   std::size_t threads = 1;
   ListSettings lists;
-  WatchdogLimits limits;  ///< decide when a run fails, not what it computes before that
+  WatchdogLimits limits;  ///< decide when a run fails, not what it computes before it fails
 };
 
 /// How often the outer lists were built and the inner lists pruned.
@@ -83,7 +83,7 @@ class Simulation {
   const Cell& cell() const { return cell_; }
   const Scene& scene() const { return scene_; }
   std::size_t grains() const { return id_.size(); }
-  /// How often forces were computed since construction, in steps and in forces().
+  /// How often steps and forces() have computed forces since construction.
   std::uint64_t evaluations() const { return evaluations_; }
   const ListCounts& list_counts() const { return counts_; }
   /// Memory used for grains, walls and lists [bytes].

@@ -11,9 +11,9 @@
 namespace shearcell {
 namespace {
 
-// The parts of a step end within microseconds of each other, so a thread first waits for the others
-// in a short spin and sleeps only then. With fewer cores than threads, the one that it waits for
-// may need this core.
+// The parts of a step end within microseconds of each other, so a thread waits in a short spin
+// before it sleeps. With fewer cores than threads the spin is shorter, since the awaited thread may
+// need this core.
 constexpr int kSpins = 1000, kSpinsWithFewCores = 100;
 
 void relax() {

@@ -18,8 +18,8 @@ namespace shearcell {
 
 class Team {
  public:
-  /// `threads` includes the caller's; 1 starts none. The team is smaller if the system refuses to
-  /// start so many.
+  /// `threads` includes the thread of the caller, so 1 starts none. The team is smaller if the
+  /// system refuses to start this many threads.
   explicit Team(std::size_t threads);
   ~Team();
   Team(const Team&) = delete;
@@ -45,7 +45,7 @@ class Team {
     wait_for_workers();
   }
 
-  /// The largest of what work(first, last) returns for the parts of [0, count).
+  /// Returns the largest result of work(first, last) over the parts of [0, count).
   template <class Work>
   double largest(std::size_t count, Work&& work) {
     run(count, [&](std::size_t thread, std::size_t first, std::size_t last) {

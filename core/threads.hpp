@@ -9,9 +9,9 @@
 
 namespace shearcell {
 
-/// Starts up to workers - 1 threads; the k-th, from 1, calls work(k), and the caller does part 0
-/// itself. Fewer are started when a limit of the system is reached; no result may depend on their
-/// number. `work` must not throw. The threads are joined when the list is destroyed.
+/// Starts up to workers - 1 threads. Thread k, counted from 1, calls work(k); the caller does part
+/// 0 itself. Fewer threads are started if a limit of the system is reached, so no result may depend
+/// on their number. `work` must not throw. The threads are joined when the list is destroyed.
 template <class Work>
 std::vector<std::jthread> start_threads(std::size_t workers, const Work& work) {
   std::vector<std::jthread> threads;

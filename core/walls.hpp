@@ -14,8 +14,8 @@
 
 namespace shearcell {
 
-/// Planes and wall grains in a pose. The permanent id of a wall grain is its place in the order of
-/// the cell, with those of the moving wall first.
+/// Planes and wall grains in a pose. The permanent id of a wall grain is its place in an order
+/// where the grains of the moving wall come first and all others keep the order of the cell.
 class Walls {
  public:
   explicit Walls(const Cell& cell);
@@ -24,14 +24,14 @@ class Walls {
   /// Number of wall grains of the moving wall; they come first.
   std::size_t moving_size() const { return moving_size_; }
 
-  /// The planes, that of the moving wall first, then by WallSide.
+  /// The plane of the moving wall, then the other planes by WallSide.
   std::array<WallPlane, 4> planes(const WallPose& pose) const;
 
   /// Writes the centres of all wall grains [d], with this margin, into rows of 4.
   void place_all(const WallPose& pose, double margin, double* rows) const;
 
-  /// Selects the wall grains that `place` moves: those within `reach` [d] of the height range of
-  /// the cell. Side walls extend beyond the moving wall.
+  /// Selects the wall grains that `place` moves: the wall grains between the planes or up to
+  /// `reach` [d] beyond them. Side walls extend beyond the moving wall.
   void choose_active(const WallPose& pose, double reach);
   const std::vector<std::int32_t>& active() const { return active_; }
 

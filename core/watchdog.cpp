@@ -23,7 +23,8 @@ std::string message(const std::string& quantity, double value, double limit, std
   return text.str();
 }
 
-// Calls visit(row offset, separation, whether it is of the moving wall) for every neighbour.
+// Calls visit(row offset, separation, whether the neighbour belongs to the moving wall) for every
+// neighbour.
 template <class Visit>
 void for_each_neighbour(const WatchTask& task, std::size_t g, Visit&& visit) {
   const double* own = task.rows + 4 * g;
@@ -79,8 +80,8 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Raises `fastest` to the bound of one grain if that exceeds `least`. Almost always the number of
-// neighbours, or else a simpler bound, shows that it does not.
+// Raises `fastest` to the bound of one grain if this bound exceeds `least`. Nearly always the
+// number of neighbours, or else a simpler bound, shows that it does not.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
   const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +
@@ -100,7 +101,7 @@ void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fa
   if (bound > fastest.bound) fastest = {bound, task.id[g]};
 }
 
-// The same for the moving wall itself.
+// Raises `fastest` to the bound of the moving wall if this bound exceeds `least`.
 void bound_wall(const WatchTask& task, double least, Fastest& fastest) {
   const double each = kOnMovingWall / (task.scene.wall_mass * task.cell.width * task.cell.depth);
   std::vector<std::size_t> near;

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// A quantity is over its limit. what() gives the numbers and what to change.
+/// A quantity exceeds its limit. what() states the numbers and what to change.
 class NumericalFailure : public std::runtime_error {
  public:
   NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,

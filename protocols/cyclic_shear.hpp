@@ -9,8 +9,8 @@
 
 namespace shearcell {
 
-/// When checkpoints are due: after every `every_cycles` cycles, at the `steps` of each cycle that
-/// follows such a checkpoint, and at the end of the last cycle.
+/// When checkpoints are due: after every `every_cycles` cycles; at the `steps` of each cycle that
+/// follows such a checkpoint; and at the end of the last cycle.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()

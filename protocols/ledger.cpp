@@ -10,7 +10,8 @@
 namespace shearcell {
 namespace {
 
-// Wall grains may stand that far behind their plane, and a grain touches within one diameter [d].
+// Largest distance [d] of a touching grain from a wall plane: the centre of a wall grain is at most
+// one diameter behind the plane, and the centre of the grain one diameter from it.
 constexpr double kWallReach = 2;
 
 // Positions of the grains that may touch a wall.
@@ -27,7 +28,7 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
 }
 
 // Generalized forces of the grains on the walls. A point of a wall at height y is displaced in x by
-// (y - top) tan(theta); a horizontal wall moves as a whole: its y is that of its plane.
+// (y - top) tan(theta). A horizontal wall moves as a whole, so y is the height of its plane.
 struct WallForces {
   double on_tilt = 0;  // conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
   // Conjugate to the moving wall's height times tan(theta) [m d/s^2]: sum of f_x on a moving bottom
@@ -59,8 +60,8 @@ WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
   return sum;
 }
 
-// Adds `sign` times the energies at a whole step: of the positions of one state, and of the
-// velocities before and half a step later, in the next.
+// Adds `sign` times the energies at a whole step. The positions are in `here`; the velocities of
+// the whole step are the mean of the velocities in `here` and `after`.
 void add_energies(const Cell& cell, const Scene& scene, const State& here, const State& after,
                   const WallPose& pose, double sign, Ledger& sum) {
   double elastic = 0;

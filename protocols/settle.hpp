@@ -7,7 +7,7 @@
 
 namespace shearcell {
 
-/// Most time steps of a stage that are counted: every whole number up to it is a double too.
+/// Largest number of time steps of a stage. A double represents every whole number up to it.
 inline constexpr double kMostSteps = 1e15;
 
 /// Time between checks of whether a packing has settled [s].
@@ -16,7 +16,7 @@ inline constexpr double kSettleCheckInterval = 0.1;
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
-  double time_limit = 60;           ///< [s]; longer, at a check, is an error
+  double time_limit = 60;           ///< [s]; a packing that takes longer is an error
   double overlap_limit =
       WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
 };
@@ -41,9 +41,9 @@ double pressing_time(const Scene& scene, double height, double per_area);
 /// load.
 class Settle {
  public:
-  /// `scene` is the final one, with gravity.
+  /// `scene` is the scene with gravity.
   Settle(const SettleParameters& parameters, const Scene& scene);
-  /// As Protocol::advance.
+  /// See Protocol::advance.
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;
 
   /// pressing_time() in steps, a multiple of the check interval, at most the time limit. 0 without
@@ -69,8 +69,8 @@ class Settle {
   std::uint64_t limit_steps_;
 };
 
-/// Presses the grains together without gravity for as long as Settle does: a dense packing that has
-/// not come to rest, at step 0.
+/// Presses the grains together without gravity for as long as Settle does. The result is a dense
+/// packing that has not come to rest, at step 0.
 State pressed(const Cell& cell, const State& loose, Scene scene);
 
 }  // namespace shearcell

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Raises the spring constant of a settled packing in equal factors (hard-grain limit, supplement
-// B.2) and minimizes the enthalpy after each.
+// Raises the spring constant of a settled packing by equal factors (hard-grain limit, supplement
+// B.2) and minimizes the enthalpy after each factor.
 #pragma once
 
 #include "core/minimizer.hpp"
@@ -9,18 +9,18 @@
 namespace shearcell {
 
 struct StiffenParameters {
-  std::uint64_t steps_per_decade = 4;  ///< each raises k by 10^(1/steps_per_decade)
-  std::uint64_t steps = 9;             ///< number of stiffnesses; the first is that of the scene
+  std::uint64_t steps_per_decade = 4;  ///< a step raises k by 10^(1/steps_per_decade)
+  std::uint64_t steps = 9;  ///< number of stiffnesses; the first is the scene's stiffness
   MinimizeSettings minimize;
 };
 
-/// k_0 10^(step / steps_per_decade), with the same bits everywhere.
+/// k_0 10^(step / steps_per_decade), with the same bits on every machine.
 double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_per_decade);
 
 /// A cycle is one stiffness: the state of cycle n is at rest at k_0 10^((n - 1)/m); cycle 0 is the
 /// settled packing. The step of the simulation is the cycle. No time passes. `scene` holds k_0,
-/// gravity and pressure. Each advance does one whole stiffness: a minimization cannot be continued
-/// from a state.
+/// gravity and pressure. Each advance does one whole stiffness, since a minimization cannot be
+/// continued from a state.
 Protocol stiffen(const StiffenParameters& parameters, const Scene& scene);
 
 }  // namespace shearcell

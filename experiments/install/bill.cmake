@@ -18,7 +18,7 @@ set(licences
   "glibc=LGPL-2.1-or-later" "gmp=LGPL-3.0-or-later OR GPL-2.0-or-later" "hdf5=BSD-3-Clause"
   "highway=Apache-2.0" "libaec=BSD-2-Clause" "libkainjow-mustache=BSL-1.0" "mpfr=LGPL-3.0-or-later"
   "muparser=BSD-2-Clause" "nlohmann-json=MIT" "openssl=Apache-2.0"
-  "sqlite3=blessing" "yaml-cpp=MIT" "zlib=Zlib")
+  "sqlite3=blessing" "utf8proc=MIT" "yaml-cpp=MIT" "zlib=Zlib")
 
 # TEXT as a JSON string, quotes included.
 function(quote result text)

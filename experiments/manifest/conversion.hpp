@@ -81,8 +81,8 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// weight per area if P acts on a moving bottom wall, P plus half of it if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
-/// Time [s] in which drag brings the grains to rest: 18 m/b. The energy of weakly damped vibrations
-/// falls as exp(-b t/m), and must fall by about exp(18) to reach the default
+/// Time [s] after which drag has brought the grains to rest: 18 m/b. The energy of weakly damped
+/// vibrations falls as exp(-b t/m), and must fall by about exp(18) to reach the default
 /// settle_kinetic_tolerance. At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and
 /// 3.0 s at 0.156 s; larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite
 /// without drag.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <ranges>
 #include <set>
 #include <tuple>
@@ -40,8 +41,8 @@ bool is_wide_enough(const Parameters& p) {
   return cell_width(geometry(p)) >= kShallowestCell;
 }
 
-/// "Use at least N grains.", the fewest with which `enough` holds; it must hold for all larger N.
-/// "Use more grains." if N is beyond the range of `grains`.
+/// "Use at least N grains." with the smallest N for which `enough` is true; it must be true for all
+/// larger N. "Use more grains." if N is beyond the range of `grains`.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
   const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
   std::uint64_t few = p.grains, many = most + 1;
@@ -71,7 +72,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value of a parameter, or of "settle.KEY", and where it is stated; null if it is a default.
+  // The value of a parameter or of "settle.KEY", and where it is stated. Null if it is a default.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -87,7 +88,7 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // `cause`: a key to blame if this one is a default.
+  // Reports a problem with the value of `key`, at the place of `cause` if the value is a default.
   void report(string_view key, const string& problem, const string& remedy,
               string_view cause = "") {
     const Setting* stated = find(key);
@@ -102,7 +103,7 @@ struct VariantCheck {
     problems.add(at, key, problem, "", remedy);
   }
 
-  // The last of the keys that is stated; "" if none is.
+  // The last of the keys that the manifest states; "" if it states none.
   string_view last_stated(std::initializer_list<string_view> keys) const {
     string_view last;
     for (const string_view key : keys) last = find(key) != nullptr ? key : last;
@@ -206,7 +207,7 @@ struct VariantCheck {
              "A recorded state is sheared on.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
-      refuse(start.at, "start", "lacks seed", "State that of the recorded run: `seed: 3`.");
+      refuse(start.at, "start", "lacks seed", "State the seed of the recorded run: `seed: 3`.");
     }
     if (!start.run.empty() && find("start_seed") != nullptr) {
       report("start_seed", "does not go with checkpoint, which names one run", "Leave it out.");
@@ -240,8 +241,8 @@ bool is_formula(const string& text) {
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Each label must name a variant of some scale and show something; names of variants of one scale
-/// must look different.
+/// Each label must name a variant of some scale and have visible characters. The names of the
+/// variants of one scale must look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
@@ -262,7 +263,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
     std::vector<json> variants;
     for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept);
     const auto names = variant_names(variants, manifest.labels);
-    // By what a reader sees: the name, and its label or null.
+    // Names with their labels (or null), by what a reader sees.
     std::map<string, std::pair<string, const VariantLabel*>> named;
     for (const json& variant : variants) {
       const string& name = names.at(variant);
@@ -281,7 +282,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                         ? format("gives two variants the same name, '{}'", printable(name))
                         : format("gives two variants names that look the same, '{}' and '{}'",
                                  printable(other), printable(name)),
-                    printable(label->name), "Give each its own.");
+                    printable(label->name), "Give each variant a name of its own.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
@@ -291,8 +292,8 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
 }
 
-/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters, as in
-/// "has an effect only under protocol paused"; "" if it has one.
+/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters: "has an
+/// effect only under protocol paused", for example. "" if it has an effect.
 string without_effect(string_view key, const Parameters& p) {
   const Field* field = find_field(key);
   const Identity identity = field == nullptr ? Identity{} : field->identity;
@@ -336,10 +337,20 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
   }
 }
 
-// What is sound but unlikely to be meant.
+// Advice on parameters that can be simulated but are unlikely to be meant.
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
+  // Kilograms per cubic metre; no solid is outside of this range by far.
+  const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
+  if (density < 0.1 || density > 1e5) {
+    const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
+    advice.push_back(format(
+        "grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. {}", p.diameter_m, p.mass_kg,
+        density,
+        in_mm ? format("If the diameter is in mm, write `diameter_m: {:g}`.", p.diameter_m / 1000)
+              : "Check the units of diameter_m [m] and mass_kg [kg]."));
+  }
   const auto when = [](double seconds) {
     return seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late";
   };
@@ -390,7 +401,7 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   return advice;
 }
 
-// Advice on several variants is one warning.
+// Warns of each advice once, with the variants that it concerns.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::size_t seeds,
                         std::vector<string>& warnings) {
@@ -416,14 +427,14 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// A scale, and a run of each of its variants as figures take them.
+/// A scale, with one planned run of each variant, as figures take them.
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;
   std::vector<FrameRun> runs = {};
 };
 
-/// To the earliest checkpoint that a column needs besides its own.
+/// The number of cycles back to the earliest checkpoint that the column needs.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -438,9 +449,9 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
                 back == 0 ? "" : format(" with another one {} before it", counted(back, "cycle")));
 }
 
-// Whether the run will have a checkpoint at a cycle from `first` to `end`, and one `back` cycles
-// before it. Whether a multiple of the cadence has the earlier one depends on `back` alone, so the
-// first multiple and the last cycle decide.
+// Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
+// `back` cycles before it. For all multiples of the cadence the answer is the same, so only the
+// first multiple, the first cycle and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
@@ -452,7 +463,7 @@ bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
   return false;
 }
 
-/// Why no run has a value that the plot draws; "" if one may have.
+/// Why no run has a value that the plot draws; "" if some run may have one.
 string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRun> runs) {
   const auto [shortest, longest] = std::ranges::minmax(
       std::views::transform(runs, [](const FrameRun& run) { return run.ask.target_cycles; }));
@@ -489,7 +500,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   if (last > run.ask.target_cycles) {
     return format("it asks for cycle {}, and the runs have {}.", last, run.ask.target_cycles);
   }
-  // If one of them lacks a checkpoint, so does one of the first two or the last.
+  // If a cycle of the range has no checkpoint, then the first, second or last cycle has none.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
     if (has_checkpoint(run, cycle, cycle, back)) continue;
     return format(
@@ -499,7 +510,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// Which variants have other packings than the one that the plot subtracts; "" if none has.
+/// Says which variants have other packings than the subtracted variant; "" if none has.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -599,8 +610,8 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   return found;
 }
 
-/// The plots or claims of the figures that the manifest lists, then its own ones, each with its
-/// place for messages.
+/// The plots or claims of the figures that the manifest lists, then the manifest's own plots or
+/// claims. Each comes with its place, for messages.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -653,7 +664,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       const ClaimProblems found = problems_of(claim, here);
       if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
-      // A small scale is for trying: nothing is said where another one can decide the claim.
+      // A small scale is for trying, so there is no warning if another scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);
@@ -690,9 +701,9 @@ void check_variants(const Manifest& manifest) {
     const string path = scale.name.empty() ? "" : "scales." + scale.name;
     if (scale.name == "base") {
       problems.add(scale.at, path, "is the name of runs without a scale", "",
-                   "Choose another one, such as desk.");
+                   "Choose another name, such as desk.");
     }
-    // What the scale itself states; a swept key of `base` is the sweep's default.
+    // A scale must not state a key that it sweeps. `base` may: its value has no effect here.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -2,14 +2,17 @@
 #include "experiments/manifest/document.hpp"
 
 #include <fmt/format.h>
+#include <utf8proc.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <boost/locale/utf.hpp>
+#include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/trim_all.hpp>
 #include <cctype>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -26,17 +29,20 @@ Position position(const YAML::Mark& mark) {
 }
 
 struct Character {
-  std::size_t length = 0;  // [bytes]; 0 when the bytes are not UTF-8
+  std::size_t length = 0;  // [bytes]; 0 if the bytes are not UTF-8
   char32_t code_point = 0;
 };
 
+const utf8proc_uint8_t* bytes_of(string_view text) {
+  return reinterpret_cast<const utf8proc_uint8_t*>(text.data());
+}
+
 // Decodes the first character of `text`.
 Character decode(string_view text) {
-  namespace utf = boost::locale::utf;
-  const char* end = text.data();
-  const auto c = utf::utf_traits<char>::decode(end, text.data() + text.size());
-  if (c == utf::illegal || c == utf::incomplete) return {};
-  return {static_cast<std::size_t>(end - text.data()), c};
+  utf8proc_int32_t c = 0;
+  const auto length = utf8proc_iterate(bytes_of(text), std::ssize(text), &c);
+  if (length <= 0) return {};
+  return {static_cast<std::size_t>(length), static_cast<char32_t>(c)};
 }
 
 // Control characters, line ends, and characters that change the direction of text (Bidi_Control in
@@ -46,21 +52,14 @@ bool is_control(char32_t c) {
          (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
 
-// Blanks other than the space, which look like it.
-bool is_odd_blank(char32_t c) {
-  return c == 0xA0 || c == 0x1680 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F || c == 0x205F ||
-         c == 0x2800 || c == 0x3000;
-}
-
-// Characters that take no room (Default_Ignorable_Code_Point in Unicode).
-bool is_invisible(char32_t c) {
-  constexpr std::pair<char32_t, char32_t> ranges[] = {
-      {0xAD, 0xAD},       {0x34F, 0x34F},    {0x61C, 0x61C},   {0x115F, 0x1160}, {0x17B4, 0x17B5},
-      {0x180B, 0x180F},   {0x200B, 0x200F},  {0x202A, 0x202E}, {0x2060, 0x206F}, {0x3164, 0x3164},
-      {0xFE00, 0xFE0F},   {0xFEFF, 0xFEFF},  {0xFFA0, 0xFFA0}, {0xFFF0, 0xFFFB}, {0x1BCA0, 0x1BCA3},
-      {0x1D173, 0x1D17A}, {0xE0000, 0xE0FFF}};
-  return std::ranges::any_of(
-      ranges, [c](const auto& range) { return c >= range.first && c <= range.second; });
+// Characters that a reader does not see, or that look like a space. U+2800 is a Braille cell
+// without dots.
+bool is_unseen(char32_t c) {
+  const auto code_point = static_cast<utf8proc_int32_t>(c);
+  const utf8proc_category_t category = utf8proc_category(code_point);
+  return category == UTF8PROC_CATEGORY_CF || category == UTF8PROC_CATEGORY_CN || c == 0x2800 ||
+         (category == UTF8PROC_CATEGORY_ZS && c != ' ') ||
+         utf8proc_get_property(code_point)->ignorable != 0;
 }
 
 // Code points that are no characters; XML does not allow the last two.
@@ -340,9 +339,7 @@ Node read_document(string_view text, string_view file) {
 }
 
 std::string printable(string_view text, std::size_t longest) {
-  return escaped(text, longest, [](char32_t c) {
-    return is_control(c) || is_odd_blank(c) || is_invisible(c) || is_noncharacter(c);
-  });
+  return escaped(text, longest, [](char32_t c) { return is_control(c) || is_unseen(c); });
 }
 
 std::string without_controls(string_view text) {
@@ -354,16 +351,15 @@ std::string for_terminal(string_view text) {
 }
 
 std::string as_seen(string_view text) {
-  std::string seen;
-  while (!text.empty()) {
-    const auto [length, c] = decode(text);
-    const bool blank = c == ' ' || is_odd_blank(c);
-    if (blank && !seen.empty() && seen.back() != ' ') seen += ' ';
-    if (!blank && !is_invisible(c)) seen += text.substr(0, length);
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  if (seen.ends_with(' ')) seen.pop_back();
-  return seen;
+  utf8proc_uint8_t* mapped = nullptr;
+  const auto length =
+      utf8proc_map(bytes_of(text), std::ssize(text), &mapped,
+                   static_cast<utf8proc_option_t>(UTF8PROC_STABLE | UTF8PROC_COMPOSE |
+                                                  UTF8PROC_IGNORE | UTF8PROC_LUMP));
+  std::string seen = length < 0 ? std::string(text) : std::string(mapped, mapped + length);
+  std::free(mapped);
+  boost::algorithm::replace_all(seen, "\xe2\xa0\x80", " ");  // U+2800
+  return boost::algorithm::trim_fill_copy(seen, " ");
 }
 
 }  // namespace shearcell

@@ -21,7 +21,7 @@ struct Node {
   bool quoted = false;           ///< written in quotes or as a block
   std::vector<Node> parts = {};  ///< items of a list, or values of a map, whose keys differ
   std::string key = {};          ///< of a value of a map
-  Position key_at = {};          ///< place of the key; of an item, that of its list
+  Position key_at = {};          ///< place of the key; of an item, place of its list's key
   std::string path = {};         ///< to this key, as in "scales.smoke.grains"
 
   bool is_scalar() const { return kind == Kind::scalar; }
@@ -45,9 +45,10 @@ inline constexpr const char* kDecimalPoint =
 /// characters other than tabs and line ends.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text fit for a one-line message. Escapes control characters, characters that change the
-/// direction of text, bytes that are not UTF-8, code points that are no characters, invisible ones,
-/// and blanks that look like a space, as \x1b or \u202e. Cuts it to `longest` bytes.
+/// Makes a text fit for a one-line message. Escapes, as \x1b or \u202e, control characters,
+/// characters that change the direction of text, bytes that are not UTF-8, code points that are no
+/// characters, invisible characters, and blanks other than the space. Cuts the text to `longest`
+/// bytes.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text fit for a terminal: like printable(), but keeps blanks and invisible characters,
@@ -57,8 +58,9 @@ std::string without_controls(std::string_view text);
 /// without_controls() of each line.
 std::string for_terminal(std::string_view text);
 
-/// The text as a reader sees it, to compare names: without invisible characters and blanks at the
-/// ends, with one space for other blanks. "" if there is nothing to see.
+/// The text as a reader sees it, to compare names: composed (NFC in Unicode), without invisible
+/// characters, with one space for blanks and none at the ends, and with one character for those
+/// that look alike, such as minus and hyphen. "" if there is nothing to see.
 std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

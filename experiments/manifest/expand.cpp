@@ -80,8 +80,8 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: the facts that all runs of the scale share; `recorded`: the run whose state it begins
-// with, or null; `file`: that of its grains.
+// `common`: the facts that all runs of the scale share. `recorded`: the run with whose state this
+// run begins, or null. `file`: the file of its grains.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
@@ -96,7 +96,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
-    // Variants that start from one packing share it, so its place says no variant.
+    // Variants may share a packing, so the place of a packing names no variant.
     Membership& packing = run.prepare->memberships.emplace_back(common);
     packing.place.variant = "packing";
     packing.place.seed = seed;
@@ -110,7 +110,8 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   return run;
 }
 
-// `place`: manifest, experiment and scale.
+// Gives each variant the number of cycles that the same version of the manifest asked for earlier,
+// if that number is larger. `place`: manifest, experiment and scale.
 void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
   std::map<std::string, std::uint64_t> longest;  // by variant
@@ -204,7 +205,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
       const PlannedRun& run =
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
-        const PlacedGrains grains = placed(*plan.file, run.packing, seed);  // or says why it cannot
+        const PlacedGrains grains =
+            placed(*plan.file, run.packing, seed);  // throws if they do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         const Cell& cell = grains.cell;
         const double height = std::fabs(grains.state.wall_height -

@@ -20,12 +20,12 @@ namespace shearcell {
 struct ExpandOptions {
   std::optional<std::string> scale = {};       ///< default: `desk`, or `base` without scales
   std::optional<std::uint64_t> cycles = {};    ///< instead of the manifest's
-  std::optional<std::uint64_t> seeds = {};     ///< how many; of listed seeds the first ones
+  std::optional<std::uint64_t> seeds = {};     ///< number of seeds, the first ones of a list
   std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
-  std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these; empty for all
+  std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
   std::optional<std::string> engine = {};      ///< instead of the manifest's; part of the variant
-  /// Stages of the store, and those that are computed before. If this manifest asked them for more
-  /// cycles before, warnings assume that larger number.
+  /// Stages of the store, and stages that are computed before this manifest. If this manifest asked
+  /// for more cycles earlier, warnings assume that larger number.
   std::span<const Stage> known = {};
 };
 
@@ -42,19 +42,19 @@ struct Plan {
   std::string scale;
   std::optional<PackingText> file = {};  ///< the grains of all packings
   std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
-  std::vector<std::string> warnings;     ///< sound but unlikely to be meant; one line each
-  std::string read = {};                 ///< what was read of the file, in one line
+  std::vector<std::string> warnings;     ///< of what is unlikely to be meant; one line each
+  std::string read = {};                 ///< what was read from the file of grains, in one line
 };
 
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// A run of each variant as figures take it, without seed and checkpoints.
+/// One run of each variant as figures take it, without seed and checkpoints.
 std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
                                    std::span<const Variant> variants);
 
-/// Adds the runs of the plan to `known`, or extends them there, with all cycles that the plan asks
-/// for, so that the `start` of another manifest can name them.
+/// Adds the runs of the plan to `known`, as if all their cycles were computed, so that the `start`
+/// of another manifest can name them.
 void add_as_computed(const Plan& plan, std::vector<Stage>& known);
 
 /// Whether LAMMPS computes any run of the plan.

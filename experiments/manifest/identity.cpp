@@ -18,7 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-// Must change if the meaning of a key changes, so that keys of different meanings never collide.
+// This text must change if the meaning of a key changes, so that keys of different meanings never
+// collide.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
 json as_json(const Field& field, std::string_view text) {

@@ -14,11 +14,11 @@
 
 namespace shearcell {
 
-/// A file of grains that a packing is made of, instead of loose grains.
+/// The file of grains that a packing begins with, instead of loose grains.
 struct StartFile {
   std::string sha256;                   ///< of the text, which the store keeps
-  std::optional<LengthUnit> unit = {};  ///< if the manifest states it
-  bool settles = false;                 ///< the grains settle further; else they stay as placed
+  std::optional<LengthUnit> unit = {};  ///< of lengths, if the manifest states it
+  bool settles = false;                 ///< whether the grains settle further
 };
 
 /// A stage, as read from its `resolved` record. Lengths, and parameters that do not affect the
@@ -53,12 +53,13 @@ struct UnreadableRecord : std::runtime_error {
 /// range. Compare stage_key(resolved) with the run's id as well.
 StageInputs read_stage(const nlohmann::json& resolved);
 
-/// The parameters that affect the stage: those that the record states, and those that it omits at
-/// the value of all older runs. Left out are constants of the record (Identity::recorded_as), since
-/// the run may have had other values. For a damaged record, the stated parameters.
+/// The parameters that affect the stage: the parameters that the record states, and the parameters
+/// that it omits because they have the value of all older runs. Constants of the record
+/// (Identity::recorded_as) are left out, since the run may have had other values. If the record is
+/// damaged, the result is the parameters that it states.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
-/// The engine that a record names, even if the record is damaged otherwise.
+/// The engine that a record names, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
 /// JSON without whitespace, keys sorted by their bytes, doubles as the shortest digits that read

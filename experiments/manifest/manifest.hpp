@@ -31,7 +31,7 @@ struct ManifestLimits {
   static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
 };
 
-/// Place in the manifest's text, counted from 1; line 0 means the whole file.
+/// Place in a text, counted from 1; line 0 means the whole file.
 struct Position {
   int line = 0;
   int column = 0;
@@ -120,19 +120,19 @@ std::string_view why_not_until(std::string_view measure);
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);
 
-/// The inverse. The JSON is not trusted: throws std::runtime_error.
+/// The inverse of to_json(). The JSON is not trusted: throws std::runtime_error.
 Until until_from_json(const nlohmann::json& json);
 
 /// "crystalline_percent >= 10 and 15 more cycles".
 std::string describe(const Until& until);
 
-/// `until`, or `until: none` in a scale, and where it was written.
+/// The value of `until`, and where it was written; nothing for `until: none` in a scale.
 struct StatedUntil {
   std::optional<Until> until;
   Position at;
 };
 
-/// `checkpoints`, and where it was written.
+/// The value of `checkpoints`, and where it was written.
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
   std::vector<double> phases = {};  ///< of the cycle after a checkpoint; ascending, 0 < p < 1
@@ -160,7 +160,7 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};    ///< "" for that of the shear
   std::string variant = {};  ///< swept values; "" if the experiment has one variant
-  /// Instead of experiment, scale and variant: the beginning of the id in `checkpoint`.
+  /// The beginning of the run's id in `checkpoint`, instead of experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -168,7 +168,7 @@ struct Start {
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }
 };
 
-/// A scale: an entry of `scales` completed from the top level of the manifest, or that top level
+/// A scale: an entry of `scales` completed from the top level of the manifest, or this top level
 /// itself.
 struct Scale {
   std::string name = {};  ///< "" for the manifest itself
@@ -184,8 +184,9 @@ struct Scale {
   /// Ids, or in older manifests statements, of the claims that the runs of this scale are made to
   /// decide.
   std::vector<std::string> primary = {};
-  std::vector<std::uint64_t> looks = {};  ///< ascending numbers of seeds; empty: one, at all seeds
-  std::set<std::string> own = {};         ///< keys that an entry of `scales` states itself
+  std::vector<std::uint64_t> looks =
+      {};                          ///< ascending numbers of seeds; empty: one look at the end
+  std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
 };
 
 struct Manifest {
@@ -194,7 +195,7 @@ struct Manifest {
   std::string experiment;
   Position experiment_at;
   std::string question;
-  /// The experiments whose runs the plots and claims are of; empty: its own.
+  /// The experiments whose runs the plots and claims use; empty: this experiment.
   std::vector<std::string> of;
   std::vector<std::string> figures;
   std::vector<VariantLabel> labels;
@@ -237,8 +238,8 @@ std::string manifest_markdown();
 /// problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
-/// read_manifest() of a text in a store. If this version of the program cannot read it: a manifest
-/// that states nothing, not even its experiment.
+/// Reads the text of a manifest in a store. If this version of the program cannot read the text,
+/// the result is an empty manifest, without even a name.
 Manifest recorded_manifest(std::string_view text);
 
 }  // namespace shearcell

@@ -28,16 +28,17 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can hold. `wall`: 0 or the first type for a grain, more for a wall grain.
+/// What a column can hold. kWall is 0 or the first type for a grain, and larger for a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
 
-/// What a column's name says. A quantity is read of the columns with the lowest rank.
+/// The meaning of a column's name. A quantity is read from the columns whose meaning has the lowest
+/// rank.
 struct Meaning {
-  string_view names;        ///< in small letters; of one value each: the k-th is `first` + k
-  int first = kQuantities;  ///< kQuantities: none that is known
-  int count = 1;            ///< of values
+  string_view names;        ///< in small letters; if count is 1, the k-th means `first` + k
+  int first = kQuantities;  ///< first quantity of the column; kQuantities: not known
+  int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
   enum { listed, second_best, probable } rank = listed;
   std::optional<LengthUnit> unit = {};  ///< that the name states
@@ -52,8 +53,8 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"id", kId},
                                  {"wall_side", kWall}};
 
-// What the reader of a format finds. Its texts are parts of the file, by which messages find their
-// line, or constants.
+// What the reader of a format finds. Texts are constants or parts of the file; a message finds the
+// line of such a part.
 
 struct Column {
   string_view name;             ///< "" if it has none
@@ -79,7 +80,7 @@ struct Box {
   std::array<bool, 3> follows{};
 };
 
-/// A value of a row that is read.
+/// A field of each row that is read.
 struct Use {
   int quantity;
   std::size_t field;
@@ -100,7 +101,7 @@ string_view unquoted(string_view text) {
   return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
-/// Where the first field of the text ends; quotes at its beginning enclose separators.
+/// The end of the first field of the text. Separators between quotes at its beginning do not count.
 std::size_t field_end(string_view text, string_view separators) {
   std::size_t from = std::min(text.find_first_not_of(' '), text.size());
   while (from < text.size() && text[from] == '"') {  // "" is a quote
@@ -124,10 +125,11 @@ std::vector<string_view> split(string_view text, char separator) {
 }
 
 /// `units`: whether listed names may end in a unit, as x_m. A name that is not listed may mean a
-/// diameter, which is then compared with the run's, or a velocity, which is then refused: a packing
-/// made of such a file has had none until now, and its id must not get another state.
+/// diameter, which is then compared with the diameter of the run, or a velocity, which is then
+/// refused. It must be refused: earlier versions ignored such velocities, and the id of a packing
+/// must keep its state.
 Meaning meaning_of(string_view column, bool units) {
-  // A prefix of LAMMPS, the stem, a unit or index.
+  // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
       "([cf]_|d2?_(?=...)|v_(?!(?:[xyzmd]|.m)(?:\\W|_|$)))?(.+?)"
       "(_([md])(_per_s)?|[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
@@ -197,9 +199,7 @@ class PackingReader {
       "It takes extended XYZ (its first line is the number of grains), LAMMPS data (\"500 atoms\" "
       "in its header), a LAMMPS dump, or CSV whose first line names the columns, as x_m,y_m,z_m.";
 
-  // --- Refusing ---
-
-  /// Of a part of the text.
+  /// The place of a part of the text.
   Position place(string_view part) const {
     const string_view before =
         text_.substr(0, static_cast<std::size_t>(part.data() - text_.data()));
@@ -211,7 +211,7 @@ class PackingReader {
   [[noreturn]] void refuse_file(const string& problem, const string& remedy) const {
     refuse(file_, {}, "", problem, "", remedy);
   }
-  /// `in`: the line, or a part of it.
+  /// Refuses the file because of the line that `in` belongs to.
   [[noreturn]] void refuse_line(string_view in, const string& problem, const string& remedy) const {
     refuse(file_, {place(in).line, 1}, "", problem, "", remedy);
   }
@@ -219,8 +219,6 @@ class PackingReader {
                                 const string& remedy) const {
     refuse(file_, place(part), key, problem, printable(part), remedy);
   }
-
-  // --- Lines and numbers ---
 
   bool next_line() {
     if (rest_.empty()) return false;
@@ -258,9 +256,8 @@ class PackingReader {
     return all;
   }
 
-  // --- The formats: each finds units, box and named columns, and names what else there is ---
-
-  /// The rest of the file: the grains, whose number a line may have stated.
+  /// Reads the rest of the file, which holds the grains. `count` is their number if a line states
+  /// it.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -298,14 +295,12 @@ class PackingReader {
     return columns;
   }
 
-  /// Names what is not read; of very many, the first.
+  /// Adds a name to not_read_, unless there are very many.
   void leave(string_view name) {
     constexpr std::size_t most = 100;
     if (name.empty() || not_read_.size() == most) return;
     if (std::ranges::count(not_read_, printable(name)) == 0) not_read_.push_back(printable(name));
   }
-
-  // XYZ and extended XYZ
 
   /// The pairs KEY=VALUE of a comment. Blanks may be around `=`, and quotes around VALUE.
   static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
@@ -403,9 +398,7 @@ class PackingReader {
     box_->planes = {low, low + size};
   }
 
-  // LAMMPS data
-
-  /// Whether the first lines hold one such as "500 atoms".
+  /// Whether one of the first lines is such as "500 atoms".
   bool states_atoms() const {
     static const std::regex count("[0-9][ \\t]+atoms");
     return std::regex_search(string(rest_.substr(0, 2000)), count);
@@ -448,8 +441,8 @@ class PackingReader {
     }
   }
 
-  /// The title states units, and in exports of this program the planes of the cell. Returns whether
-  /// it is one of these.
+  /// Reads the units from the title; in an export of this program also the planes of the cell.
+  /// Returns whether the file is such an export.
   bool read_title() {
     static const std::regex unit(
         "\\bunits?\\b\\W{1,9}(m|si|d|lj|cgs|real|metal|micro|nano|electron|[cmun]m)\\b");
@@ -481,7 +474,8 @@ class PackingReader {
     set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
-  /// `style` as LAMMPS writes it after "Atoms #", or "": then the number of fields decides.
+  /// Takes the columns from the style that LAMMPS writes after "Atoms #". If there is none, the
+  /// number of fields decides.
   void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
     if (style.empty()) style = five ? "atomic" : seven ? "sphere" : style;
@@ -501,8 +495,6 @@ class PackingReader {
     if (ours) grains_.columns[1].name = "wall_side";  // of a wall's grain more than 1
     grains_.first_wall = 2;
   }
-
-  // LAMMPS dumps
 
   void read_dump() {
     std::optional<std::uint64_t> count;
@@ -528,7 +520,7 @@ class PackingReader {
     refuse_line(line_, "the dump ends before its atoms", "Write the whole dump.");
   }
 
-  /// The present line is the first of three.
+  /// Reads the three lines of the box, of which the present line is the first.
   void read_dump_box(string_view item) {
     const bool leans = item.find("xy") != item.npos;
     const std::vector<string_view> words_of_item = split(item, ' ');
@@ -547,14 +539,12 @@ class PackingReader {
     }
   }
 
-  // CSV
-
   static char separator_of(string_view header) {
     const std::size_t at = field_end(header, ",;\t");
     return at == header.npos ? ',' : header[at];
   }
 
-  /// The line without what numpy writes before it.
+  /// The line without the # and blanks that numpy writes before it.
   static string_view header_of(string_view line) {
     return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
   }
@@ -577,9 +567,7 @@ class PackingReader {
     read_rows();
   }
 
-  // --- What is read of it ---
-
-  /// The value of a key that states the unit of lengths; "lj" may be any.
+  /// Takes the unit of lengths from the value of a key. The value "lj" leaves the unit open.
   void take_unit(const char* key, string_view text) {
     const string unit = lower(text);
     if (unit == "lj") return;
@@ -592,7 +580,7 @@ class PackingReader {
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// `in` is of the line that states the unit.
+  /// Sets the unit of lengths; `in` is a part of the line that states it.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {
@@ -625,7 +613,7 @@ class PackingReader {
     }
   }
 
-  /// Decides which columns are read, and names the others.
+  /// Decides which columns are read. Other columns are named in not_read_.
   std::vector<Use> interpret(const GrainTable& table) {
     constexpr std::size_t most = 1000;
     if (table.columns.size() > most) {
@@ -694,7 +682,7 @@ class PackingReader {
     }
   }
 
-  /// The grains of a table; wall grains are left out.
+  /// The rows of a table, without wall grains.
   std::vector<GrainRow> rows_of(const GrainTable& table, const std::vector<Use>& uses) {
     std::size_t columns = 0;
     for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
@@ -727,7 +715,7 @@ class PackingReader {
     return rows;
   }
 
-  /// Gives the grains the velocities of the other table, by id.
+  /// Gives each grain its velocity from the table of velocities, by id.
   void join_velocities() {
     std::map<double, GrainRow*> waiting;
     for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
@@ -746,8 +734,6 @@ class PackingReader {
                 fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
                 "Write a velocity for each atom, each once, or leave the section out.");
   }
-
-  // --- The packing ---
 
   void require_equal_diameters() const {
     if (!holds(uses_, kDiameter)) return;
@@ -768,7 +754,7 @@ class PackingReader {
                     about_diameter_);
   }
 
-  /// From the unit of the file to diameters.
+  /// The factor from the unit of the file to diameters.
   double scale() {
     const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
     if (!unit) {
@@ -852,7 +838,8 @@ class PackingReader {
     return packing;
   }
 
-  /// In x and y; z is periodic and gets wrapped.
+  /// Refuses grains that are outside of the box in x or y. Wraps z, which is periodic, into the
+  /// box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
     if (depth < kShallowestCell) {
@@ -880,7 +867,7 @@ class PackingReader {
     }
   }
 
-  /// Stops at the first pair, so that many grains at one place do not take long.
+  /// Refuses the first pair that overlaps too much, so that many grains at one place take no time.
   void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
     const Eigen::Vector3d size = space.sizes();
     Cell cell;

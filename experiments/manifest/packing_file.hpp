@@ -27,13 +27,13 @@ struct PackingFile {
   Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z within the box if there is one
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; of an export, the planes of its cell
-  LengthUnit unit = LengthUnit::d;           ///< in which the file was read
-  std::vector<std::string> not_read;         ///< names of columns, sections and keys; of many, some
+  LengthUnit unit = LengthUnit::d;           ///< of the file's lengths
+  std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
 };
 
-/// What a file may leave to the manifest and to the parameters of the run.
+/// Facts that the manifest and the parameters of the run add to a file.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< for a file that does not state one
+  std::optional<LengthUnit> unit = {};  ///< of lengths, for a file that states no unit
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< of two grains [d], below 1
 };

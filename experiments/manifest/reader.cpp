@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a manifest. `fields` describes the keys of each struct once: Reader reads and checks them,
-// and keys_markdown() documents them.
+// Reads a manifest. fields() describes the keys of each struct once: Reader reads and checks the
+// keys, and keys_markdown() documents them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/trim_all.hpp>
 #include <cctype>
 #include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <ranges>
+#include <regex>
 #include <set>
 #include <span>
 #include <utility>
@@ -31,6 +33,11 @@
 #include "provenance/words.hpp"
 
 namespace shearcell {
+
+enum class Spacing : std::uint8_t { linear, log };
+template <>
+inline constexpr auto kNames<Spacing> = names_in_order<Spacing>("linear", "log");
+
 namespace {
 
 using nlohmann::json;
@@ -41,7 +48,7 @@ using Names = std::vector<string_view>;
 constexpr std::size_t kLongestLabel = 120, kLongestPath = 1000;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kCycles = {0, StoreLimits::cycles};
-// A double holds it exactly, so readers in any language can.
+// A double represents every whole number up to this one exactly.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
 template <class... More>
@@ -50,7 +57,7 @@ Names joined(Names names, const More&... more) {
   return names;
 }
 
-// The parameters that distinguish runs. The record of a run does not hold the others.
+// The parameters whose values distinguish runs.
 Names parameters() {
   return names_of(schema() | std::views::filter([](const Field& field) {
                     return field.identity.distinguishes_runs();
@@ -63,7 +70,6 @@ Names measures(MeasureKind kind) {
   return names;
 }
 
-// The parameters that are numbers.
 Names numbers() {
   return names_of(schema() | std::views::filter(std::not_fn(&Field::is_choice)));
 }
@@ -74,7 +80,7 @@ void fields(Checkpoints& checkpoints, const auto& visit) {
         {.name = "phases", .range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
 }
 
-// Of a measure as a key of `until`.
+// A measure as a key of `until`.
 Field field_of_until(const Measure& one) {
   const bool counts = one.kind == MeasureKind::count;
   Field field{.name = one.name, .unit = one.unit, .whole = counts};
@@ -98,11 +104,12 @@ void fields(Sweep& sweep, const auto& visit) {
 
 void fields(Start& start, const auto& visit) {
   visit(start.experiment, {.name = "experiment", .doc = "whose recorded run it is"});
-  visit(start.scale, {.name = "scale", .doc = "of that experiment; default: that of the shear"});
+  visit(start.scale,
+        {.name = "scale", .doc = "of that experiment; default: the scale of the shear"});
   visit(start.variant,
         {.name = "variant",
-         .doc = "swept values that single out a variant of that experiment; default: "
-                "those of the keys that both sweep",
+         .doc = "swept values that single out a variant of that experiment; default: this "
+                "variant's values of the keys that both sweep",
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
   visit(start.run, {.name = "checkpoint",
@@ -113,19 +120,21 @@ void fields(Start& start, const auto& visit) {
   visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
   visit(start.settings, {.name = "cycle", .doc = "parameter start_cycle, default 0"});
   visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
-  visit(start.file, {.name = "file",
-                     .doc = "instead of a recorded run: a file of grains, named from the folder of "
-                            "the manifest. They settle further if `settle` is stated, be it `{}`",
-                     .example = "packing.extxyz",
-                     .longest = kLongestPath});
-  visit(start.unit, {.name = "unit", .doc = "of a file that states none"});
+  visit(start.file,
+        {.name = "file",
+         .doc = "instead of a recorded run: a file of grains; its path is relative to "
+                "the manifest. The grains settle further if `settle` is stated, even as "
+                "`{}`",
+         .example = "packing.extxyz",
+         .longest = kLongestPath});
+  visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file states none"});
 }
 
 void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
-         .doc = "parameters that vary: `grid` takes every combination, keys of `zip` advance "
-                "together",
+         .doc = "parameters that vary, with lists or ranges of values: `grid` takes every "
+                "combination, keys of `zip` advance together",
          .example = "{grid: {fluid: [still, cell]}}"});
   visit(scale.settle,
         {.name = "settle",
@@ -139,7 +148,10 @@ void fields(Scale& scale, const auto& visit) {
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
-        {.name = "seeds", .doc = "seeds 1 to 6, or a list; default 1", .example = "6"});
+        {.name = "seeds",
+         .doc = "6 stands for the seeds 1 to 6, `2001-2040` and `[1-6, 9]` for other seeds; "
+                "default 1",
+         .example = "6"});
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "cycles between checkpoints, default 1, and always one after the last cycle; "
@@ -221,9 +233,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .example = "{fluid: [still, cell]}"});
   visit(plot.minus,
         {.name = "minus",
-         .doc = "swept values that single out a variant: `y` is less that of this variant's run "
-                "with the same packing, at the same cycle. Runs without such a partner are counted "
-                "in the caption",
+         .doc = "swept values that single out a variant. Its `y`, for the same packing and cycle, "
+                "is subtracted. The caption counts runs without such a partner",
          .example = "{steps_per_cycle: 45600}"});
   visit(plot.by, {.name = "by",
                   .doc = "one curve for each value of this parameter; averaging over another swept "
@@ -250,7 +261,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
        .doc = "label of the axis, formulas between `$`: `drag $b$ [kg/s]`. For another unit, take "
               "an expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
        .longest = kLongestLabel});
-  visit(plot.ylabel, {.name = "ylabel", .doc = "likewise", .longest = kLongestLabel});
+  visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
   visit(
       plot.series,
       {.name = "series",
@@ -299,21 +310,21 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .example = "S2.phi",
          .longest = kLongestName});
   visit(claim.id, {.name = "name", .doc = "the older name of `id`"});
-  visit(claim.figure, {.name = "figure", .doc = "as of a plot; default: from `id`"});
+  visit(claim.figure, {.name = "figure", .doc = "see `figure` of a plot; default: from `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; as `y` of a plot, but no curve",
+                        .doc = "required; see `y` of a plot, but no curve",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
   visit(claim.estimator, {.name = "estimator",
-                          .doc = "what is estimated; default: as the other keys imply",
+                          .doc = "what is estimated; by default the other keys imply it",
                           .names = estimators});
-  visit(
-      claim.against,
-      {.name = "against",
-       .doc = "of `estimator: slope`: the column on the other axis, at each run's first checkpoint",
-       .names = can_be_compared,
-       .terms = terms});
+  visit(claim.against,
+        {.name = "against",
+         .doc =
+             "for `estimator: slope`: the column on the other axis, at each run's first checkpoint",
+         .names = can_be_compared,
+         .terms = terms});
   visit(claim.where,
         {.name = "where",
          .doc = "selects runs of all sides: values, lists of values, or ranges `{min: 5200}`",
@@ -337,16 +348,18 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.between[0], {.name = "of",
                            .doc = "with `published`: swept values that single out the variant",
                            .example = "{fluid: still}"});
+  visit(
+      claim.margin,
+      {.name = "margin",
+       .range = {0, kInfinity, true},
+       .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches` it limits log2 of "
+              "the ratio of both waiting times: 1 is a factor of 2 (log-rank test, which counts "
+              "runs that end before)"});
   visit(claim.margin,
-        {.name = "margin",
+        {.name = "relative_margin",
          .range = {0, kInfinity, true},
-         .doc = "in the unit of the measure; of `onset_size_cycle` and `reaches`, of log2 of the "
-                "ratio of both waiting times (log-rank test, which counts runs that end before): 1 "
-                "is a factor of 2"});
-  visit(claim.margin, {.name = "relative_margin",
-                       .range = {0, kInfinity, true},
-                       .doc = "instead of `margin`: of the relative difference, 0.03 for 3 %, from "
-                              "the means of logarithms"});
+         .doc = "instead of `margin`: limit of the relative difference, 0.03 for 3 %, "
+                "from the means of logarithms"});
   visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
   visit(claim.cycles, {.name = "cycles",
                        .range = kCycles,
@@ -361,10 +374,11 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                         .doc = "or the value whose first cycle is compared"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
-                          "`lower`: the first is so by more than the margin"});
+                          "`lower`: the first side is higher or lower by more than the margin"});
   visit(claim.statement, {.name = "statement",
                           .doc = "what the claim says, for people; default: from its keys",
-                          .longest = 300});
+                          .longest = 300,
+                          .folds = true});
   visit(claim.optional, {.name = "optional",
                          .doc = "`true`: no verdict where a scale lacks one of the variants",
                          .example = "true"});
@@ -377,12 +391,12 @@ void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.question, {.name = "question",
                             .doc = "what the experiment is to find out, for people",
                             .example = "Does the fluid matter?",
-                            .longest = 2'000});
+                            .longest = 2'000,
+                            .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "in place of `base`, `sweep` and the like: the experiments of the store "
-                "whose runs the plots and claims are of. In selections, `experiment` is "
-                "a key",
+         .doc = "instead of all keys that state runs: the experiments of the store whose runs "
+                "the plots and claims use. In selections, `experiment` is a key",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -423,7 +437,30 @@ std::vector<Field> keys_of() {
   return keys;
 }
 
-// A node as messages quote it.
+// Values of a swept parameter from one to another.
+struct ValueRange {
+  double from = 0, to = 0;
+  std::uint64_t count = 0;
+  Spacing spacing = Spacing::linear;
+};
+constexpr string_view kRangeExample = "{from: 300, to: 3000, count: 5, spacing: log}";
+
+void fields(ValueRange& range, const auto& visit) {
+  constexpr Range any = {-kInfinity, kInfinity};
+  visit(range.from, {.name = "from", .range = any, .doc = "the first value", .required = true});
+  visit(range.to, {.name = "to", .range = any, .doc = "the last value", .required = true});
+  visit(range.count, {.name = "count",
+                      .range = {2, ManifestLimits::values_per_list},
+                      .doc = "how many values, both ends included",
+                      .required = true});
+  visit(range.spacing,
+        {.name = "spacing",
+         .doc =
+             "equal steps (`linear`, the default) or equal ratios (`log`). Values between the "
+             "ends are rounded to 12 significant digits, those of whole numbers to whole numbers"});
+}
+
+// The node as messages quote it.
 string shown(const Node& node) {
   switch (node.kind) {
     case Node::Kind::null:
@@ -438,10 +475,18 @@ string shown(const Node& node) {
   return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
 }
 
-// "It takes [1, 15].", or what the key takes if it has no example.
+// "It takes `[1, 15]`." with the example of the key; without one, the values that the key takes.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
+}
+
+// The remedy for a value that is not a map. For `start`, it is the map that a text probably means.
+string remedy_for(const Node& in, const Field& about) {
+  if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
+  const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
+  const char* key = holds('@') ? "checkpoint" : holds('.') || holds('/') ? "file" : "experiment";
+  return fmt::format("Write `{{{}: {}}}`.", key, printable(in.text));
 }
 
 // Whether the node is a colour such as "#0072b2".
@@ -456,32 +501,34 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// Keys that people try for what the model does not have, with the nearest that it has.
-const std::pair<std::vector<string_view>, string_view> kNotModelled[] = {
-    {{"friction", "mu", "rolling_friction"},
-     "Grains are frictionless. `shearcell export --to lammps` writes a packing for LAMMPS, which "
-     "has friction."},
-    {{"restitution", "damping", "viscosity"},
-     "Contacts do not dissipate; only the drag of the fluid does: drag_kg_per_s."},
-    {{"contact_law", "contact_model", "hertz", "youngs_modulus", "poisson_ratio"},
-     "Contacts are linear springs: stiffness_N_per_m. `shearcell export --to lammps` writes a "
-     "packing for LAMMPS, which has other laws."},
-    {{"polydispersity", "size_ratio", "bidisperse", "radii", "diameters"},
-     "All grains are equal: diameter_m. `shearcell export --to lammps` writes a packing for "
-     "LAMMPS, which has unequal grains."},
-    {{"radius"}, "State the diameter: diameter_m."},
-    {{"temperature", "thermostat"}, "Grains have no thermal motion; the walls move them."},
-    {{"initial", "positions"},
-     "Each run settles its own packing from loose grains, which `seeds` draw, or begins with a "
-     "recorded state or the grains of a file: `start: {file: packing.extxyz}`."}};
+// A valid expression that a text of another notation probably means, such as phi^2 for phi**2; ""
+// if there is none.
+string meant_expression(const string& text) {
+  static const std::pair<std::regex, const char*> notations[] = {
+      {std::regex("\\*\\*"), "^"},
+      {std::regex("\xc2\xb2"), "^2"},
+      {std::regex("\xc2\xb3"), "^3"},
+      {std::regex("\xc2\xb7|\xc3\x97"), "*"},
+      {std::regex("\xc3\xb7"), "/"},
+      {std::regex("\xe2\x88\x92"), "-"},
+      {std::regex("\\b(np|numpy|math)\\."), ""},
+      {std::regex("\\blog\\("), "ln("},
+      {std::regex("\\bpow\\(([^(),]+),([^(),]+)\\)"), "($1)^($2)"},
+      {std::regex("(^|[-+*/^(] *)([0-9]*\\.?[0-9]+) *(?=[A-Za-z_(])(?![eE][-+0-9])"), "$1$2*"}};
+  if (text.size() > 200) return "";  // std::regex uses the stack
+  string meant = text;
+  for (const auto& [notation, ours] : notations) meant = std::regex_replace(meant, notation, ours);
+  return is_expression(meant) && wrong_in_expression(meant).empty() ? meant : "";
+}
 
-// Reads values into members of their types. Problems are reported, and reading continues.
+// Reads the values of keys into the members of structs. After a problem, reading continues, so that
+// all problems are reported at once.
 struct Reader {
   ProblemList& problems;
-  const Scale& base;                             // what is stated for all scales
-  std::span<const Figure> figures_to_list = {};  // that the manifest may list
+  const Scale& base;                             // the keys that are stated for all scales
+  std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
 
-  // Reports what a manifest of other experiments' runs cannot state.
+  // Reports keys that do not go with `of`.
   void check_of(const Node& document) {
     if (document.find("of") == nullptr) return;
     for (const char* key :
@@ -492,7 +539,7 @@ struct Reader {
     }
   }
 
-  // Reports a problem with the value, and quotes it.
+  // Reports a problem at the value and quotes the value.
   void reject_value(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.at, in.path, problem, shown(in), remedy);
   }
@@ -500,14 +547,14 @@ struct Reader {
   void reject_type(const Node& in, string_view wanted, const string& remedy) {
     reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
-  // Reports a problem at the value, or at the key, without a quotation.
+  // Reports a problem at the value, or at the key, without quoting it.
   void reject(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.at, in.path, problem, "", remedy);
   }
   void reject_key(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.key_at, in.path, problem, "", remedy);
   }
-  // Of a key that is stated and may not be.
+  // Reports a problem of `in`, if it is stated and `wrong` is true.
   void reject_if(bool wrong, const Node* in, const string& problem, const string& remedy) {
     if (wrong && in != nullptr) reject(*in, problem, remedy);
   }
@@ -515,42 +562,44 @@ struct Reader {
     if (wrong && in != nullptr) reject_value(*in, problem, remedy);
   }
 
-  // Reports that the key is not one of those `allowed` in its map, with the nearest of them.
+  // Reports a key that is not one of the `allowed` keys of its map, and says what to write.
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
     if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
     if (read_number<double>(in.key)) {
       return reject_key(in, "is a number where a key belongs", kDecimalPoint);
     }
-    for (const auto& [names, instead] : kNotModelled) {
-      for (const string_view name : names) {
-        if (in.key == name || in.key.starts_with(string(name) + "_")) {
-          return reject_key(in, "is not modelled", string(instead));
-        }
-      }
-    }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
+    }
+    const Tried* tried = find_tried(in.key, allowed);
+    if (tried != nullptr && !tried->remark.empty()) {
+      return reject_key(in, tried->instead.empty() ? "is not modelled" : "is an unknown key",
+                        string(tried->remark));
     }
     if (find_named(sections, in.key) != nullptr) {
       return reject_key(in, "does not belong here", "Move it to the top level.");
     }
     const string near = suggest_name(in.key, allowed);
-    if (lower(near).starts_with(lower(in.key) + "_")) {
-      reject_key(in, "is written without its unit", fmt::format("Write {}.", near));
-    } else if (!near.empty()) {
-      reject_key(in, "is an unknown key", fmt::format("Did you mean {}?", near));
-    } else if (allowed.size() <= sections.size()) {
-      reject_key(in, "is an unknown key", fmt::format("Known here: {}.", fmt::join(allowed, ", ")));
-    } else {
-      reject_key(in, "is an unknown key", "`shearcell manual` lists the keys.");
-    }
+    const Field* field = find_field(near);
+    const string unit =
+        field != nullptr && has_unit(*field) ? fmt::format(", in {}", field->unit) : "";
+    const bool few = allowed.size() < 30;
+    reject_key(in, "is an unknown key",
+               !near.empty() ? fmt::format("Did you mean {}{}?", near, unit)
+               : few         ? fmt::format("Known here: {}.", fmt::join(allowed, ", "))
+                             : "`shearcell manual` lists the keys.");
   }
 
-  // The value of a number or choice; nothing after a problem with its type or range.
+  // Reads a number or a choice. Returns nothing after a problem with its type or range.
   std::optional<json> read_scalar(const Node& in, const Field& about) {
     if (!in.is_scalar()) {
-      reject_type(in, "a single value", remedy_of(about));
+      const bool varies = about.get != nullptr && in.kind != Node::Kind::null;  // a parameter
+      reject_type(in, "a single value",
+                  varies ? fmt::format("To vary it, write `sweep: {{{}{}: [VALUES]}}}}`.",
+                                       is_length(about.name) ? "zip: {KEY: [VALUES], " : "grid: {",
+                                       about.name)
+                         : remedy_of(about));
       return std::nullopt;
     }
     auto read = read_value(about, in.text, in.quoted);
@@ -561,7 +610,8 @@ struct Reader {
     return std::get<json>(std::move(read));
   }
 
-  // The items of a list; empty after a problem, as with an empty or too long list.
+  // The items of a list. Reports any other value, an empty list and a list that is too long, and
+  // then returns no items.
   std::span<const Node> items_of(const Node& in, string_view example) {
     constexpr std::size_t most = ManifestLimits::values_per_list;
     const std::size_t count = in.parts.size();
@@ -579,10 +629,12 @@ struct Reader {
     return {};
   }
 
-  // Whether the expression can be evaluated, and has known terms.
+  // Whether the expression can be evaluated and all names in it are known.
   bool check_expression(const Node& in, const Field& about) {
     if (const string wrong = wrong_in_expression(in.text); !wrong.empty()) {
-      reject_value(in, wrong, expression_syntax());
+      const string meant = meant_expression(in.text);
+      reject_value(in, wrong,
+                   meant.empty() ? expression_syntax() : fmt::format("Write `{}`.", meant));
       return false;
     }
     bool of_run = false, of_checkpoint = false;
@@ -606,7 +658,7 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Reads a parameter and its value into `where`.
+  // Adds a parameter and its value, list of values or range to `where`.
   void read_where(const Node& in, json& where) {
     static const Field experiment = {.name = "experiment", .longest = kLongestName};
     if (in.key == experiment.name) {
@@ -620,7 +672,8 @@ struct Reader {
     const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
     if (field == nullptr) return reject_unknown(in, parameters());
     if (field != &cycle && !field->identity.distinguishes_runs()) {
-      return reject_key(in, "does not distinguish runs", "Name a parameter that does.");
+      return reject_key(in, "does not distinguish runs",
+                        "Name a parameter that distinguishes runs.");
     }
     if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
     if (in.kind == Node::Kind::list) {
@@ -643,7 +696,8 @@ struct Reader {
     }
   }
 
-  // Reads the key, or with `text` the value, "fluid=still,amplitude_rad=0.05".
+  // Reads parameters and values from the key, as in "fluid=still,amplitude_rad=0.05"; with `text`,
+  // from the value.
   json read_selector(const Node& in, bool text = false) {
     json where = json::object();
     for (string_view rest = text ? in.text : in.key; !rest.empty();) {
@@ -668,7 +722,7 @@ struct Reader {
     return where;
   }
 
-  // Reads the value of one of the keys; false if it is none of them.
+  // Reads a key of T. Returns false if T has no such key.
   template <HasFields T>
   bool read_key(const Node& in, T& value) {
     bool known = false;
@@ -707,21 +761,23 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // One of the names or an expression of terms, a text, or a name.
+  // Reads a text. By `about`, it is one of some names or an expression, a free text, or a name.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
-    if (in.is_scalar() && !about.terms.empty() && is_expression(text)) {
+    const bool takes_expressions = in.is_scalar() && !about.terms.empty();
+    if (takes_expressions && (is_expression(text) || !meant_expression(text).empty())) {
       if (check_expression(in, about)) value = text;
     } else if (!about.besides.empty() && is_rgb(in)) {
       value = text;
     } else if (about.is_choice()) {
       if (const auto read = read_scalar(in, about)) read->get_to(value);
     } else if (about.longest > 0) {
-      if (!in.is_scalar() || text.size() > about.longest || text.find('\n') != text.npos) {
+      value = about.folds ? boost::algorithm::trim_fill_copy(text, " ") : text;
+      if (!in.is_scalar() || value.size() > about.longest || value.find('\n') != value.npos) {
         return reject_type(in, "a plain text",
-                           fmt::format("It takes one text of at most {} bytes.", about.longest));
+                           fmt::format("It takes one {} of at most {} bytes.",
+                                       about.folds ? "text" : "line", about.longest));
       }
-      value = text;
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
                       "has a $ without its partner", "A formula stands between two $.");
     } else if (in.is_scalar() && is_name(text)) {
@@ -734,8 +790,8 @@ struct Reader {
     }
   }
 
-  // The two sides of a claim, a first and a last cycle, of a key without example the same one, or
-  // the ends of a window.
+  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. The
+  // value of a key without an example is both.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -757,14 +813,17 @@ struct Reader {
       fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
     }
     if (fits || problems.size() > problems_before) return;
-    reject(in,
-           sides   ? "does not name two variants"
-           : whole ? "is not a first and a last cycle"
-                   : "is not a window from a low to a high value",
-           remedy_of(about));
+    const bool reversed = !sides && parts.size() == 2 && both[1] < both[0];
+    reject(
+        in,
+        sides   ? "does not name two variants"
+        : whole ? "is not a first and a last cycle"
+                : "is not a window from a low to a high value",
+        reversed ? fmt::format("Write [{}, {}].", parts[1].text, parts[0].text) : remedy_of(about));
   }
 
-  // Measures, or names of columns and their measures. Those of `y` stand before those of `also`.
+  // Reads measures, or a map from names of columns to measures. The columns of `y` come before the
+  // columns of `also`.
   void read(const Node& in, const Field& about, std::vector<ColumnSpec>& all) {
     const bool named = in.is_map(), is_y = about.name == "y", one_y = is_y && in.is_scalar();
     std::vector<ColumnSpec> columns;
@@ -789,7 +848,7 @@ struct Reader {
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // The curves of a plot. A key without `=` is a value of `by`, which check() replaces.
+  // Reads the styles of curves. A key without `=` is a value of `by`; name_series() completes it.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -799,7 +858,7 @@ struct Reader {
     }
   }
 
-  // Points [x, y] or [x, y, error].
+  // Reads points [x, y] or [x, y, error].
   void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
     for (const Node& item : items_of(in, about.example)) {
       const std::size_t problems_before = problems.size();
@@ -815,7 +874,7 @@ struct Reader {
     }
   }
 
-  // Parameters and their values, as a map or as "fluid=still,amplitude_rad=0.05".
+  // Reads parameters and their values: a map, or a text such as "fluid=still,amplitude_rad=0.05".
   void read(const Node& in, const Field& about, json& where) {
     where = json::object();
     if (in.is_scalar() && in.text.find('=') != string::npos) {
@@ -826,7 +885,7 @@ struct Reader {
     for (const Node& part : in.parts) read_where(part, where);
   }
 
-  // Ascending numbers: of seeds, or phases of a cycle.
+  // Reads ascending numbers: the looks, or the phases of a cycle.
   template <class T>
   requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
                                               std::vector<T>& numbers) {
@@ -847,7 +906,7 @@ struct Reader {
     }
   }
 
-  // Figures of the supplement, or claims.
+  // Reads different names: of figures, experiments or claims.
   void read(const Node& in, const Field& about, std::vector<string>& names) {
     for (const Node& item : items_of(in, about.example)) {
       string name;
@@ -877,7 +936,7 @@ struct Reader {
     }
   }
 
-  // Reads a parameter; false if it is none.
+  // Reads a parameter. Returns false if the key is not a parameter.
   bool read_parameter(const Node& in, Settings& settings) {
     const Field* field = find_field(in.key);
     if (field == nullptr) return false;
@@ -889,9 +948,15 @@ struct Reader {
     return true;
   }
 
-  // Those of `base` or of `settle`, or one of `start`.
+  // Reads the parameters of `base` or `settle`; for a key of `start`, the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
-    if (about.name != "base" && about.name != "settle") return read_start(in, settings);
+    if (about.name != "base" && about.name != "settle") {
+      const string key = "start_" + in.key;
+      if (auto value = read_scalar(in, *find_field(key))) {
+        settings[key] = {std::move(*value), in.at};
+      }
+      return;
+    }
     settings.clear();
     for (const Node& part : settings_in(in)) {
       const Field* field = find_field(part.key);
@@ -899,8 +964,10 @@ struct Reader {
         reject_unknown(part, names_of(schema()));
       } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
         const bool of_shear = field->identity.stage != StageKind::prepare;
-        reject_key(part, of_shear ? "has no effect on a packing" : "is one for packing and shear",
-                   "State it in `base` or in a scale.");
+        reject_key(
+            part,
+            of_shear ? "has no effect on a packing" : "must be the same for packing and shear",
+            "State it in `base` or in a scale.");
       }
     }
   }
@@ -909,16 +976,6 @@ struct Reader {
     if (in.kind == Node::Kind::map) return in.parts;
     reject_type(in, "a map of parameters", "Indent `key: value` lines under it.");
     return {};
-  }
-
-  // `seed`, `cycle` or `noise_d`.
-  void read_start(const Node& in, Settings& settings) {
-    const string key = "start_" + in.key;
-    if (!in.is_scalar()) {
-      reject_type(in, "a single value", fmt::format("`sweep` takes lists of {}.", key));
-    } else if (auto value = read_scalar(in, *find_field(key))) {
-      settings[key] = {std::move(*value), in.at};
-    }
   }
 
   void read(const Node& in, const Field&, std::vector<Scale>& scales) {
@@ -947,7 +1004,25 @@ struct Reader {
     }
   }
 
-  // The axes of `grid` or `zip`.
+  // The values of a range as a manifest would list them; none after a problem.
+  std::vector<Node> written_out(const Node& in, const Field& field) {
+    ValueRange range;
+    const std::size_t problems_before = problems.size();
+    read(in, {.example = kRangeExample, .wanted = "a range"}, range);
+    if (problems.size() > problems_before) return {};
+    std::vector<Node> values(range.count, *in.find("from"));
+    values.back() = *in.find("to");
+    for (std::size_t k = 1; k + 1 < range.count; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(range.count - 1);
+      const double value = range.spacing == Spacing::log
+                               ? range.from * std::pow(range.to / range.from, part)
+                               : range.from + part * (range.to - range.from);
+      values[k].text = fmt::format("{:.12g}", field.whole ? std::nearbyint(value) : value);
+    }
+    return values;
+  }
+
+  // Reads the axes of `grid` or `zip`.
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
     if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
     for (const Node& part : in.parts) {
@@ -961,12 +1036,17 @@ struct Reader {
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
         reject_key(part, "cannot be swept, since another value does not make another run",
-                   length ? "Set it in `base` or in a scale, or zip it with a key that does."
-                          : "Set it in `base` or in a scale.");
+                   field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
+                   : length ? "Set it in `base` or in a scale, or zip it with a key that does."
+                            : "Set it in `base` or in a scale.");
         continue;
       }
       SweepAxis& axis = axes.emplace_back(SweepAxis{part.key, part.key_at, {}});
-      for (const Node& item : items_of(part, "[1, 2]")) {
+      const bool is_range = part.kind == Node::Kind::map && !field->is_choice();
+      const std::vector<Node> range = is_range ? written_out(part, *field) : std::vector<Node>();
+      const string example = field->is_choice() ? fmt::format("[{}]", fmt::join(field->names, ", "))
+                                                : "[1, 2], or " + string(kRangeExample);
+      for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
         if (is_auto(*field, item)) {
           reject(item, "cannot be swept as `auto`",
                  "Set it in `base` or in a scale; it then follows the variant.");
@@ -999,7 +1079,7 @@ struct Reader {
     if (!sweep.zip.empty()) check_zip(sweep.zip, in.path + ".zip");
   }
 
-  // Reports rows of values that repeat an earlier one.
+  // Reports each row of values that repeats an earlier row.
   void check_rows(std::span<const SweepAxis> axes, const string& path, const char* row_of) {
     std::set<json> seen;
     for (std::size_t row = 0; row < axes.front().values.size(); ++row) {
@@ -1032,22 +1112,44 @@ struct Reader {
   }
 
   void read(const Node& in, const Field&, Seeds& seeds) {
-    seeds = {.counted = in.kind != Node::Kind::list, .at = in.key_at};
+    const auto is_range = [](const Node& node) { return node.text.find('-', 1) != string::npos; };
+    seeds = {.counted = in.kind != Node::Kind::list && !is_range(in), .at = in.key_at};
     if (seeds.counted) {
       std::uint64_t count = 1;
-      read(in, {.range = {1, ManifestLimits::runs}, .whole = true}, count);
+      read(in,
+           {.range = {1, ManifestLimits::runs},
+            .besides = ", a range such as 1-6, or a list such as [3, 5]",
+            .whole = true},
+           count);
       seeds.values.resize(count);
       std::iota(seeds.values.begin(), seeds.values.end(), 1);
       return;
     }
     seeds.values.clear();
-    for (const Node& item : items_of(in, "[3, 5]")) {
-      std::uint64_t seed = 0;
-      read(item, {.range = {1, kLargestSeed}, .whole = true}, seed);
-      if (seed != 0 && std::ranges::count(seeds.values, seed) > 0) {
-        reject_value(item, "repeats a seed", "Keep one of them.");
+    std::set<std::uint64_t> known;
+    for (const Node& item : is_range(in) ? std::span(&in, 1) : items_of(in, "[3, 5]")) {
+      std::array<std::uint64_t, 2> ends = {};
+      for (const bool last : {false, true}) {
+        Node end = item;
+        if (is_range(item)) {
+          const std::size_t dash = item.text.find('-', 1);
+          end.text = trimmed(last ? item.text.substr(dash + 1) : item.text.substr(0, dash));
+        }
+        read(end, {.range = {1, kLargestSeed}, .whole = true}, ends[last ? 1 : 0]);
       }
-      seeds.values.push_back(seed);
+      const auto [first, last] = ends;
+      if (first == 0 || last == 0) continue;  // reported
+      if (last < first || last - first >= ManifestLimits::runs - seeds.values.size()) {
+        reject_value(item, "is not a range from a lower to a higher seed",
+                     fmt::format("A scale has at most {} seeds.", ManifestLimits::runs));
+        continue;
+      }
+      for (std::uint64_t seed = first; seed <= last; ++seed) {
+        if (known.insert(seed).second)
+          seeds.values.push_back(seed);
+        else
+          reject_value(item, fmt::format("repeats the seed {}", seed), "Keep one of them.");
+      }
     }
   }
 
@@ -1056,13 +1158,13 @@ struct Reader {
     if (!in.is_scalar() || in.text != "none") read(in, about, stated.until);
   }
 
-  // Any other map.
+  // Reads any other map.
   template <HasFields T>
   void read(const Node& in, const Field& about, T& value) {
     value = {};
     if constexpr (requires { value.at; }) value.at = in.at;
     if (!in.is_map()) {
-      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_of(about));
+      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_for(in, about));
     }
     read_keys(in, value);
     for (const Field& key : keys_of<T>()) {
@@ -1110,7 +1212,10 @@ struct Reader {
     for (const Node& part : in.parts) {
       if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
       if (find_named(known, part.key) == nullptr) continue;  // reported already
-      reject_key(part, fmt::format("does not go with {}", sources.front()), "Leave it out.");
+      reject_key(part, fmt::format("does not go with {}", sources.front()),
+                 part.key == "noise_d" ? "Run a manifest with the file first, and begin with its "
+                                         "state: `{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
+                                       : "Leave it out.");
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
     if (file != nullptr && start.file.empty()) {
@@ -1131,6 +1236,13 @@ struct Reader {
     start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
   }
 
+  void check(const Node& in, const Field&, const ValueRange& range) {
+    reject_if(range.from == range.to, &in, "begins and ends with the same value",
+              "List the value: [1].");
+    reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
+              "has equal ratios, and an end that is not above 0", "Use `spacing: linear`.");
+  }
+
   void check(const Node&, const Field&, const auto&) {}
 
   void check(const Node& in, const Field&, Placed<PlotSpec>& plot) {
@@ -1147,7 +1259,7 @@ struct Reader {
     reject_value_if(is_curve, x, not_with_curve,
                     fmt::format("Leave it out: {} is drawn against {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
-    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another one.");
+    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
               fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
@@ -1181,7 +1293,7 @@ struct Reader {
     }
   }
 
-  // Replaces the values of `by` in the keys of `series`.
+  // Completes the entries of `series` whose key is a value of `by` or the name of a column.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
       json& where = plot.series[k].where;
@@ -1220,8 +1332,9 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // One of some, and not two.
-    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
+    // Reports a claim that states none of the keys (if `lacking` names them) or several of them.
+    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
+                                 const string& remedy = "") {
       const Node* first = nullptr;
       for (const char* key : keys) {
         const Node* one = in.find(key);
@@ -1231,7 +1344,7 @@ struct Reader {
         if (one != nullptr) first = one;
       }
       if (first == nullptr && lacking != nullptr) {
-        reject(in, fmt::format("lacks {}", lacking), remedy_of(about));
+        reject(in, fmt::format("lacks {}", lacking), remedy.empty() ? remedy_of(about) : remedy);
       }
     };
     require_one("id", {"id", "name"});
@@ -1264,7 +1377,9 @@ struct Reader {
     if (claim.compare.empty()) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
     if (!is_of_run(claim.compare)) {
-      require_one("at_cycle or cycles", times);
+      require_one(
+          "at_cycle, cycles, phi or reaches", times,
+          "Write `at_cycle: 10`, `cycles: [1, 15]`, `phi: [0.646, 0.67]` or `reaches: 20`.");
     } else if (const auto stated = std::ranges::find_if(
                    times, [&](const char* key) { return in.find(key) != nullptr; });
                stated != times.end()) {
@@ -1280,7 +1395,7 @@ struct Reader {
               "does not go with a published 0", "Take `margin`.");
   }
 
-  // The ids in `primary` are those of claims that are stated here, or of figures that are listed.
+  // Reports ids in `primary` that no claim of this manifest or of its figures has.
   void check_primary(const Node& document, const Manifest& manifest) {
     std::vector<string> known;
     for (const ClaimSpec& claim : manifest.claims) known.push_back(claim.id);
@@ -1308,9 +1423,9 @@ struct Reader {
     return list == nullptr ? std::span<const Node>() : list->parts;
   }
 
-  // Names of plots and claims, of their figures and of the panels of a plot differ from each other
-  // and from those of the supplement's figures and panels, unless they are parts of such a figure
-  // that is stated here and not in another manifest. `listed`: the `figures` of this manifest.
+  // Reports names of plots, claims, figures or panels that occur twice, and names of figures or
+  // panels of the supplement. This manifest may state a figure of the supplement itself, unless it
+  // lists that figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // each with its figure
@@ -1331,7 +1446,7 @@ struct Reader {
     for (const auto& [own, of] : names) {
       const string& text = own->text;
       if (!is_claim_id(text)) continue;
-      // A figure that another manifest states, and whether it is shown as it stands there.
+      // Whether a manifest states the figure `of`, and whether this manifest lists that figure.
       const bool is_stated = find_named(computed_figures(), of) == nullptr;
       const bool is_listed = std::ranges::count(listed, of) > 0;
       const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {
@@ -1386,7 +1501,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  // Scales begin with what is stated for all of them.
+  // Scales are read last, since each begins with the keys that are stated for all scales.
   std::stable_partition(root.parts.begin(), root.parts.end(),
                         [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;
@@ -1406,7 +1521,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
 
 namespace {
 
-// What a key takes, for a table.
+// The values that a key takes, for a table.
 string takes_markdown(const Field& key) {
   if (key.is_choice() && key.names.size() <= 12)
     return fmt::format("{}", fmt::join(key.names, ", "));
@@ -1425,8 +1540,11 @@ string keys_markdown(string_view head) {
 }  // namespace
 
 string manifest_markdown() {
-  return keys_markdown<Manifest>("example") + "\nOf a start:\n\n" + keys_markdown<Start>("takes") +
-         "\nOf a plot:\n\n" + keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
+  return keys_markdown<Manifest>("example") +
+         "\nOf a range of swept values, as `grid: {pressure_Pa: " + string(kRangeExample) +
+         "}`:\n\n" + keys_markdown<ValueRange>("takes") + "\nOf a start:\n\n" +
+         keys_markdown<Start>("takes") + "\nOf a plot:\n\n" +
+         keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
          keys_markdown<Placed<ClaimSpec>>("takes");
 }
 

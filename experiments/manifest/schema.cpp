@@ -9,7 +9,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <regex>
 
+#include "analysis/expression.hpp"
 #include "core/named.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/document.hpp"
@@ -79,6 +82,33 @@ std::string takes(const Field& field) {
   constexpr std::size_t shown = 20;
   return field.names.size() > shown ? "`shearcell manual` lists them."
                                     : fmt::format("It takes {}.", expected_values(field));
+}
+
+// What to write instead of a text that looks like a number and is none: one with a decimal comma,
+// with separators of thousands, with a power of ten, with a unit, or one to be calculated.
+std::string number_remedy(const Field& field, const std::string& text) {
+  static const std::pair<std::regex, const char*> habits[] = {
+      {std::regex("[ _']|\xc2\xa0|\xe2\x80[\x89\xaf]"), ""},  // spaces, also narrow ones
+      {std::regex("(\\*|x|\xc2\xb7|\xc3\x97)10\\^"), "e"},
+      {std::regex("\\.(?=.*,)|,(?=[0-9]{3}[,.])"), ""}};
+  if (text.size() > 64) return takes(field);  // std::regex uses the stack
+  std::string plain = text;
+  for (const auto& [habit, instead] : habits) plain = std::regex_replace(plain, habit, instead);
+  static const std::regex thousands(",(?=[0-9]{3}$)"), comma(",");
+  plain = field.whole ? std::regex_replace(plain, thousands, "")
+                      : std::regex_replace(plain, comma, ".");
+  if (parse_real(plain)) {
+    return fmt::format("Write {}: a number has a decimal point and no separators.", plain);
+  }
+  if (parse_real(plain.substr(0, plain.find_last_of("0123456789") + 1))) {
+    return fmt::format("Write the number alone{}.",
+                       has_unit(field) ? ", in " + std::string(field.unit) : "");
+  }
+  if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
+    const double value = evaluator_of(text)({});
+    if (field.range.contains(value)) return fmt::format("Write the result, {:.12g}.", value);
+  }
+  return takes(field);
 }
 
 std::string range_markdown(const Field& field) {
@@ -248,14 +278,15 @@ std::string expected_values(const Field& field) {
     return fmt::format("one of {}{}", fmt::join(field.names, ", "), field.besides);
   }
   if (field.whole) {
-    return fmt::format("an integer from {:.0f} to {:.0f}", field.range.min, field.range.max);
+    return fmt::format("an integer from {:.0f} to {:.0f}{}", field.range.min, field.range.max,
+                       field.besides);
   }
   std::string text = "a number";
   if (std::isfinite(field.range.min)) {
     text += fmt::format(" {} {:g}", field.range.min_excluded ? ">" : ">=", field.range.min);
   }
   if (std::isfinite(field.range.max)) text += fmt::format(" and <= {:g}", field.range.max);
-  return field.unit == "1" || field.unit.empty() ? text : text + fmt::format(" [{}]", field.unit);
+  return has_unit(field) ? text + fmt::format(" [{}]", field.unit) : text;
 }
 
 std::variant<json, ValueProblem> read_value(const Field& field, string_view text, bool quoted) {
@@ -269,18 +300,21 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
     return ValueProblem{"is not finite", takes(field)};
   } else {
     const std::optional<double> real = parse_real(text);
-    if (real && !field.range.contains(*real)) return ValueProblem{"is out of range", takes(field)};
-    if (!real && text.find_first_not_of("0123456789,") == text.npos) {
-      std::string point(text);
-      std::ranges::replace(point, ',', '.');
-      return ValueProblem{"is not a number", "A number takes a decimal point: " + point + "."};
+    if (real && !field.range.contains(*real)) {
+      const double radians = *real * std::numbers::pi / 180;
+      const bool degrees = field.unit == "rad" && field.range.contains(radians);
+      return ValueProblem{
+          "is out of range",
+          takes(field) +
+              (degrees ? fmt::format(" {} degrees are {:.6g} rad.", text, radians) : "")};
     }
     if (real && !field.whole && text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
       return ValueProblem{"begins with a zero",
                           fmt::format("{} Else write {}.", kDecimalPoint, *real)};
     }
     if (!real || (field.whole && *real != std::floor(*real))) {
-      return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};
+      return ValueProblem{field.whole ? "is not a whole number" : "is not a number",
+                          real ? takes(field) : number_remedy(field, std::string(text))};
     }
     const auto whole = read_number<std::uint64_t>(text);
     const bool is_plain = whole && (text.size() == 1 || text.front() != '0');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a manifest's keys take and mean, and the table of parameters with their part in a run's
-// identity. Reading, suggestions, identity and experiments/REFERENCE.md use it.
+// The values and meanings of a manifest's keys, and the table of parameters with their part in a
+// run's identity. Reading, suggestions, identity and experiments/REFERENCE.md use this table.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,15 +19,15 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  std::optional<StageKind> stage = {};     ///< first stage that it affects; nothing: in no key
+  std::optional<StageKind> stage = {};     ///< first stage that it affects; nothing: not in an id
   std::optional<ProtocolKind> under = {};  ///< only under this protocol
-  /// The record omits the parameter if it has this value, written as in a manifest: the value of
-  /// all runs that are older than the parameter. It may differ from the default.
+  /// The record omits the parameter if it has this value, written as in a manifest. All runs that
+  /// are older than the parameter have this value. It may differ from the default.
   std::string_view omitted_at = {};
   /// Every record holds this value, whatever the parameter is. For a parameter that is no longer
   /// part of the identity; the records of older runs may hold other values.
   std::string_view recorded_as = {};
-  /// No record holds the parameter: it selects the stage before, whose id is in the record.
+  /// No record holds the parameter: it selects the parent stage, whose id is in the record.
   bool selects_parent = false;
 
   /// Whether another value makes another run.
@@ -54,19 +54,25 @@ struct Field {
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< of a choice: the values
-  std::string_view besides = {};                 ///< what it takes besides its names or example
+  std::string_view besides = {};                 ///< other values, for messages: ", or `none`"
   bool whole = false;                            ///< takes whole numbers alone
   std::span<const std::string_view> terms = {};  ///< names for expressions, if it takes expressions
   std::string_view example = {};                 ///< as YAML
-  std::string_view wanted = {};                  ///< "a map of settings"
+  std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
-  std::size_t longest = 0;  ///< of a free text of one line [bytes]
+  std::size_t longest = 0;  ///< of a free text [bytes]
+  bool folds = false;       ///< the text may have several lines, which become one
   /// A parameter as JSON, and back from a value that has passed check_value; null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 
   bool is_choice() const { return !names.empty(); }
 };
+
+/// Whether the key takes numbers with a unit.
+inline bool has_unit(const Field& field) {
+  return !field.unit.empty() && field.unit != "1";
+}
 
 /// The field, completed with the kind of values of a member of type T.
 template <class T>
@@ -82,13 +88,13 @@ std::span<const Field> schema();
 /// The parameter of that name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the key is the length of a run or the number of seeds. Neither distinguishes runs, but a
-/// zip may give each variant its own.
+/// Whether the key is the length of a run or the number of seeds. These do not distinguish runs,
+/// but a zip may give each variant its own length and number of seeds.
 inline bool is_length(std::string_view key) {
   return key == "cycles" || key == "seeds";
 }
 
-/// What is wrong with a value, and what to write instead.
+/// A problem with a value, and what to write instead.
 struct ValueProblem {
   std::string problem;
   std::string remedy;
@@ -99,7 +105,7 @@ struct ValueProblem {
 std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::string_view text,
                                                       bool quoted);
 
-/// Checks type and range. nullopt if the value may be used.
+/// Checks the type and range of a value. Returns nothing if it may be used.
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
 
 /// Whether the record of a stage holds the parameter when it has that value.

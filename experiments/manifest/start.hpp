@@ -17,14 +17,14 @@
 
 namespace shearcell {
 
-/// The recorded run of `known` whose state the variant begins with: of several variants the one
-/// that has the values of this variant for all keys that both sweep, unless `start` names one.
-/// Throws ManifestError if there is not exactly one, if it has not reached the cycle, or if its
-/// cell or grains are others.
+/// The recorded run among `known` with whose state the variant begins. If `start` names no variant
+/// and the other experiment has several, it is the variant with the same values of all keys that
+/// both experiments sweep. Throws ManifestError if there is not exactly one such run, if the run
+/// has not reached the cycle, or if its cell or grains differ.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 
-/// The text of a file of grains, and what the id of its packing holds of it.
+/// The text of a file of grains, and the facts about it that enter the id of its packing.
 struct PackingText {
   std::string path;  ///< as messages name it
   std::string text;

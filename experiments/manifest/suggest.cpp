@@ -6,8 +6,12 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
+#include <cctype>
+#include <iterator>
+#include <sstream>
 
 #include "experiments/manifest/schema.hpp"
+#include "experiments/manifest/tried_names.hpp"
 
 namespace shearcell {
 namespace {
@@ -15,6 +19,32 @@ namespace {
 using std::string_view;
 
 constexpr std::size_t kLongestGuess = 300;
+
+// The entries of tried_names.txt.
+const std::vector<Tried>& all_tried() {
+  static const std::vector<Tried> all = [] {
+    std::vector<Tried> entries;
+    for (string_view rest = tried_names; !rest.empty();) {
+      const string_view line = rest.substr(0, rest.find('\n'));
+      rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+      const std::size_t first = line.find('|'), second = line.find('|', first + 1);
+      if (line.starts_with('#') || second == line.npos) continue;
+      entries.push_back({trimmed(line.substr(0, first)),
+                         trimmed(line.substr(first + 1, second - first - 1)),
+                         trimmed(line.substr(second + 1))});
+    }
+    return entries;
+  }();
+  return all;
+}
+
+// The name in small letters, with `_` around and between its words.
+std::string as_words(string_view name) {
+  std::string words = fmt::format("_{}_", lower(name));
+  std::ranges::replace_if(
+      words, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return words;
+}
 
 // Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
 std::size_t edit_distance(string_view a, string_view b) {
@@ -45,6 +75,22 @@ string_view trimmed(string_view text) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
+const Tried* find_tried(string_view name, std::span<const string_view> candidates) {
+  if (name.size() > kLongestGuess) return nullptr;
+  const std::string words = as_words(name);
+  const Tried* found = nullptr;
+  for (const Tried& one : all_tried()) {
+    std::istringstream names{std::string(one.names)};
+    const bool fits = std::any_of(std::istream_iterator<std::string>(names), {}, [&](auto& tried) {
+      const std::string tried_words = as_words(tried);
+      return one.remark.empty() ? words == tried_words : words.find(tried_words) != words.npos;
+    });
+    if (fits && std::ranges::count(candidates, one.instead) > 0) return &one;
+    if (fits && found == nullptr && !one.remark.empty()) found = &one;
+  }
+  return found;
+}
+
 std::string suggest_name(string_view unknown, std::span<const string_view> candidates) {
   if (unknown.empty() || unknown.size() > kLongestGuess) return {};
   const std::string written = lower(unknown);
@@ -63,6 +109,10 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
     });
   }
   if (with_unit.size() == 1) return std::string(with_unit.front());
+  const Tried* tried = find_tried(unknown, candidates);
+  if (tried != nullptr && std::ranges::count(candidates, tried->instead) > 0) {
+    return std::string(tried->instead);
+  }
 
   const std::size_t allowed = std::max<std::size_t>(2, written.size() / 3);
   std::size_t nearest = allowed + 1;

@@ -14,8 +14,21 @@
 
 namespace shearcell {
 
+/// Names that people try, and what they mean.
+struct Tried {
+  std::string_view names;    ///< separated by blanks; `_` separates the words of a name
+  std::string_view instead;  ///< our name; "" if the model has no such thing
+  std::string_view remark;   ///< what to write, in whole sentences; may be empty
+};
+
+/// The entry of the table of tried names that fits `name`. An entry with a remark also fits names
+/// that contain its words: `friction` fits `coefficient_of_friction`. If several fit, the first
+/// whose `instead` is among `candidates`, else the first with a remark. Null if none fits.
+const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
+
 /// The nearest of `candidates`: by a parameter's symbol (`N`), by its name without the unit
-/// (`mass`), or by spelling, with up to about a third of the letters wrong. "" if no name is near.
+/// (`mass`), by the table of tried names, or by spelling, with up to about a third of the letters
+/// wrong. "" if no name is near.
 std::string suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
 
 /// The text with small letters for A to Z.
@@ -24,7 +37,7 @@ std::string lower(std::string_view text);
 /// The text without spaces, tabs and line ends at its beginning and end.
 std::string_view trimmed(std::string_view text);
 
-/// "PROBLEM, the nearest is NAME"; "PROBLEM" if no name is near.
+/// "PROBLEM, the nearest is NAME", or "PROBLEM" if no name is near.
 std::string with_nearest(const std::string& problem, std::string_view unknown,
                          std::span<const std::string_view> candidates);
 

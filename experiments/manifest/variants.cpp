@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The swept keys: those of the schema in its order, then others.
+/// The swept keys: parameters in the order of the schema, then other keys.
 std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   std::set<std::string> present;
   for (const json& variant : variants) {
@@ -36,7 +36,7 @@ std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   return keys;
 }
 
-/// The keys whose values still differ when rounded to four digits.
+/// The keys whose different values still differ when rounded to four digits.
 std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
                                     const std::vector<json>& variants) {
   std::set<std::string> found;
@@ -233,7 +233,7 @@ std::map<json, std::string> variant_names(const std::vector<json>& variants,
   const auto some = std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
-  // Of keys that vary together only the first is kept. Those that all variants have come first,
+  // Of keys that vary together only the first is kept. Keys that all variants have come first,
   // since a variant without the kept key would get no name.
   std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some});
   for (const std::string& key : keys_telling_apart(variants, all)) {

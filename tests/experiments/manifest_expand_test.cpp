@@ -93,6 +93,67 @@ sweep:
   EXPECT_EQ(plan.runs[7].parameters.period_s, 3);
 }
 
+Strings ids(const std::string& rest) {
+  Strings found;
+  for (const PlannedRun& run : plan_of("grains: 600", rest).runs) {
+    found.push_back(run.place.variant + " " + run.stage.id);
+  }
+  return found;
+}
+
+TEST(Expand, ARangeIsTheListOfItsValues) {
+  for (const auto& [range, list] : {
+           std::pair{"amplitude_rad: {from: 0.01, to: 0.1, count: 10}",
+                     "amplitude_rad: [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1]"},
+           {"period_s: {to: 2.1, from: 2.7, count: 3, spacing: linear}",
+            "period_s: [2.7, 2.4, 2.1]"},
+           {"pressure_Pa: {from: 300, to: 4800, count: 5, spacing: log}",
+            "pressure_Pa: [300, 600, 1200, 2400, 4800]"},
+           {"pressure_Pa: {from: 300, to: 3000, count: 5, spacing: log}",
+            "pressure_Pa: [300, 533.483823031, 948.683298051, 1687.02397456, 3000]"},
+           {"grains: {from: 500, to: 8000, count: 4, spacing: log}",
+            "grains: [500, 1260, 3175, 8000]"},
+           {"drag_kg_per_s: {from: 0, to: 1.28e-3, count: 2}", "drag_kg_per_s: [0, 1.28e-3]"}}) {
+    for (const char* kind : {"grid", "zip"}) {
+      const auto sweep = [&](const char* values) {
+        return ids(fmt::format("sweep: {{{}: {{{}}}}}\n", kind, values));
+      };
+      EXPECT_EQ(sweep(range), sweep(list)) << kind;
+    }
+  }
+  EXPECT_EQ(ids("sweep: {zip: {amplitude_rad: {from: 0.05, to: 0.1, count: 2}, cycles: [3, 2]}}\n"),
+            ids("sweep: {zip: {amplitude_rad: [0.05, 0.1], cycles: [3, 2]}}\n"));
+}
+
+TEST(Expand, ARangeOfSeedsIsTheListOfItsSeeds) {
+  for (const auto& [range, list] : {std::pair{"2001-2003", "[2001, 2002, 2003]"},
+                                    {"[1-3, 9]", "[1, 2, 3, 9]"},
+                                    {"[9, 4 - 6]", "[9, 4, 5, 6]"},
+                                    {"7-7", "[7]"},
+                                    {"1-6", "6"}}) {
+    EXPECT_EQ(ids(fmt::format("seeds: {}\n", range)), ids(fmt::format("seeds: {}\n", list)));
+  }
+  EXPECT_EQ(message(parse("experiment: a\nseeds: 1-6\n"), {.seeds = 7}),
+            message(parse("experiment: a\nseeds: [1, 2, 3, 4, 5, 6]\n"), {.seeds = 7}));
+}
+
+TEST(Manifest, AQuestionMayHaveSeveralLines) {
+  EXPECT_EQ(parse("experiment: a\nquestion: |\n  Does the fluid\n  matter?\n\n").question,
+            "Does the fluid matter?");
+}
+
+TEST(Expand, WarnsOfGrainsWithAnotherUnit) {
+  const auto warning = [](const std::string& base) {
+    const Strings warnings = plan_of(base).warnings;
+    return warnings.empty() ? "" : warnings.front();
+  };
+  EXPECT_TRUE(has(warning("diameter_m: 3"),
+                  "grains of 3 m and 2e-05 kg have a density of 1.4e-06 kg/m^3. If the diameter is "
+                  "in mm, write `diameter_m: 0.003`."));
+  EXPECT_TRUE(has(warning("mass_kg: 20"), "Check the units of diameter_m [m] and mass_kg [kg]."));
+  EXPECT_FALSE(has(warning("diameter_m: 1, mass_kg: 1"), "density")) << "reduced units";
+}
+
 TEST(Expand, ScalesOverrideBaseSeedsSweepAndCadence) {
   const Manifest manifest = parse(R"(
 experiment: sizes

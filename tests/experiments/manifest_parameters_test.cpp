@@ -45,8 +45,23 @@ TEST(Suggest, FindsTheIntendedName) {
   EXPECT_EQ(suggest_name("stiffness", names), "stiffness_N_per_m");
   EXPECT_EQ(suggest_name("settle", names), "") << "two of them lack their unit";
   EXPECT_EQ(suggest_name("colour", names), "");
+  EXPECT_EQ(suggest_name("omega", names), "period_s");
+  EXPECT_EQ(suggest_name("Angular frequency", names), "period_s");
+  EXPECT_EQ(suggest_name("number_of_particles", names), "grains");
   EXPECT_EQ(suggest_name("", names), "");
   EXPECT_EQ(suggest_name(std::string(100'000, 'm'), names), "");
+}
+
+TEST(Suggest, KnowsWhatPeopleTry) {
+  const auto names = names_of(schema());
+  const auto remark = [&](const char* name) {
+    const Tried* found = find_tried(name, names);
+    return found == nullptr ? "" : std::string(found->remark);
+  };
+  EXPECT_TRUE(has(remark("coefficient_of_friction"), "Grains are frictionless."));
+  EXPECT_TRUE(has(remark("frequency_Hz"), "1 divided by the frequency"));
+  EXPECT_TRUE(has(remark("gamma_dot"), "The walls oscillate"));
+  EXPECT_EQ(find_tried("z", names), nullptr) << "a measure, and no parameter";
 }
 
 // Whatever a manifest states, its values in units of d, m and s are numbers.
