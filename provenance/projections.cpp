@@ -19,8 +19,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// `registered` is the seq of the last registration, and `newest` the manifest that was registered
-// last of those that declared a run at the scale.
+// `registered` is the seq of the last registration. `newest` has the manifest that was registered
+// last among the manifests that declared a run of the experiment at the scale.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -127,7 +127,7 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A declaration that asks for nothing more puts the run in its place again.
+    // A declaration that asks for nothing more makes the run the current one for its place.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "

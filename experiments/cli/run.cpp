@@ -280,7 +280,8 @@ void add_run(CLI::App& app, Context& context) {
   shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2
 
 Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with
-code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one
+code 85; `run` again, or `resume`, continues bit for bit. A second Ctrl-C kills the program
+(code 130), which loses the work since the last checkpoints and nothing else. Start several programs on one
 machine and one store to share the work. On several machines, give each its --variant or --seed
 and merge their stores.)");
 

@@ -39,12 +39,13 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether to select the value. Texts with the same keys are alternatives; a value must fit one
-  /// text for each set of keys. True if no texts were given.
-  bool passes(const std::string& value);
+  /// Whether to select the value, by its own parts or those of its display name. Texts with the
+  /// same keys are alternatives; a value must fit one text for each set of keys. True if no texts
+  /// were given.
+  bool passes(const std::string& value, const std::string& name = "");
   /// The first text that no tried value fitted, or null.
   const std::string* unfound() const;
-  /// The values that were tried, each once, in order.
+  /// The values that were tried, each once, in order; after each its name, if that has other parts.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

@@ -198,7 +198,10 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
       check.absent += found.absent;
     }
   }
-  if (check.absent > 0 && !cache.trouble().empty()) note("", cache.trouble());
+  if (check.absent == 0) return;
+  for (const std::string& why : {cache.trouble(), cache.replaced()}) {
+    if (!why.empty()) note("", why);
+  }
 }
 
 /// Returns why measures cannot be copied; "" if they can.

@@ -345,6 +345,16 @@ TEST_F(SharedStore, AProgramContinuesTheRunsOfAKilledOne) {
 
 class CommandLineStore : public ProgramTest {};
 
+TEST_F(CommandLineStore, ShowsARunOfAKilledProgramAsInterrupted) {
+  write("m.yaml", tiny_manifest("  cycles: 4000\n"));
+  EXPECT_EQ(run_until({"run", "m.yaml", "-q"}, 4, SIGKILL).signal, SIGKILL);
+  const std::string shown = expect(0, {"status"}, {"1 interrupted, 1 completed"}).out;
+  EXPECT_FALSE(has(shown, "running")) << shown;
+  const nlohmann::json run = json({"status", "--json"}).at("runs").back();
+  EXPECT_EQ(run.at("state"), "running");
+  EXPECT_TRUE(run.at("holder").is_null());
+}
+
 TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
   campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});
   const auto expected = hashes();

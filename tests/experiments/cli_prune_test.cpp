@@ -387,7 +387,10 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
     fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
     one.damage();
     expect(one.code, {"verify"}, one.verify_says);
-    expect(one.code, {"table"}, {one.code == 4 ? "derived.sqlite" : "not measured: "});
+    for (int k = 0; k < 2; ++k) {  // the second time the file has been set aside
+      expect(one.code, {"table"}, {one.code == 4 ? "derived.sqlite" : "not measured: "});
+      expect(one.code, {"verify"});
+    }
   }
   // The remedy that the message gives.
   fs::remove_all(path("shearcell-store"));
