@@ -86,7 +86,7 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   }
 }
 
-/// Whether the store lacks the checkpoint, or has only a damaged file of it. The same state in
+/// Whether the store lacks the checkpoint or its file is damaged there. The same state in
 /// other bytes (written by another HDF5 library) is not news.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,

@@ -237,8 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// To the furthest recorded checkpoint, unless the run is further than this one: where files of
-  /// last checkpoints were pruned, the run stays as far as it was.
+  /// Moves the run to its furthest recorded checkpoint, unless it is further than `sha256`: if
+  /// files of last checkpoints were pruned, the run stays as far as it was.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

@@ -93,8 +93,8 @@ class Store {
 
   // --- Recording ---
 
-  /// Stores the text and returns its SHA-256. Records nothing if this text is the one registered
-  /// last for info["experiment"].
+  /// Stores the text and returns its SHA-256. Records nothing if the last registered text of
+  /// info["experiment"] is the same.
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 

@@ -149,7 +149,7 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() takes the lowest free number, that of the stream. The mode makes its use fail.
+    // open() takes the lowest free number, which is the stream's. The mode makes its use fail.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);

@@ -185,7 +185,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (left.is_null()) {
     fmt::print("less; how much less is known after a run with this `until` has ended\n");
   } else {
-    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
+    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, if runs end like earlier ones\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }

@@ -258,7 +258,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(
       command, "--keep-every", options.keep_every,
       "When this command has completed a run, measure its checkpoints and delete files, as `prune` "
-      "does, except those of every K-th cycle",
+      "does, except the files of every K-th cycle",
       "K", 1, 1'000'000'000);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }

@@ -437,7 +437,7 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-/// Throws if the name is that of an experiment, which consists of several runs.
+/// Throws if an experiment has this name: an experiment has several runs.
 void require_no_experiment(const std::string& name, const std::vector<Stage>& stages) {
   const auto is_it = [&](const Membership& m) { return m.place.experiment == name; };
   const auto is_of = [&](const Stage& stage) {

@@ -92,9 +92,9 @@ void show_jobs(const fs::path& store, Result& result) {
     for (const std::string& word : job.command) line += shell_word(word) + " ";
     return fmt::format("{}\n\n{}", line, job.script);
   };
-  result.text = fmt::format(
-      "Nothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
-      shown(array), shown(merging));
+  result.text =
+      fmt::format("Nothing was submitted. The array job:\n\n{}\nand the job after it:\n\n{}",
+                  shown(array), shown(merging));
 }
 
 /// Queues both jobs. If the second fails, the stores can be merged by hand.

@@ -164,7 +164,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
                measures.cached);
   }
   if (measures.absent + measures.not_covered > 0) {
-    print_text("measures of pruned checkpoints: {} absent; those of {} not covered by the log\n",
+    print_text("measures of pruned checkpoints: {} absent; the log does not cover {}\n",
                measures.absent, counted(measures.not_covered, "checkpoint"));
   }
   if (report.ok()) {

@@ -116,7 +116,7 @@ std::string difference(const json& cached, const json& computed, const std::stri
     return fmt::format("{}{}: {} is cached, {} is computed", measure, path, a.at(path).dump(),
                        value.dump());
   }
-  return a.size() == b.size() ? "" : measure + ": its structure is another one";
+  return a.size() == b.size() ? "" : measure + ": its structure differs";
 }
 
 struct CachedMeasure {

@@ -33,7 +33,7 @@ std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
   std::size_t cached = 0;       ///< checkpoints of the store with cached measures
-  std::size_t computed = 0;     ///< of these, computed again
+  std::size_t computed = 0;     ///< checkpoints whose measures were computed again
   std::size_t not_covered = 0;  ///< checkpoints that an earlier version pruned, without digests
   std::size_t absent = 0;       ///< measures that digests cover and the cache lacks
   std::vector<Finding> findings = {};  ///< errors

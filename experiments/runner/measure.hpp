@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures of many checkpoints: reads the cached ones, computes the others, several at a time, and
+// Measures of many checkpoints: reads cached measures, computes missing ones in parallel, and
 // caches them.
 #pragma once
 

@@ -43,7 +43,7 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< in the log; of these, not in the cache
+    std::size_t named = 0, absent = 0;  ///< in the log; and not in the cache
     std::string altered;                ///< names one that differs from the log; "" if none does
   };
   /// Compares what is cached of a checkpoint that is pruned now with the log.

@@ -375,7 +375,7 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
     PlannedStage& one = stages[place->second];
     if (const auto found = known.find(planned.id); fresh && found != known.end()) {
       one.stage = std::move(found->second);
-      one.stage.resolved = planned.resolved;  // that of the store may be damaged
+      one.stage.resolved = planned.resolved;  // the store's copy may be damaged
       one.memberships = one.stage.memberships;
       one.checkpoints = store->checkpoints(one.stage.id, Listed::and_pruned);
     }

@@ -55,8 +55,8 @@ struct Outlook {
 
 /// What is left of a stage for `asks`. `stage`: a recorded stage, or a new one; its recorded asks
 /// need not be `asks`. `checkpoints`: all checkpoints of the stage except rejected ones, by step
-/// (Listed::and_pruned). A completed stage also meets an ask whose `until` is that of a recorded
-/// ask with at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
+/// (Listed::and_pruned). A completed stage also meets an ask if a recorded ask has the same
+/// `until` and at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -98,7 +98,7 @@ Outlook look_at(const Store& store, const Stage& stage);
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Membership> memberships = {};  ///< those of the store and of all plans
+  std::vector<Membership> memberships = {};  ///< in the store and in all plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };

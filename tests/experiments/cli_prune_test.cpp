@@ -375,8 +375,8 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
        [&] { write_bytes(cache, std::string(5000, 'x')); },
        4,
        {"it is not a database of measures"}},
-      {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; those of 0 checkpoints"}},
-      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; those of 0 checkpoints"}},
+      {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; the log does not cover 0 checkpoints"}},
+      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; the log does not cover 0 checkpoints"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -427,7 +427,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
   }
   fs::rename(path("aside"), cache);
   expect(0, {"verify"},
-         {"those of 20 checkpoints not covered by the log", "nothing was changed\n"});
+         {"the log does not cover 20 checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 
