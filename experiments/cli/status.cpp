@@ -292,10 +292,11 @@ void add_status(CLI::App& app, Context& context) {
   add_selection_options(*command, *selection, true);
   add_common_options(
       *command, context,
-      R"(M/s is million particle-steps per second over all recorded work. A cycle such as "2/9 (until)"
-means that 9 were asked for and `until` ended the run at cycle 2. A run whose program was killed is
-shown as interrupted (with --json: `running`, without a `holder`); `resume` continues it. Runs on a cluster show their place in its
-queue and the progress of their tasks. The time left is estimated from the speed so far.
+      R"(M/s is million particle-steps per second over all recorded work. The cycle 2/9 (until) means that
+9 cycles were asked for and `until` ended the run at cycle 2. A run whose program was killed is shown
+as interrupted (with --json: `running`, without a `holder`); `resume` continues it. Runs on a cluster
+show their place in its queue and the progress of their tasks. The time left is estimated from the
+speed so far.
 Examples:
   shearcell status
   watch -n 10 shearcell status

@@ -267,7 +267,7 @@ TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
   write("b.yaml", after("b", "a"));
   expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
-         {"warning: a.yaml: its `start` and those of other manifests name each other's runs",
+         {"warning: a.yaml: these manifests start from each other's runs in a circle",
           "the store has no run of b"});
 }
 

@@ -375,7 +375,10 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
        [&] { write_bytes(cache, std::string(5000, 'x')); },
        4,
        {"it is not a database of measures"}},
-      {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; the log does not cover 0 checkpoints"}},
+      {"emptied",
+       [&] { fs::resize_file(cache, 0); },
+       0,
+       {" absent; the log does not cover 0 checkpoints"}},
       {"deleted", [&] { fs::remove(cache); }, 0, {" absent; the log does not cover 0 checkpoints"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
@@ -426,8 +429,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"},
-         {"the log does not cover 20 checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"the log does not cover 20 checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 
