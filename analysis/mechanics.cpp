@@ -217,8 +217,9 @@ std::vector<Provider> mechanics_providers() {
             {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
             {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
             {"stress_xy_Pa", "Pa",
-             "shear stress of interior grains, with the sign of the others: a growing shear_strain "
-             "makes it negative"},
+             "shear stress of interior grains; negative while shear_strain grows, since "
+             "compression "
+             "is positive"},
             {"stress_xz_Pa", "Pa", "shear stress of interior grains"},
             {"stress_yz_Pa", "Pa", "shear stress of interior grains"},
             {"kinetic_pressure_Pa", "Pa",

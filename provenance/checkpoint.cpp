@@ -29,7 +29,7 @@ using hdf5::Shape;
 
 static_assert(std::endian::native == std::endian::little, "hashes and files use native numbers");
 
-/// The numbers of /restart and then those of /restart/cell, in the order of the file.
+/// The numbers of /restart, then the numbers of /restart/cell, in the order of the file.
 void restart_numbers(auto& checkpoint, auto field) {
   field("time_s", checkpoint.time_s);
   field("cycle", checkpoint.cycle);

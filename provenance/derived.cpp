@@ -38,18 +38,20 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
       .hex();
 }
 
-/// Renames the file, which may hold the only measures of pruned checkpoints, and says how. A
-/// journal left behind would be played back into the new database.
-std::string set_aside(const fs::path& file) {
+/// The name of the n-th damaged file.
+fs::path damaged_name(const fs::path& file, int n) {
+  return fmt::format("{}.damaged-{}", file.string(), n);
+}
+
+/// Renames the file, which may hold the only measures of pruned checkpoints. A journal left behind
+/// would be played back into the new database.
+void set_aside(const fs::path& file) {
   std::error_code ignored;
-  fs::path kept;
-  for (int n = 1; kept.empty() || fs::exists(kept, ignored); ++n) {
-    kept = fmt::format("{}.damaged-{}", file.string(), n);
-  }
+  int n = 1;
+  while (fs::exists(damaged_name(file, n), ignored)) ++n;
+  const fs::path kept = damaged_name(file, n);
   fs::rename(file.string() + "-journal", kept.string() + "-journal", ignored);
   fs::rename(file, kept, ignored);
-  return fmt::format("{}: it was damaged, and is kept as {}", file.string(),
-                     kept.filename().string());
 }
 
 }  // namespace
@@ -118,11 +120,21 @@ void DerivedCache::attempt(Work&& work) {
       if (read_only_) return give_up(file_.string() + ": it is not a database of measures");
       if (!first) return give_up(damage.what());
       database_.reset();
-      replaced_ = set_aside(file_);
+      set_aside(file_);
     } catch (const std::exception& problem) {
       return give_up(problem.what());
     }
   }
+}
+
+std::string DerivedCache::replaced() const {
+  std::error_code ignored;
+  const fs::path kept = damaged_name(file_, 1);
+  if (!fs::exists(kept, ignored)) return "";
+  return fmt::format(
+      "{}: measures of pruned checkpoints are missing, since it was damaged and is kept as {}; "
+      "restore it from a backup, or recompute the files by `shearcell regenerate --all`",
+      file_.string(), kept.filename().string());
 }
 
 std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(

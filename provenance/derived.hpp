@@ -29,7 +29,7 @@ struct DerivedObject {
 };
 
 /// Short digests of objects of one checkpoint, by the first word of the measure and a short hash of
-/// measure and version. The log holds those of pruned checkpoints, whose measures cannot be
+/// measure and version. The log holds the digests of pruned checkpoints, whose measures cannot be
 /// computed again.
 using Digests = std::map<std::string, std::string>;
 /// The entry of one object.
@@ -49,7 +49,7 @@ class DerivedCache {
   /// Contents in the order of `keys`; nothing for objects that are not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// Of all objects of a checkpoint, as they are; empty if the file cannot be read.
+  /// The digests of all objects of a checkpoint, unchecked; empty if the file cannot be read.
   Digests digests(const std::string& checkpoint);
 
   /// Stores all or none; replaces objects with the same key.
@@ -57,8 +57,8 @@ class DerivedCache {
 
   /// Why nothing can be stored; "" without trouble.
   const std::string& trouble() const { return trouble_; }
-  /// What was wrong with a file that was renamed and replaced; "" without one.
-  const std::string& replaced() const { return replaced_; }
+  /// Names the damaged file that was renamed and replaced, now or earlier; "" without one.
+  std::string replaced() const;
 
   static constexpr const char* kFile = "derived.sqlite";
 
@@ -72,7 +72,7 @@ class DerivedCache {
   std::filesystem::path file_;
   bool read_only_;
   std::optional<sqlite::Database> database_;
-  std::string trouble_, replaced_;
+  std::string trouble_;
 };
 
 }  // namespace shearcell

@@ -60,7 +60,7 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
-/// Makes the log under another name, so that a kill leaves no part of it. Does nothing if another
+/// Makes the log under another name, so that a kill leaves no partial log. Does nothing if another
 /// program was faster; the caller makes the log in place if the file system cannot do this.
 void create_whole(const std::filesystem::path& file) {
   const std::filesystem::path whole =

@@ -28,7 +28,7 @@ StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception
 /// something else; the library's `get` would convert 1e300.
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
-/// The number with so many significant digits; null if it is not finite.
+/// The number rounded to `significant` digits; null if it is not finite.
 nlohmann::json rounded(double value, int significant);
 
 /// A value as a manifest or a CSV file writes it: "still", "0.1".

@@ -178,7 +178,7 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
           "`verify`",
           event.seq));
     }
-    found.sha256 = sha256;  // that of a forged payload may be anything
+    found.sha256 = sha256;  // a forged payload may state any other
     return ManifestText{std::move(found), event.recorded_at};
   }
   return std::nullopt;

@@ -70,11 +70,11 @@ struct RunLineage {
   const CheckpointHistory* find(std::string_view sha256) const;
 };
 
-/// The stage and those before it, the first one first. Throws NotFound for an unknown stage.
+/// The stage and the stages before it, the first one first. Throws NotFound for an unknown stage.
 std::vector<Stage> chain_of(const Store& store, const std::string& id);
 
-/// Those of chain_of() with their lineage. Throws StoreDamaged, naming the event, for a damaged
-/// payload.
+/// The stages of chain_of() with their lineage. Throws StoreDamaged, naming the event, for a
+/// damaged payload.
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id

@@ -86,7 +86,7 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   }
 }
 
-/// Whether the store lacks the checkpoint, or has only a damaged file of it. The same state in
+/// Whether the store lacks the checkpoint or its file is damaged there. The same state in
 /// other bytes (written by another HDF5 library) is not news.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
@@ -306,8 +306,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
-  // A copied figure follows the store's own in the log; the one that was made later stays the
-  // newest.
+  // A copied figure follows the store's own figure in the log. The figure that was made later stays
+  // the newest.
   for (const FigureRecord& copied : query_figures(into)) {
     const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
     if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;

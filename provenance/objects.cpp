@@ -102,7 +102,7 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   if (!S_ISREG(status.st_mode)) throw damaged("it is not a regular file");
   const auto found = static_cast<std::uint64_t>(status.st_size);
   if (found != size) throw damaged(fmt::format("it has {} bytes instead of {}", found, size));
-  // A sparse file may be larger than memory. Decoding needs a few copies of it.
+  // A sparse file may be larger than memory. Decoding needs a few copies of the bytes.
   if (static_cast<double>(size) > machine_memory() / 4) {
     throw TooLittleMemory(fmt::format("{}: its {} bytes do not fit into the memory of this machine",
                                       path.string(), size));

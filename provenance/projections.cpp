@@ -19,8 +19,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// `registered` is the seq of the last registration, and `newest` the manifest that was registered
-// last of those that declared a run at the scale.
+// `registered` is the seq of the last registration. `newest` has the manifest that was registered
+// last among the manifests that declared a run of the experiment at the scale.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -127,7 +127,7 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A declaration that asks for nothing more puts the run in its place again.
+    // A declaration that asks for nothing more makes the run the current one for its place.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -237,8 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// To the furthest recorded checkpoint, unless the run is further than this one: where files of
-  /// last checkpoints were pruned, the run stays as far as it was.
+  /// Moves the run to its furthest recorded checkpoint, unless it is further than `sha256`: if
+  /// files of last checkpoints were pruned, the run stays as far as it was.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

@@ -539,7 +539,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   std::vector<CheckpointRecord> found;
   for (const Stage& stage : known) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, stage.id) == 0) continue;
-    // The newest is kept, and all back to the newest that can be read: `resume` reports the others.
+    // Keeps the newest checkpoint that can be read, and all later ones: `resume` reports these.
     std::vector<CheckpointRecord> records = checkpoints(stage.id);
     const bool all = choice.last_too && stage.state == StageState::completed;
     bool kept = all;

@@ -32,8 +32,9 @@ struct LoadedCheckpoint {
 };
 
 struct Finding {
-  /// An error: a record is lost or changed. A note: everything recorded is intact.
-  enum class Severity { note, error };
+  /// An error: a record is lost or changed. A note: everything recorded is intact. Unread: the
+  /// machine failed, so this was not checked.
+  enum class Severity { note, unread, error };
   Severity severity = Severity::note;
   std::string subject;  ///< file, event or table
   std::string run;      ///< affected run, or ""
@@ -48,8 +49,9 @@ struct VerifyReport {
   std::uint64_t orphans = 0;      ///< files that no event names
   Head head;                      ///< keep it elsewhere: it proves later that the log only grew
 
-  /// Without errors.
-  bool ok() const;
+  /// The number of findings of this severity.
+  std::size_t count(Finding::Severity severity) const;
+  bool ok() const { return count(Finding::Severity::error) == 0; }
 };
 
 struct MergeReport {
@@ -91,8 +93,8 @@ class Store {
 
   // --- Recording ---
 
-  /// Stores the text and returns its SHA-256. Records nothing if this text is the one registered
-  /// last for info["experiment"].
+  /// Stores the text and returns its SHA-256. Records nothing if the last registered text of
+  /// info["experiment"] is the same.
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <system_error>
 
 #include "provenance/errors.hpp"
 #include "provenance/projections.hpp"
@@ -172,8 +173,12 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       // A forged table does not hide damage: it differs from the events, which is an error.
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
-      report.findings.push_back({rejected ? Severity::note : Severity::error, record.file,
-                                 record.run, message + (rejected ? " (rejected already)" : "")});
+      const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;
+      report.findings.push_back({rejected ? Severity::note
+                                 : unread ? Severity::unread
+                                          : Severity::error,
+                                 record.file, record.run,
+                                 message + (rejected ? " (rejected already)" : "")});
     }
   }
   for (const std::string& file : objects.strangers(known)) {
@@ -210,8 +215,8 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
   return checkpoint;
 }
 
-bool VerifyReport::ok() const {
-  return std::ranges::count(findings, Severity::error, &Finding::severity) == 0;
+std::size_t VerifyReport::count(Severity severity) const {
+  return static_cast<std::size_t>(std::ranges::count(findings, severity, &Finding::severity));
 }
 
 VerifyReport Store::verify(const std::optional<Head>& against) const {

@@ -99,7 +99,7 @@ Packing repeated(const Packing& one, std::size_t copies) {
 }
 
 // Beyond 18,200 grains the cell becomes deeper, not higher: the smallest number of equal parts
-// along the depth, with at least so many grains in all.
+// along the depth, with at least this number of grains in all.
 Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/cli/command.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +11,10 @@
 #include <map>
 #include <ranges>
 #include <set>
+#include <span>
 #include <system_error>
 
+#include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
@@ -55,7 +58,7 @@ std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "names no file or folder";
   std::error_code ignored;
-  // `verify` would take what is written there for what a crash has left.
+  // `verify` would take such a file for the remains of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";
@@ -63,6 +66,37 @@ std::string unfit_output(const std::string& path) {
     return at.string() + " is where a store keeps its checkpoints; name another place";
   }
   return "";
+}
+
+std::string unfit_folder(const std::string& path) {
+  return path == "-" ? "is standard output, and this is a folder; name one" : unfit_output(path);
+}
+
+namespace {
+
+bool is_stdout(const std::string& out) {
+  return out == "-" || out == "/dev/stdout";
+}
+
+}  // namespace
+
+bool is_stream(const std::string& out) {
+  std::error_code missing;
+  const std::filesystem::file_type type = std::filesystem::status(out, missing).type();
+  return is_stdout(out) || type == std::filesystem::file_type::character ||
+         type == std::filesystem::file_type::fifo;
+}
+
+void write_result(const std::string& out, const std::string& text) {
+  if (is_stdout(out)) {
+    fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
+  } else if (is_stream(out)) {
+    const Descriptor stream(open(out.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!stream.valid()) fail_on(out, "write");
+    write_all(stream, std::as_bytes(std::span(text)), out);
+  } else {
+    write_output(out, text);
+  }
 }
 
 void add_json_option(CLI::App& command, Context& context) {
@@ -73,7 +107,7 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
   command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
       ->default_str(
           Context{}.store)  // not the variable's, so that the manual is the same everywhere
-      ->check(unfit_output)
+      ->check(unfit_folder)
       ->type_name("DIR");
   add_json_option(command, context);
   command.footer(footer);
@@ -205,8 +239,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Puts a manifest whose runs another one starts from before it. A `start` that names a run by its
-// id may mean one of any manifest.
+// Sorts the manifests so that runs come before the runs that start from them. Manifests without
+// such a `start` come first, since a `start` that names a run by its id may mean any of theirs.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -221,15 +255,15 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
     });
     if (ready == manifests.end()) {
       return warn(context,
-                  fmt::format("{}: its `start` and those of other manifests name each other's "
-                              "runs: the store must have the first of them",
+                  fmt::format("{}: these manifests start from each other's runs in a circle, so "
+                              "the store must already have the first of these runs",
                               next->file));
     }
     std::rotate(next, ready, ready + 1);
   }
 }
 
-// Figures show the newest version of those that have runs at the scale.
+// Figures show only the newest version that has runs at the scale.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -254,7 +288,8 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
 }  // namespace
 
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
-                             Context& context) {
+                             Context& context, bool brief) {
+  constexpr std::size_t most = 3;  // warnings of one manifest
   std::vector<Manifest> manifests;
   std::set<std::string> read;
   for (const std::string& path : paths) {
@@ -269,7 +304,12 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
   for (const Manifest& manifest : manifests) {
     with_known.known = known;
     const Plan& plan = plans.emplace_back(expand(manifest, with_known));
-    for (const std::string& warning : plan.warnings) warn(context, warning);
+    if (brief && plan.warnings.size() > most) {
+      warn(context, fmt::format("{}; and {} more warnings, which `shearcell plan` prints",
+                                plan.warnings.front(), plan.warnings.size() - 1));
+    } else {
+      for (const std::string& warning : plan.warnings) warn(context, warning);
+    }
     warn_of_other_version(plan, stored, context);
     add_as_computed(plan, known);
   }

@@ -72,6 +72,15 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
 /// Why nothing can be written to the path: it is empty, or among the checkpoint files of a store;
 /// "" if neither.
 std::string unfit_output(const std::string& path);
+/// unfit_output() of a folder, which cannot be "-".
+std::string unfit_folder(const std::string& path);
+
+/// Whether --out names an open stream: "-" (standard output), a pipe, or a device such as
+/// /dev/null.
+bool is_stream(const std::string& out);
+
+/// Writes to the stream, or else as write_output(). A terminal gets escaped text.
+void write_result(const std::string& out, const std::string& text);
 
 /// --json.
 void add_json_option(CLI::App& command, Context& context);
@@ -92,11 +101,11 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 /// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
-/// Reads and expands each manifest once, those whose `start` names a run of another one after it.
-/// warn() gets the warnings, also about runs of the store and about two different manifests of one
-/// `experiment`.
+/// Reads and expands each manifest once. A manifest whose `start` names a run of another manifest
+/// comes after that one. warn() gets the warnings, also about runs of the store and about two
+/// different manifests of one `experiment`. With `brief`, many warnings of one manifest become one.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
-                             Context& context);
+                             Context& context, bool brief = true);
 
 /// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);

@@ -41,9 +41,13 @@ struct ExportFormat {
   const char* name;
   const char* title;
   const char* ending;  ///< of the file's name; "" for a folder
-  /// Makes a writer of so many frames to `out`; null for a crate, which has no frames.
+  /// Makes a writer of this number of frames to `out`; null for a crate, which has no frames.
   FrameWriter (*writer)(const fs::path& out, std::size_t frames, LengthUnit unit);
 };
+
+bool is_folder(const ExportFormat& format) {
+  return *format.ending == '\0';
+}
 
 // A new format is one entry here.
 const std::array kFormats = {
@@ -82,18 +86,22 @@ CycleRange parse_cycles(const std::string& text) {
     if (part.empty() && k < 3) continue;
     const auto value = read_number<double>(part);
     const bool fits = value && std::isfinite(*value) && *value >= (k == 2 ? 1e-9 : 0);
-    if (k >= 3 || !fits || (k == 1 && *value < range.first)) {
+    if (k >= 3 || !fits) {
       throw std::invalid_argument(
           "--cycles takes A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
     }
     *values[k] = *value;
+    if (range.last < range.first) {
+      throw std::invalid_argument(fmt::format(
+          "--cycles {}: the first cycle is after the last; write {}:{}", text, part, range.first));
+    }
   }
   if (k == 1 && text.find(':') == std::string::npos) range.last = range.first;
   return range;
 }
 
-// What the selected experiments ask of the run; of one without places, which was named by its id,
-// what any experiment asks.
+// For a run selected by its id: what any experiment asks of it. Else: what the selected experiments
+// ask of it.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
@@ -166,22 +174,21 @@ CrateFacts crate_of(const Store& store, const std::string& run, const std::strin
   return facts;
 }
 
-/// The place that names the run.
+/// The place after which the exported file of the run is named.
 Place shown_place(const PlacedRun& run) {
   return run.places.empty() ? first_place(run.stage) : run.places.front().place;
 }
 
-/// Writes the run to `out`, which does not exist or holds an earlier crate of the run, and returns
-/// the names of the files. Measures that are NaN because an earlier checkpoint cannot be read have
-/// a line in `unread`. Throws std::invalid_argument if the run cannot be exported.
-std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
-                                   const ExportFormat& format, const ExportOptions& options,
-                                   const fs::path& out, MeasureOutcome& unread) try {
+/// Writes these checkpoints to `out`, or the whole run if the format is a crate. Returns the names
+/// of the files.
+std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
+                                       const std::vector<CheckpointRecord>& records,
+                                       const ExportFormat& format, const ExportOptions& options,
+                                       const fs::path& out, MeasureOutcome& unread) {
   if (format.writer == nullptr) {
     return write_ro_crate(store, crate_of(store, run.stage.id, options.licence), out);
   }
-  const std::vector<CheckpointRecord> records = chosen(store, run, options);
-  const bool folder = *format.ending == '\0';
+  const bool folder = is_folder(format);
   if (folder) fs::create_directory(out);
   const LengthUnit unit = options.metres ? LengthUnit::m : LengthUnit::d;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), unit)};
@@ -197,9 +204,25 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
   }
   writers.clear();  // closes the files
   return files_of(out);
-} catch (const FilePruned&) {  // by another program, meanwhile: what is left is written
-  if (!fs::exists(out / "ro-crate-metadata.json")) fs::remove_all(out);
-  return write_run(store, run, format, options, out, unread);
+}
+
+/// Writes the run to `out`, which does not exist or holds an earlier crate of the run, and returns
+/// the names of the files. Measures that are NaN because an earlier checkpoint cannot be read have
+/// a line in `unread`. Throws std::invalid_argument if the run cannot be exported, and FilePruned
+/// if a pruned checkpoint decides where the run ends.
+std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
+                                   const ExportFormat& format, const ExportOptions& options,
+                                   const fs::path& out, MeasureOutcome& unread) {
+  for (;;) {
+    std::vector<CheckpointRecord> records;
+    if (format.writer != nullptr) records = chosen(store, run, options);
+    try {
+      return write_records(store, run, records, format, options, out, unread);
+    } catch (const FilePruned&) {
+      // Another program pruned a chosen checkpoint, which is not chosen again.
+      if (!fs::exists(out / kCrateMetadata)) fs::remove_all(out);
+    }
+  }
 }
 
 // Readers of an RO-Crate take a text that is no web address for the name of a file in the crate.
@@ -274,10 +297,13 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
     return {{runs.front().stage.id, options.out,
              write_run(store, runs.front(), format, options, out, unread)}};
   }
-  const bool folder = !single || *format.ending == '\0';
-  require_new(out, folder);
-  fs::create_directories(out.parent_path());
-  const TemporaryFolder stage(out.parent_path() / ("." + out.filename().string() + ".tmp-"));
+  const bool folder = !single || is_folder(format), stream = is_stream(options.out);
+  if (folder && stream) throw std::invalid_argument("--out: " + unfit_folder("-"));
+  if (!stream) require_new(out, folder);
+  if (!stream) fs::create_directories(out.parent_path());
+  const TemporaryFolder stage(
+      stream ? ".shearcell.tmp-"
+             : (out.parent_path() / ("." + out.filename().string() + ".tmp-")).string());
   const fs::path staged = stage.path() / out.filename();
   std::vector<Exported> done;
   if (!single) fs::create_directory(staged);
@@ -290,6 +316,10 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());
     }
+  }
+  if (stream) {
+    write_result(options.out, read_plain(staged, SIZE_MAX - 1).value());
+    return done;
   }
   require_new(out, folder);
   fs::rename(staged, out);
@@ -311,6 +341,7 @@ void export_runs(const ExportOptions& options, Context& context) {
     throw UsageError(problem.what());
   }
   print_problems(unread, "not measured", context);
+  if (is_stream(options.out)) return;
   if (context.json) {
     const nlohmann::json list = list_of(done, [&](const Exported& one) -> nlohmann::json {
       return {{"run", one.run},
@@ -344,7 +375,7 @@ void add_export(CLI::App& app, Context& context) {
     formats += fmt::format("  {:<10} {}\n", format.name, format.title);
   }
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names));
-  command->add_option("--out", options->out, "File or folder to write")
+  command->add_option("--out", options->out, "File (- is standard output) or folder to write")
       ->required()
       ->check(unfit_output)
       ->type_name("PATH");
@@ -363,9 +394,9 @@ void add_export(CLI::App& app, Context& context) {
           R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
 each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
 lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
-wall grains and the tilted cell. Writes a single RUN to PATH; several runs, or those that options
-select, go into the folder PATH, each under a name of its own. PATH must be new; that of a crate
-may be an earlier export of the same run. With --to lammps, `lmp -in in.frame_CYCLE` in that folder
+wall grains and the tilted cell. A single RUN is written to PATH. Several runs, and runs that options
+select, are written into the folder PATH, each under its own name. PATH must be new, but a crate may
+replace an earlier crate of the same run. With --to lammps, `lmp -in in.frame_CYCLE` in that folder
 continues the run from that checkpoint.
 Examples:
   shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz

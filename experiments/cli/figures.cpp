@@ -219,13 +219,13 @@ void add_figures(CLI::App& app, Context& context) {
   command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
   command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
       ->capture_default_str()
-      ->check(unfit_output)
+      ->check(unfit_folder)
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
       ->description("Only of this experiment, even if its manifest does not list the figure");
   command->get_option("--scale")->expected(1)->description(
-      "Scale of the runs (default: for each experiment, that of its run added last)");
+      "Scale of the runs (default: for each experiment, the scale of its run added last)");
   command
       ->add_option_function<std::string>(
           "--width", [&how](const std::string& width) { how.wide = width == "double"; },

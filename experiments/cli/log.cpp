@@ -46,7 +46,7 @@ void print_log(const std::string& run, Context& context) {
 void add_log(CLI::App& app, Context& context) {
   const auto [command, run] =
       add_command(app, context, "log", "List the events of the store or of one run", print_log);
-  command->add_option("run", *run, "Run id, or a unique beginning of it");
+  command->add_option("run", *run, "Run id, or a unique beginning of an id");
   add_common_options(*command, context, "Examples:\n  shearcell log\n  shearcell log 3f9a --json");
 }
 

@@ -31,6 +31,14 @@ constexpr const char* kDescription =
 YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are drawn
 from the store alone.)";
 
+// For a command line without arguments.
+constexpr const char* kBegin =
+    R"(shearcell computes experiments on sheared grains. Name a command:
+  shearcell new mine                        # writes mine.yaml, a manifest with comments
+  shearcell run mine.yaml --scale smoke     # computes it in seconds
+  shearcell --help                          # lists all commands
+)";
+
 constexpr const char* kFooter =
     R"(Examples:
   shearcell plan experiments/drag.yaml --scale desk
@@ -41,6 +49,23 @@ constexpr const char* kFooter =
 Exit codes: 0 done; 1 the machine failed (disk full, store locked, out of memory, output
 lost); 2 usage or manifest error; 3 a run failed numerically or does not fit into memory;
 4 the store is damaged; 85 interrupted, resumable.)";
+
+const std::vector<std::pair<const char*, std::vector<AddCommand*>>> kCommands = {
+    {"Compute", {add_new, add_plan, add_run, add_submit}},
+    {"Look", {add_status, add_show, add_log, add_table, add_figures, add_report}},
+    {"Keep", {add_verify, add_rebuild, add_prune, add_regenerate}},
+    {"Share", {add_merge, add_export}},
+    {"This program", {add_doctor, add_bench, add_manual}}};
+
+/// Fits help pages into the terminal.
+struct HelpFormatter : CLI::Formatter {
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
+    const auto width = terminal_columns(stdout);
+    return width ? filled(help, *width) : help;
+  }
+};
 
 std::string version_text() {
   const nlohmann::json facts = host_facts();
@@ -124,7 +149,7 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() takes the lowest free number, that of the stream. The mode makes its use fail.
+    // open() takes the lowest free number, which is the stream's. The mode makes its use fail.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
@@ -143,18 +168,21 @@ int run(int argc, char** argv) {
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
+  app.formatter(std::make_shared<HelpFormatter>());  // before the commands, which copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
   app.require_subcommand(0, 1);  // so that the error names a word that is no subcommand
-  for (const auto add : {add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild,
-                         add_prune, add_regenerate, add_submit, add_merge, add_table, add_figures,
-                         add_report, add_export, add_bench, add_new, add_doctor, add_manual}) {
-    add(app, context);
+  for (const auto& [group, commands] : kCommands) {
+    for (AddCommand* const add : commands) add(app, context);
+    for (CLI::App* command : app.get_subcommands({})) {
+      if (command->get_group() == "Subcommands") command->group(group);
+    }
   }
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
-    return context.exit_code;
+    if (!app.get_subcommands().empty()) return context.exit_code;
+    print_stderr("{}", kBegin);
+    return kUsageError;
   } catch (const CLI::ExtrasError&) {
     print_stderr("{}\nRun with --help for more information.\n", describe_extras(app));
     return kUsageError;

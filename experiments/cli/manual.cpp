@@ -51,7 +51,7 @@ std::string manifest_reference() {
          manifest_markdown() + R"(
 ## Parameters
 
-Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections are those of the
+Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections refer to the
 supplement; d is the diameter and m the mass of a grain, A_w the area of the moving wall. "key of"
 is the first stage whose [id](manifest/README.md#identity) depends on the parameter.
 
@@ -63,8 +63,8 @@ std::string measure_reference() {
 ## Measures
 
 Columns of `shearcell table`, which also has one for each swept parameter. Measures marked *plot* can
-stand in `plots` and `claims` of a manifest, those marked *until* also in `until`. Columns from
-`critical_size` on are those of `--per run`.
+stand in `plots` and `claims` of a manifest, measures marked *until* also in `until`. Columns from
+`critical_size` on need `--per run`.
 
 | column | use | meaning |
 |---|---|---|

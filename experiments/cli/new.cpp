@@ -2,7 +2,6 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
@@ -80,7 +79,7 @@ base:
   }
   return text +
          R"(
-# Parameters of the packing that differ from those of the shear.
+# Parameters whose value in the packing differs from the value in the shear.
 # settle: {drag_kg_per_s: 1.28e-3}
 # Instead of settling: the state of a recorded run.
 # start: {experiment: drag, variant: "fluid=still", seed: 3, cycle: 10, noise_d: 1.0e-13}
@@ -106,24 +105,14 @@ scales:
 )";
 }
 
-/// Links a complete temporary file, so the file is complete and replaces no other.
-void write_new(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path whole =
-      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
-  std::error_code failed, ignored;
-  try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
-    std::filesystem::remove(whole, ignored);
-    // The file exists, which NewFile refuses, or the file system has no hard links.
-    if (failed) NewFile(file).add(text);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) {
-      throw std::system_error(error.code(), file.string() + ": cannot write");
-    }
-    throw UsageError(file.string() +
-                     ": the file exists already. Choose another name, or remove it.");
-  }
+/// Writes a file that must not exist.
+void write_new(const std::filesystem::path& file, const std::string& text) try {
+  std::error_code ignored;  // NewFile says what is wrong
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  NewFile(file).add(text);
+} catch (const std::system_error& error) {
+  if (error.code() != std::errc::file_exists) throw;
+  throw UsageError(file.string() + ": the file exists already. Choose another name, or remove it.");
 }
 
 void make(const std::string& name, Context&) {

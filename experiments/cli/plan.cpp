@@ -14,6 +14,7 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"
+#include "experiments/runner/registered.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -120,7 +121,7 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// What the next planned look of each experiment takes.
+// Notes how much is left until the next planned look of each experiment.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
                 std::vector<std::string>& notes) {
   for (const Plan& plan : plans) {
@@ -148,8 +149,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
   }
 }
 
-// Particle-steps that are left if runs end where others with the same `until` ended; null without
-// `until`, or where no such run has ended.
+// Particle-steps that are left if each run ends at the mean cycle at which runs with its `until`
+// ended. Null without `until`, or if no such run has ended.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // by `until`, since a search reads all runs
@@ -184,7 +185,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (left.is_null()) {
     fmt::print("less; how much less is known after a run with this `until` has ended\n");
   } else {
-    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, as such runs ended before\n",
+    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, if runs end like earlier ones\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
@@ -204,7 +205,22 @@ nlohmann::json experiment_facts(const Plan& plan) {
           {"runs", plan.runs.size()}};
 }
 
-Facts facts(const Line& line, bool of_several_experiments) {
+/// Names for all lines, as `status` shows them once the stages are in the store.
+VariantNames names_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
+  VariantNames::Labels labels;
+  for (const Plan& plan : plans) {
+    if (!plan.runs.empty()) labels[plan.runs.front().place.manifest] = plan.manifest.labels;
+  }
+  return {list_of(lines,
+                  [](const Line& line) {
+                    Stage stage = line.stage;
+                    stage.memberships = line.memberships;
+                    return stage;
+                  }),
+          labels};
+}
+
+Facts facts(const Line& line, const VariantNames& names, bool of_several_experiments) {
   const PlannedRun& run = *line.run;
   const bool prepare = line.stage.kind == name_of(StageKind::prepare);
   const double cycles = cycles_of(line);
@@ -212,7 +228,8 @@ Facts facts(const Line& line, bool of_several_experiments) {
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
                {"experiment", run.place.experiment},
-               {"variant", run.place.variant, "variant", prepare ? "" : run.name},
+               {"variant", run.place.variant, "variant",
+                prepare ? names.of(line.stage, line.memberships.back().place) : run.name},
                {"seed", run.place.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
@@ -238,7 +255,7 @@ struct PlanOptions {
 };
 
 void plan(const PlanOptions& options, Context& context) {
-  const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
+  const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context, false);
   const std::optional<Store> store = open_if_there(context.store);
   const auto runs = store ? store->stages() : std::vector<Stage>{};
   const std::vector<Line> lines = look_at(plans, store ? &*store : nullptr);
@@ -274,8 +291,9 @@ void plan(const PlanOptions& options, Context& context) {
   const std::string experiment =
       joined(plans, [](const Plan& one) { return one.manifest.experiment; });
   const std::string scale = joined(plans, [](const Plan& one) { return scale_name(one.scale); });
-  const std::vector<Facts> stages =
-      list_of(lines, [&](const Line& line) { return facts(line, options.manifests.size() > 1); });
+  const VariantNames names = names_of(plans, lines);
+  const std::vector<Facts> stages = list_of(
+      lines, [&](const Line& line) { return facts(line, names, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", experiment},
                        {"scale", scale},

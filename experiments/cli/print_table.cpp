@@ -29,7 +29,7 @@ bool is_number(const std::string& cell) {
   return cell.empty() || cell.find_first_not_of("0123456789.-+e:%/") == std::string::npos;
 }
 
-/// Of rows, the first of which is the header.
+/// Column widths; `rows[0]` is the header.
 std::vector<Column> measure(const std::vector<Row>& rows) {
   std::vector<Column> columns(rows.front().size());
   for (const Row& row : rows) {

@@ -201,7 +201,8 @@ std::vector<CheckpointRecord> named_checkpoints(const Store& store,
     const auto found = store.find_checkpoint(prefix);
     if (!found) {
       throw NotFound(fmt::format(
-          "the store has no checkpoint '{}'; `shearcell show RUN` lists those of a run", prefix));
+          "the store has no checkpoint '{}'; `shearcell show RUN` lists the checkpoints of a run",
+          prefix));
     }
     records.push_back(*found);
   }
@@ -231,7 +232,7 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // Parents first, and in order of steps, so that each can start from the one before it.
+  // Parents first, and in order of steps: each state is recomputed from the state before it.
   std::map<std::string, std::size_t> order;
   for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
@@ -282,11 +283,11 @@ void add_prune(CLI::App& app, Context& context) {
   add_common_options(
       *command, context,
       R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
-deletes nothing unless --yes is given. Keeps the newest checkpoint of a run and those that other
-stages start from. --last-too keeps those of unfinished stages only: if all are finished, events and
-measures alone remain, small enough to publish, and figures, tables and merges still work. Never
-deletes checkpoints that this program cannot recompute: those of LAMMPS and of programs with another
-bits version.
+deletes nothing unless --yes is given. Keeps the newest checkpoint of each run and the checkpoints
+that other stages start from. With --last-too, keeps these only of unfinished stages. If all stages
+are finished, events and measures remain, small enough to publish, and figures, tables and merges
+still work. Never deletes checkpoints that this program cannot recompute: checkpoints of LAMMPS and
+of programs with another bits version.
 Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
 plots need, and what the figures of the store's manifests simulate. The results are in
 derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its

@@ -17,7 +17,7 @@ struct ReportCommand {
   ReportOptions report;
 };
 
-// Recognizes the beginning of a report (report/page.cpp).
+// Recognizes the beginning of a report (experiments/report/page.cpp).
 bool is_report(std::string_view beginning) {
   return beginning.starts_with("<!doctype html>") &&
          beginning.find(
@@ -26,7 +26,7 @@ bool is_report(std::string_view beginning) {
 }
 
 void report(ReportCommand& command, Context& context) {
-  require_ours(command.out, is_report);
+  if (!is_stream(command.out)) require_ours(command.out, is_report);
   const Store store(context.store, Access::read);
   ReportOptions& options = command.report;
   options.packings.budget = static_cast<std::size_t>(command.megabytes * 1e6);
@@ -35,7 +35,7 @@ void report(ReportCommand& command, Context& context) {
   options.report = terminal_counter("measuring checkpoint");
   options.encoded = terminal_counter("reading checkpoint");
   const Report made = make_report(store, options);
-  write_output(command.out, made.html);
+  write_result(command.out, made.html);
   print_problems(made, "left out", context);
   if (!made.undrawn.empty()) fail(context, kOtherError);
   for (const std::string& line : made.undrawn) print_stderr("no drawing: {}\n", line);
@@ -45,6 +45,7 @@ void report(ReportCommand& command, Context& context) {
         "Figures are drawings and there are no packings: this program was built without "
         "Node.\n");
   }
+  if (is_stream(command.out)) return;
   if (context.json) {
     return print_json({{"file", command.out},
                        {"bytes", made.html.size()},
@@ -76,13 +77,13 @@ void add_report(CLI::App& app, Context& context) {
       add_command(app, context, "report", "Write the whole store as one HTML file", report);
   ReportOptions& options = command->report;
   PackingChoice& packings = options.packings;
-  sub->add_option("--out", command->out, "File to write")
+  sub->add_option("--out", command->out, "File to write; - is standard output")
       ->capture_default_str()
       ->check(unfit_output)
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: all; figures of that of the run added last)");
+      "Only runs of this scale (default: all; in figures, the scale of the run added last)");
   sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,

@@ -258,7 +258,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(
       command, "--keep-every", options.keep_every,
       "When this command has completed a run, measure its checkpoints and delete files, as `prune` "
-      "does, except those of every K-th cycle",
+      "does, except the files of every K-th cycle",
       "K", 1, 1'000'000'000);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }
@@ -280,7 +280,8 @@ void add_run(CLI::App& app, Context& context) {
   shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2
 
 Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with
-code 85; `run` again, or `resume`, continues bit for bit. Start several programs on one
+code 85; `run` again, or `resume`, continues bit for bit. A second Ctrl-C kills the program
+(code 130), which loses the work since the last checkpoints and nothing else. Start several programs on one
 machine and one store to share the work. On several machines, give each its --variant or --seed
 and merge their stores.)");
 

@@ -140,7 +140,7 @@ Facts facts_of(const Store& store, const Stage& stage) {
       {"parameters", effective_parameters(stage.resolved)}};
 }
 
-/// What the run's id is the hash of, but with the parameters that affect the run.
+/// The record whose hash is the run's id, with only the parameters that affect the run.
 Facts facts_of_id(const Stage& stage) {
   Facts facts;
   for (const auto& [key, value] : stage.resolved.items()) {
@@ -173,7 +173,7 @@ void show_run(const Store& store, const Stage& stage, Context& context) {
   }
 }
 
-/// With measures, or of a pruned file the recorded observables.
+/// Prints the checkpoint with its measures; if its file was pruned, with its observables.
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   const bool pruned = record.state == CheckpointState::pruned;
   Facts more, measures;
@@ -429,12 +429,25 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.begin()->second);
 }
 
-// Throws if the name, as "S4" or "drag/desk/S4", is that of a figure without a record.
+// Throws if the name, such as "S4" or "drag/desk/S4", belongs to a figure that was not drawn.
 void require_not_undrawn(const std::string& name) {
   const std::string figure = std::filesystem::path(name).filename().string();
   if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
   throw NotFound(
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
+}
+
+/// Throws if an experiment has this name: an experiment has several runs.
+void require_no_experiment(const std::string& name, const std::vector<Stage>& stages) {
+  const auto is_it = [&](const Membership& m) { return m.place.experiment == name; };
+  const auto is_of = [&](const Stage& stage) {
+    return std::ranges::any_of(stage.memberships, is_it);
+  };
+  if (std::ranges::none_of(stages, is_of)) return;
+  throw NotFound(fmt::format(
+      "{0} is an experiment, and `show` takes a run, checkpoint or figure. Use `shearcell status "
+      "--experiment {0}` for its runs, or `table` or `figures` with --experiment {0}",
+      name));
 }
 
 struct ShowOptions {
@@ -451,18 +464,18 @@ void show(const ShowOptions& options, Context& context) {
   // Ids of runs and checkpoints have no dot or slash.
   if (name.find_first_of("./") != std::string::npos)
     return show_published(store, name, list, context);
-  if (name.size() >= 4) {
-    if (const auto checkpoint = store.find_checkpoint(name)) {
-      for (const Stage& stage : store.stages()) {
-        if (!stage.id.starts_with(name)) continue;
-        throw NotFound(
-            fmt::format("a run and a checkpoint begin with '{}'; give more digits of one of\n"
-                        "  run {}\n  checkpoint {}",
-                        name, stage.id, checkpoint->sha256));
-      }
-      return show_checkpoint(store, *checkpoint, context);
-    }
+  const std::vector<Stage> stages = store.stages();
+  const auto run =
+      std::ranges::find_if(stages, [&](const Stage& stage) { return stage.id.starts_with(name); });
+  const auto checkpoint = name.size() < 4 ? std::nullopt : store.find_checkpoint(name);
+  if (checkpoint && run != stages.end()) {
+    throw NotFound(fmt::format(
+        "a run and a checkpoint begin with '{}'; give more digits of one of\n  run {}\n  "
+        "checkpoint {}",
+        name, run->id, checkpoint->sha256));
   }
+  if (checkpoint) return show_checkpoint(store, *checkpoint, context);
+  if (run == stages.end()) require_no_experiment(name, stages);
   show_run(store, store.find_stage(name), context);
 }
 

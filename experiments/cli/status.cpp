@@ -64,12 +64,32 @@ std::string describe(const QueuedTask& task) {
   return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-/// State and cycle of the run: as its task reports them if that is ahead, else as the store has.
-std::pair<StageState, double> progress_of(const Stage& stage, const QueuedRun* queued) {
+/// State and cycle of the run: as its task reports them if the task is ahead of the store, else as
+/// the store has them. A run that was killed is interrupted.
+std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
+  const QueuedRun* queued = view.queued(stage);
   const bool reported =
       queued != nullptr && queued->reported && stage.state != StageState::completed;
-  if (!reported || queued->reported->cycle < stage.cycle) return {stage.state, stage.cycle};
-  return {queued->reported->state, queued->reported->cycle};
+  if (reported && queued->reported->cycle >= stage.cycle) {
+    return {queued->reported->state, queued->reported->cycle};
+  }
+  const bool killed = stage.state == StageState::running && !view.holders.contains(stage.id);
+  return {killed ? StageState::interrupted : stage.state, stage.cycle};
+}
+
+/// "5/9": the cycle and how many the experiment asks for; "2/9 (until)" if `until` ended the run
+/// before.
+std::string describe_cycles(const Store& store, const Stage& stage, const Ask& ask, double cycle) {
+  if (stage.kind == name_of(StageKind::prepare)) return "";
+  const auto asked = static_cast<double>(ask.target_cycles);
+  double end = asked;
+  if (!ask.until.is_null()) {
+    Stage of_ask = stage;
+    of_ask.memberships = {{{}, ask}};
+    if (const Outlook look = look_at(store, of_ask); look.unreadable.empty()) end = look.end;
+  }
+  return fmt::format("{:.4g}/{}{}", std::min(cycle, end), ask.target_cycles,
+                     end < asked && cycle >= end ? " (until)" : "");
 }
 
 /// A run in one of its places. The table shows what its task reports, JSON what the store has.
@@ -79,7 +99,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
   const bool is_held = held != view.holders.end();
   const QueuedRun* queued = view.queued(stage);
   const bool in_queue = queued != nullptr && stage.state != StageState::completed;
-  const auto [state, cycle] = progress_of(stage, queued);
+  const auto [state, cycle] = progress_of(stage, view);
   const double rate = stage.wall_seconds > 0 ? stage.particle_steps / stage.wall_seconds : 0;
   const Place& place = shown.place;
   const std::string name = view.names.of(stage, place);
@@ -90,35 +110,34 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
             {"name", view.names.of(stage, m.place)},
             {"seed", m.place.seed},
             {"newest", m.newest},
+            {"target_cycles", m.ask.target_cycles},
             {"manifest", m.place.manifest}};
   };
-  Facts all = {{"id", stage.id, "run", stage.id.substr(0, 8)},
-               {"name", name, "variant", name + (shown.newest ? "" : " (older version)")},
-               {"seed", place.seed, "seed"},
-               {"N", stage.grains, "N"},
-               {"state", name_of(stage.state), "state",
-                fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
-               {"cycle", stage.cycle, "cycle",
-                stage.kind == name_of(StageKind::prepare)
-                    ? ""
-                    : fmt::format("{:.4g}/{}", cycle, stage.target_cycles)},
-               {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
-               {"wall_seconds", stage.wall_seconds, "time", format_duration(stage.wall_seconds)},
-               {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
-               {"experiment", place.experiment},
-               {"scale", scale_name(place.scale)},
-               {"variant", place.variant},
-               {"kind", stage.kind},
-               {"parent", stage.parent},
-               {"places", list_of(listed.places, place_facts)},
-               {"target_cycles", stage.target_cycles},
-               {"step", stage.step},
-               {"attempts", stage.attempts},
-               {"state_hash", stage.state_hash},
-               {"error", stage.error},
-               {"updated_at", stage.updated_at},
-               {"ended", end_of(stage)},
-               {"holder", is_held ? facts(held->second) : nlohmann::json()}};
+  Facts all = {
+      {"id", stage.id, "run", stage.id.substr(0, 8)},
+      {"name", name, "variant", name + (shown.newest ? "" : " (older version)")},
+      {"seed", place.seed, "seed"},
+      {"N", stage.grains, "N"},
+      {"state", name_of(stage.state), "state",
+       fmt::format("{}{}", name_of(state), is_held ? " *" : "")},
+      {"cycle", stage.cycle, "cycle", describe_cycles(view.store, stage, shown.ask, cycle)},
+      {"particle_steps_per_second", rate, "M/s", fmt::format("{:.1f}", rate * 1e-6)},
+      {"wall_seconds", stage.wall_seconds, "time", format_duration(stage.wall_seconds)},
+      {"queue", queued == nullptr ? nlohmann::json() : facts(*queued)},
+      {"experiment", place.experiment},
+      {"scale", scale_name(place.scale)},
+      {"variant", place.variant},
+      {"kind", stage.kind},
+      {"parent", stage.parent},
+      {"places", list_of(listed.places, place_facts)},
+      {"target_cycles", stage.target_cycles},
+      {"step", stage.step},
+      {"attempts", stage.attempts},
+      {"state_hash", stage.state_hash},
+      {"error", stage.error},
+      {"updated_at", stage.updated_at},
+      {"ended", end_of(stage)},
+      {"holder", is_held ? facts(held->second) : nlohmann::json()}};
   if (!view.queue.runs.empty()) {
     all.push_back({"", nullptr, "queue", in_queue ? describe(queued->task) : ""});
   }
@@ -135,9 +154,9 @@ struct Estimate {
   double seconds() const { return work.seconds(at_a_time); }
 };
 
-/// Nothing if nothing is left, or where this version cannot read a record (`verify` names it).
+/// Nothing if nothing is left, or if this version cannot read a record: `problem` then says why.
 /// Stages that failed or cannot start are left out.
-std::optional<Estimate> estimate(const View& view) {
+std::optional<Estimate> estimate(const View& view, std::string& problem) {
   const Rates rates(view.store.stages());
   std::size_t running = 0;
   Estimate made;
@@ -145,10 +164,14 @@ std::optional<Estimate> estimate(const View& view) {
     const QueuedRun* queued = view.queued(stage);
     const bool in_task = queued != nullptr && queued->task.state == "running";
     running += view.holders.contains(stage.id) || in_task ? 1 : 0;
-    if (stage.state == StageState::failed || waits_for_failed(view.store, stage)) continue;
+    if (has_failed(view.store, stage)) continue;
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
-    if (!look.unreadable.empty()) return std::nullopt;
+    if (!look.unreadable.empty()) {
+      problem = fmt::format("run {:.8}: {}; `shearcell verify` checks the store", stage.id,
+                            look.unreadable);
+      return std::nullopt;
+    }
     made.at_most = made.at_most || look.may_end_early;
     made.work.add(stage, look, rates);
   }
@@ -188,7 +211,7 @@ void print_tables(const View& view) {
   std::map<std::string, std::vector<Facts>> tables;
   std::map<StageState, std::size_t> count;
   for (const PlacedRun& listed : view.runs) {
-    ++count[progress_of(listed.stage, view.queued(listed.stage)).first];
+    ++count[progress_of(listed.stage, view).first];
     for (const Membership& shown : listed.places) {
       const std::string name =
           shown.place.experiment + " at scale " + scale_name(shown.place.scale);
@@ -211,9 +234,12 @@ void print_tables(const View& view) {
 /// Prints the tables, the estimate, and notes on single runs.
 void print(const View& view) {
   print_tables(view);
-  if (const auto left = estimate(view)) print(*left);
-  const auto waiting = std::ranges::count_if(
-      view.runs, [&](const PlacedRun& one) { return waits_for_failed(view.store, one.stage); });
+  std::string unknown;
+  if (const auto left = estimate(view, unknown)) print(*left);
+  if (!unknown.empty()) print_text("It is not known how much is left: {}\n", unknown);
+  const auto waiting = std::ranges::count_if(view.runs, [&](const PlacedRun& one) {
+    return one.stage.state != StageState::failed && has_failed(view.store, one.stage);
+  });
   if (waiting > 0) {
     print_text("{} cannot start, since the packing failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
@@ -238,11 +264,14 @@ void status(const RunSelection& selection, Context& context) {
   const View view(selection, context);
   if (!context.json) return print(view);
   const std::string& problem = view.queue.problem;
+  std::string unknown;
+  const std::optional<Estimate> left = estimate(view, unknown);
   print_json({{"runs", list_of(view.runs,
                                [&](const PlacedRun& run) {
                                  return to_json(facts(run, run.places.front(), view));
                                })},
-              {"estimate", facts(estimate(view))},
+              {"estimate", facts(left)},
+              {"estimate_problem", unknown.empty() ? nlohmann::json() : nlohmann::json(unknown)},
               {"submissions", list_of(view.queue.submissions,
                                       [](const Submission& open) -> nlohmann::json {
                                         return {{"id", open.id},
@@ -263,9 +292,11 @@ void add_status(CLI::App& app, Context& context) {
   add_selection_options(*command, *selection, true);
   add_common_options(
       *command, context,
-      R"(M/s is million particle-steps per second over all recorded work. A run that is `running` but
-that no program holds was killed; `resume` continues it. Runs on a cluster show their place in its
-queue and the progress of their tasks. The time left is estimated from the speed so far.
+      R"(M/s is million particle-steps per second over all recorded work. The cycle 2/9 (until) means that
+9 cycles were asked for and `until` ended the run at cycle 2. A run whose program was killed is shown
+as interrupted (with --json: `running`, without a `holder`); `resume` continues it. Runs on a cluster
+show their place in its queue and the progress of their tasks. The time left is estimated from the
+speed so far.
 Examples:
   shearcell status
   watch -n 10 shearcell status

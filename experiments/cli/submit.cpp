@@ -69,7 +69,7 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {} queued or being computed already, or waiting for a packing that is; see "
+        "left out: {} that are queued or computed already, or wait for such a packing; see "
         "`shearcell status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
@@ -92,9 +92,9 @@ void show_jobs(const fs::path& store, Result& result) {
     for (const std::string& word : job.command) line += shell_word(word) + " ";
     return fmt::format("{}\n\n{}", line, job.script);
   };
-  result.text = fmt::format(
-      "Nothing was submitted. The array job:\n\n{}\nand, when all of it has ended:\n\n{}",
-      shown(array), shown(merging));
+  result.text =
+      fmt::format("Nothing was submitted. The array job:\n\n{}\nand the job after it:\n\n{}",
+                  shown(array), shown(merging));
 }
 
 /// Queues both jobs. If the second fails, the stores can be merged by hand.
@@ -117,6 +117,7 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
     warn(context, fmt::format("{}\nThe stores of the tasks are not merged by themselves: "
                               "`shearcell submit` again, or `merge` them, when the job has ended",
                               error.what()));
+    fail(context, kOtherError);
   }
   store.record(kSubmissions,
                {"JobQueued", {{"submission", submission.id}, {"job", job}, {"fold_job", merging}}});

@@ -16,14 +16,13 @@ struct TableOptions {
   std::string per = std::string(name_of(RowPer::checkpoint));
   std::string format = "csv";
   std::string curve;
-  std::string out;
+  std::string out = "-";
   std::vector<std::string> simulated;
 };
 
 void table(const TableOptions& options, Context& context) {
   const Store store(context.store, Access::read);
-  const bool to_stdout = options.out.empty() || options.out == "-" || options.out == "/dev/stdout";
-  if (!to_stdout) require_ours(options.out, is_table);
+  if (!is_stream(options.out)) require_ours(options.out, is_table);
   const MeasureOptions how{.workers = usable_cores(),
                            .report = terminal_counter("measuring checkpoint")};
   const Measure* curve = find_measure(options.curve, MeasureKind::curve);
@@ -34,11 +33,8 @@ void table(const TableOptions& options, Context& context) {
   const std::string text = context.json               ? to_json(made, true)
                            : options.format == "json" ? to_json(made)
                                                       : to_csv(made.table, Digits::all);
-  if (to_stdout) {
-    // Only a terminal gets escaped text.
-    fmt::print("{}", terminal_columns(stdout) ? for_terminal(text) : text);
-  } else {
-    write_output(options.out, text);
+  write_result(options.out, text);
+  if (!is_stream(options.out)) {
     print_stderr("{} rows of {} columns in {}\n", made.table.rows.size(), made.table.columns.size(),
                  options.out);
   }
@@ -85,7 +81,8 @@ void add_table(CLI::App& app, Context& context) {
             fmt::format("Add {}, which is simulated: {}", fmt::join(added, ", "), one.cost))
         ->excludes(command->get_option("--curve"));
   }
-  command->add_option("--out", options->out, "File to write (default, and for -: standard output)")
+  command->add_option("--out", options->out, "File to write; - is standard output")
+      ->capture_default_str()
       ->check(unfit_output)
       ->type_name("FILE");
   add_common_options(
@@ -93,9 +90,10 @@ void add_table(CLI::App& app, Context& context) {
       "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
       "field\nis unknown or does not apply):\n" +
           columns_text +
-          "Simulated columns come with their option alone. The last ones, from critical_size on, "
-          "are those of --per run, whose measures are of the newest\ncheckpoint. A row for each "
-          "experiment that shares a run, up to the cycles that it asks for.\n\nCurves:\n" +
+          "Simulated columns need their option. Columns from critical_size on need --per run, "
+          "whose "
+          "measures are\ntaken at the newest checkpoint. A run of several experiments has rows for "
+          "each, up to the\ncycles that the experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

@@ -26,7 +26,8 @@ struct VerifyOptions {
 };
 
 const char* name_of_severity(const Finding& finding) {
-  return finding.severity == Finding::Severity::error ? "error" : "note";
+  using enum Finding::Severity;
+  return finding.severity == error ? "error" : finding.severity == note ? "note" : "not checked";
 }
 
 // Reads "16 ab12..." (two words or one) or "16:ab12...".
@@ -134,10 +135,10 @@ nlohmann::json facts(const VerifyReport& report) {
 }
 
 // Checks runs and cached measures. Reads records and files, so it does nothing if the store is
-// damaged.
+// damaged or a file cannot be read.
 MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
   MeasureCheck measures;
-  if (!report.ok()) return measures;
+  if (!report.ok() || report.count(Finding::Severity::unread) > 0) return measures;
   const Store store(context.store, Access::read);
   for (Finding& finding : check_runs(store)) report.findings.push_back(std::move(finding));
   if (!report.ok()) return measures;
@@ -154,13 +155,16 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
   print_text("{}, {} ({}), {}: {}\nhead {} {}\n", counted(report.events, "event"),
              counted(report.checkpoints, "checkpoint"),
              format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
-             report.ok() ? "nothing was changed" : "DAMAGED", report.head.seq, report.head.hash);
+             !report.ok()                                  ? "DAMAGED"
+             : report.count(Finding::Severity::unread) > 0 ? "not all was checked"
+                                                           : "nothing was changed",
+             report.head.seq, report.head.hash);
   if (measures.cached > 0) {
     print_text("recomputed the measures of {} of {} checkpoints\n", measures.computed,
                measures.cached);
   }
   if (measures.absent + measures.not_covered > 0) {
-    print_text("measures of pruned checkpoints: {} absent; those of {} not covered by the log\n",
+    print_text("measures of pruned checkpoints: {} absent; the log does not cover {}\n",
                measures.absent, counted(measures.not_covered, "checkpoint"));
   }
   if (report.ok()) {
@@ -180,6 +184,7 @@ void verify(const VerifyOptions& options, Context& context) {
                      {"not_covered_checkpoints", measures.not_covered},
                      {"absent", measures.absent}};
   if (!context.json) print(report, measures);
+  if (report.count(Finding::Severity::unread) > 0) fail(context, kOtherError);
   if (!report.ok()) {
     fail(context, kStoreDamaged);
     if (options.replay > 0) print_stderr("Not replayed: the store is damaged.\n");
@@ -224,8 +229,8 @@ void add_verify(CLI::App& app, Context& context) {
 describes (step, cycle, time, units, grains, observables, state); that each run has the
 parameters and swept values of its id and began from a completed packing; that the tables follow
 from the events; that cached measures of pruned checkpoints are those that the log names.
---replay K recomputes K sampled checkpoints from the ones before, compares every bit of the
-state and of all that is recorded with it, and records the outcome. It skips a checkpoint if all
+--replay K recomputes K sampled checkpoints from the checkpoints before them, compares every bit
+of the state and of all that is recorded with the state, and records the outcome. It skips a checkpoint if all
 files before it were pruned. --measures K recomputes
 what derived.sqlite caches of K sampled checkpoints.
 Cannot prove: what is not sampled; when, where and how fast a run was computed; trajectories

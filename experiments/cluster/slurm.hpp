@@ -59,7 +59,7 @@ void require_slurm();
 /// MachineError when the job may or may not be queued.
 std::string queue_job(const Job& job, const std::filesystem::path& folder);
 
-/// The jobs of these names that wait, run or are about to end, of all users and partitions. Asks
+/// Jobs with these names that wait, run or are about to end, of all users and partitions. Asks
 /// Slurm only if there are names. Throws ProgramError.
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names);
 

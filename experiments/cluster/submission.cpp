@@ -161,7 +161,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
     if (parent.empty() || one.look.done) continue;
     const auto [place, fresh] = places.try_emplace(packing, shares.size());
     if (fresh) {
-      shares.push_back(packings[packing]);  // nothing if only a recorded state of it is planned
+      shares.push_back(packings[packing]);  // no cost if it is not planned
       shares.back().packings = {packing};
     }
     shares[place->second].add(left);

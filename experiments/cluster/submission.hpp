@@ -26,7 +26,7 @@ namespace shearcell {
 struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages that start from them
-  double particle_steps = 0;          ///< left, including those of the packings
+  double particle_steps = 0;          ///< left, the packings included
   double core_seconds = 0;            ///< for these, at the rates of the engines
 
   void add(const Share& other);

@@ -39,7 +39,7 @@ struct ExportedState : Particles {
   /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
-  MeasureOutcome unread;                    ///< earlier ones, whose measures are NaN
+  MeasureOutcome unread;                    ///< earlier checkpoints; measures over them are NaN
 
   /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
   std::optional<LammpsTask> continued;

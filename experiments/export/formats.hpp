@@ -31,7 +31,7 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
 /// A folder with grains_CYCLE.vtp (points with their data; scalars as field data) and
 /// cell_CYCLE.vtp (the six faces of the cell) for each frame, and frames.pvd over all of them. SI.
-/// `frames`: how many will be written; the last one completes frames.pvd.
+/// `frames`: the number of frames that will be written; the last one completes frames.pvd.
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
 /// A folder with frame_CYCLE.data for each frame (lammps_data, SI; the title has the planes of the
@@ -46,8 +46,8 @@ FrameWriter lammps_writer(const std::filesystem::path& folder);
 FrameWriter contacts_writer(const std::filesystem::path& folder);
 
 /// FOLDER/run.json: {"run", ..., "parameters": {...}, "frames": [{"cycle", "checkpoint",
-/// scalars}]}, beside the files of the formats that are folders. `frames`: as of vtk_writer(); the
-/// last one writes the file.
+/// scalars}]}, beside the files of the formats that are folders. `frames`: as in vtk_writer();
+/// the last frame writes the file.
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t frames);
 
 }  // namespace shearcell

@@ -64,7 +64,7 @@ std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) 
   return line;
 }
 
-// The planes of the cell are not those of the box; a start from the file needs them.
+// The title has the planes of the cell, since the box is larger; a start from the file needs them.
 std::string lammps_title(const ExportedState& f) {
   const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(

@@ -82,7 +82,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
     }
     if (last_only) continue;
     const bool completed = run.stage.state == StageState::completed;
-    const bool failed = run.stage.state == StageState::failed || waits_for_failed(store, run.stage);
+    const bool failed = has_failed(store, run.stage);
     const std::string name =
         fmt::format("{} seed {}{}", run.name, run.place.seed, failed ? " (failed)" : "");
     if (asked.made.empty()) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -121,6 +122,8 @@ std::vector<std::string> with_members(const Store& store,
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection) {
   Filter experiment(with_members(store, selection.experiments)), scale(selection.scales);
   Filter seed(selection.seeds), variant(selection.variants);
+  std::optional<VariantNames> names;
+  if (!selection.variants.empty()) names.emplace(store);
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
   std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`
@@ -131,7 +134,7 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
       // Not by &&: each has to see every value.
       bool passes = experiment.passes(place.experiment);
       passes &= scale.passes(scale_name(place.scale));
-      passes &= variant.passes(place.variant);
+      passes &= variant.passes(place.variant, names ? names->of(stage, place) : "");
       passes &= seed.passes(std::to_string(place.seed));
       passes &= selection.states.empty() ||
                 std::ranges::count(selection.states, name_of(stage.state)) > 0;

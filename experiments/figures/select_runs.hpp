@@ -14,7 +14,7 @@ namespace shearcell {
 struct RunSelection {
   std::vector<std::string> experiments = {};
   std::vector<std::string> scales = {};
-  /// "fluid=cell" also selects the variant "fluid=cell,amplitude_rad=0.1".
+  /// Values or labels: "fluid=cell" also selects the variant "fluid=cell,amplitude_rad=0.1".
   std::vector<std::string> variants = {};
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::string> states = {};  ///< names of StageState

@@ -186,9 +186,12 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
            fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
   }
+  std::vector<nlohmann::json> all_swept;
+  for (const Variant& variant : variants) all_swept.push_back(variant.swept);
+  const auto all_names = variant_names(all_swept, manifest.labels);
   std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
-    if (!wanted.passes(variant.name)) continue;
+    if (!wanted.passes(variant.name, all_names.at(variant.swept))) continue;
     chosen.push_back(variant);
     if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {

@@ -145,10 +145,13 @@ Filter::Filter(const std::vector<std::uint64_t>& wanted) {
   }
 }
 
-bool Filter::passes(const std::string& value) {
+bool Filter::passes(const std::string& value, const std::string& name) {
   if (wanted_.empty()) return true;
   if (known_.insert(value).second) seen_.push_back(value);
-  const std::set<std::string> parts = parts_of(value);
+  std::set<std::string> parts = parts_of(value), of_name = parts_of(name);
+  const bool same = std::ranges::includes(parts, of_name);
+  if (!same && known_.insert(name).second) seen_.push_back(name);
+  parts.merge(of_name);
   std::map<std::string_view, bool> fits;  // by keys
   for (Wanted& one : wanted_) {
     const bool has = std::ranges::includes(parts, one.parts);

@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// The value of a parameter that the scale does not sweep, or "auto".
+/// The value of a parameter at this scale, if it is not swept; or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// A combination of swept values.
@@ -25,8 +25,8 @@ struct Variant {
   std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
   nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
-  Parameters packing = {};  ///< `parameters` while the packing settles, with the values of `settle`
-  /// The variant has this many of the scale's seeds, the first ones; default: all.
+  Parameters packing = {};  ///< `parameters`, with those of `settle` in their place
+  /// How many of the seeds it has, the first ones; default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -39,12 +39,14 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether to select the value. Texts with the same keys are alternatives; a value must fit one
-  /// text for each set of keys. True if no texts were given.
-  bool passes(const std::string& value);
+  /// Whether to select the value, by its own parts or those of its display name. Texts with the
+  /// same keys are alternatives; a value must fit one text for each set of keys. True if no texts
+  /// were given.
+  bool passes(const std::string& value, const std::string& name = "");
   /// The first text that fitted no value so far, or null.
   const std::string* unfound() const;
-  /// The values that passes() was asked about, each once, in order.
+  /// The values that passes() was asked about, each once, in order; after each value its name, if
+  /// the name has other parts.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
@@ -71,7 +73,7 @@ std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::
 /// The swept axis of this key, or nullptr.
 const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 
-/// The number of variants, or ManifestLimits::runs + 1 if there are more.
+/// The number of variants; ManifestLimits::runs + 1 for all larger numbers.
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the

@@ -116,7 +116,7 @@ std::string difference(const json& cached, const json& computed, const std::stri
     return fmt::format("{}{}: {} is cached, {} is computed", measure, path, a.at(path).dump(),
                        value.dump());
   }
-  return a.size() == b.size() ? "" : measure + ": its structure is another one";
+  return a.size() == b.size() ? "" : measure + ": its structure differs";
 }
 
 struct CachedMeasure {
@@ -198,7 +198,10 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
       check.absent += found.absent;
     }
   }
-  if (check.absent > 0 && !cache.trouble().empty()) note("", cache.trouble());
+  if (check.absent == 0) return;
+  for (const std::string& why : {cache.trouble(), cache.replaced()}) {
+    if (!why.empty()) note("", why);
+  }
 }
 
 /// Returns why measures cannot be copied; "" if they can.

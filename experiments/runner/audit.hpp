@@ -23,8 +23,8 @@ std::vector<Finding> check_runs(const Store& store);
 /// Checkpoints of LAMMPS and of programs with another bits version cannot be replayed.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
-/// A random sample of `count` records without repetition, or all records; the same for the same
-/// seed.
+/// A random sample of `count` records without repetition, or all records. A seed always gives the
+/// same sample.
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed);
 
@@ -33,7 +33,7 @@ std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
   std::size_t cached = 0;       ///< checkpoints of the store with cached measures
-  std::size_t computed = 0;     ///< of these, computed again
+  std::size_t computed = 0;     ///< checkpoints whose measures were computed again
   std::size_t not_covered = 0;  ///< checkpoints that an earlier version pruned, without digests
   std::size_t absent = 0;       ///< measures that digests cover and the cache lacks
   std::vector<Finding> findings = {};  ///< errors
@@ -41,7 +41,7 @@ struct MeasureCheck {
 
 /// Recomputes the measures that derived.sqlite in `folder` keeps, for `count` sampled checkpoints
 /// of the store, and compares them to a relative 1e-9 (mathematical libraries differ in the last
-/// bits). Compares those of checkpoints that the store in `folder` has pruned with their digests.
+/// bits). Compares the measures of checkpoints that the store in `folder` has pruned with the log.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 

@@ -363,8 +363,8 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-/// A job for each stage, named by its first place, and by its id where names are equal, as those of
-/// several scales.
+/// A job for each stage, named by its first place. Its id is added if several stages have one name,
+/// as at several scales.
 std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
   std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
@@ -426,7 +426,7 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (const Stage& stage : stages) {
     if (prefixes.empty() && !look_at(store, stage).done) asked.push_back(stage.id);
   }
-  // The stages before are asked for as well: one of them may have lost its last checkpoint.
+  // Parents are asked for too, since a parent may have lost its last checkpoint.
   const std::set<std::string> wanted = with_parents(store, asked);
   std::erase_if(stages, [&](const Stage& stage) { return !wanted.contains(stage.id); });
   return jobs_of(stages, VariantNames(store));

@@ -97,6 +97,9 @@ class Measuring {
   void look_up() {
     const auto found = cache_.get(keys_);
     for (const ToMeasure& one : distinct_) {
+      if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
+        throw MachineError(cache_.trouble() + "; it holds the only measures of pruned checkpoints");
+      }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
            {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {

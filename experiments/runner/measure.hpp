@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures of many checkpoints: reads the cached ones, computes the others, several at a time, and
+// Measures of many checkpoints: reads cached measures, computes missing ones in parallel, and
 // caches them.
 #pragma once
 
@@ -35,7 +35,7 @@ struct MeasureOptions {
 
 struct MeasureOutcome {
   std::set<std::string> damage;    ///< a line for each checkpoint that could not be read
-  std::set<std::string> pruned;    ///< likewise, where its file was pruned
+  std::set<std::string> pruned;    ///< a line for each one whose file was pruned
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints that were analysed now
   std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that entered measures
   std::string cache_trouble;       ///< why results cannot be cached; "" if they can
@@ -43,8 +43,8 @@ struct MeasureOutcome {
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-/// A checkpoint of an experiment that asks for one `every` so many cycles. Measures over two
-/// checkpoints use no others.
+/// A checkpoint of an experiment with a checkpoint after each `every` cycles. Measures over two
+/// checkpoints use only checkpoints of this cadence.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;

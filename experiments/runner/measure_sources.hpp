@@ -27,8 +27,8 @@ class MeasureSources {
   /// run; any number of threads may then call them.
   void read_run(const std::string& run);
 
-  /// The earlier checkpoint of the same run that the provider needs, if an experiment that asks for
-  /// a checkpoint `every` so many cycles has one there; else null. Valid as long as this object.
+  /// The earlier checkpoint of the same run that the provider needs; null if an experiment with a
+  /// checkpoint after each `every` cycles has none there. Valid as long as this object.
   const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
                                   std::uint64_t every) const;
 
@@ -43,8 +43,8 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< in the log; of these, not in the cache
-    std::string altered;                ///< says which are others than in the log; "" if none is
+    std::size_t named = 0, absent = 0;  ///< in the log; and not in the cache
+    std::string altered;                ///< names one that differs from the log; "" if none does
   };
   /// Compares what is cached of a checkpoint that is pruned now with the log.
   PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;

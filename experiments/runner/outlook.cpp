@@ -156,7 +156,7 @@ double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-/// Of a shear, whose end is known.
+/// Sets what is left of a shear whose end is known.
 void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
                std::span<const Ask> asks, std::span<const CheckpointRecord> checkpoints,
                Outlook& look) {
@@ -336,8 +336,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The most cycles [at most those that the stage has] for which an experiment without this `until`
-/// asked when the stage ended; 0 without any.
+/// The largest number of cycles that an experiment without this `until` had asked for when the
+/// stage ended, if the stage has so many cycles; else 0.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -375,7 +375,7 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
     PlannedStage& one = stages[place->second];
     if (const auto found = known.find(planned.id); fresh && found != known.end()) {
       one.stage = std::move(found->second);
-      one.stage.resolved = planned.resolved;  // that of the store may be damaged
+      one.stage.resolved = planned.resolved;  // the store's copy may be damaged
       one.memberships = one.stage.memberships;
       one.checkpoints = store->checkpoints(one.stage.id, Listed::and_pruned);
     }
@@ -554,9 +554,9 @@ std::set<std::string> with_parents(const Store& store, const std::vector<std::st
   return all;
 }
 
-bool waits_for_failed(const Store& store, const Stage& stage) {
-  return !has_ended(stage.state) && !stage.parent.empty() &&
-         store.stage(stage.parent).state == StageState::failed;
+bool has_failed(const Store& store, const Stage& stage) {
+  if (has_ended(stage.state)) return stage.state == StageState::failed;
+  return !stage.parent.empty() && store.stage(stage.parent).state == StageState::failed;
 }
 
 }  // namespace shearcell

@@ -31,8 +31,8 @@ struct Outlook {
   /// The stage is completed for all asks and no checkpoint is missing.
   bool done = false;
   /// Ascending steps of missing checkpoints: asked for, before the last checkpoint, and never
-  /// recorded, for example because a denser cadence was asked for later. A replay makes them. None
-  /// of LAMMPS, which does not repeat bits: they cannot be made later.
+  /// recorded, for example because a denser cadence was asked for later. A replay makes them. Empty
+  /// for LAMMPS, which does not repeat bits, so that no checkpoint can be made later.
   std::vector<std::uint64_t> missing = {};
   /// The cycle at which the stage ends: the largest number of cycles that is asked for, or an
   /// earlier one at which `until` is known to end the stage.
@@ -55,8 +55,8 @@ struct Outlook {
 
 /// What is left of a stage for `asks`. `stage`: a recorded stage, or a new one; its recorded asks
 /// need not be `asks`. `checkpoints`: all checkpoints of the stage except rejected ones, by step
-/// (Listed::and_pruned). A completed stage also meets an ask whose `until` is that of a recorded
-/// ask with at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
+/// (Listed::and_pruned). A completed stage also meets an ask if a recorded ask has the same
+/// `until` and at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -76,11 +76,11 @@ struct AskedCheckpoints {
   /// Ascending steps before the stage's last checkpoint that were never recorded; at most a
   /// million.
   std::vector<std::uint64_t> missing = {};
-  double to_come = 0;  ///< how many are left after it; of more than 10,000 an estimate
+  double to_come = 0;  ///< number after the stage's last checkpoint; above 10,000 an estimate
 };
 
-/// Those of cycles `first` to `last`; `checkpoints` as in outlook(). If the stage is not a shear,
-/// or without asks: what was made at whole cycles.
+/// The checkpoints of cycles `first` to `last`; `checkpoints` as in outlook(). If the stage is not
+/// a shear, or there are no asks: the checkpoints that were made at whole cycles.
 AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
                                    std::span<const CheckpointRecord> checkpoints, double first = 0,
                                    double last = StoreLimits::cycles);
@@ -98,7 +98,7 @@ Outlook look_at(const Store& store, const Stage& stage);
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Membership> memberships = {};  ///< those of the store and of all plans
+  std::vector<Membership> memberships = {};  ///< in the store and in all plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };
@@ -120,7 +120,8 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// AskedCheckpoints::made of one of the asks, each of which ends at end_for(); pruned ones too.
+/// The checkpoints that were made and that at least one ask wants, each ask up to its end_for();
+/// with pruned checkpoints.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
@@ -183,14 +184,15 @@ struct Work {
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);
-  /// Wall time [s] with so many stages at a time.
+  /// Wall time [s] if `at_a_time` stages are computed at once.
   double seconds(std::size_t at_a_time) const;
 };
 
 /// The stages with these ids, and those that they start from, down to their packings.
 std::set<std::string> with_parents(const Store& store, const std::vector<std::string>& stages);
 
-/// Whether the stage cannot start, because the one before it failed.
-bool waits_for_failed(const Store& store, const Stage& stage);
+/// Whether nothing more is computed of the stage by itself: it failed, or cannot start because its
+/// parent failed.
+bool has_failed(const Store& store, const Stage& stage);
 
 }  // namespace shearcell

@@ -24,7 +24,7 @@ struct Particles {
   double radius = 0;                ///< of every particle
   double mass = 0;                  ///< of every grain
   Eigen::Matrix3Xd position;        ///< z within the cell
-  Eigen::Matrix3Xd velocity;        ///< of wall grains that of their wall
+  Eigen::Matrix3Xd velocity;        ///< a wall grain has the velocity of its wall
   std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
 

@@ -35,6 +35,14 @@ std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   return found;
 }
 
+VariantNames::Labels recorded_labels(const Store& store) {
+  VariantNames::Labels labels;
+  for (const RegisteredManifest& manifest : registered_manifests(store)) {
+    labels[manifest.sha256] = recorded_manifest(manifest.text).labels;
+  }
+  return labels;
+}
+
 }  // namespace
 
 std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage& stage,
@@ -45,20 +53,21 @@ std::pair<VariantNames::Group, nlohmann::json> VariantNames::key_of(const Stage&
   return {{place.experiment, place.manifest, place.scale}, place.swept};
 }
 
-VariantNames::VariantNames(const Store& store) {
-  std::map<std::string, std::vector<VariantLabel>> labels;
-  for (const RegisteredManifest& manifest : registered_manifests(store)) {
-    labels[manifest.sha256] = recorded_manifest(manifest.text).labels;
-  }
+VariantNames::VariantNames(const Store& store)
+    : VariantNames(store.stages(), recorded_labels(store)) {}
+
+VariantNames::VariantNames(const std::vector<Stage>& stages, const Labels& labels) {
   std::map<Group, std::vector<nlohmann::json>> values;
-  for (const Stage& stage : store.stages()) {
+  for (const Stage& stage : stages) {
     for (const Membership& m : stage.memberships) {
       auto [group, vary] = key_of(stage, m.place);
       values[group].push_back(std::move(vary));
     }
   }
   for (const auto& [group, vary] : values) {
-    auto names = variant_names(vary, labels[std::get<1>(group)]);
+    const auto stated = labels.find(std::get<1>(group));
+    auto names =
+        variant_names(vary, stated == labels.end() ? std::vector<VariantLabel>() : stated->second);
     if (std::get<1>(group) == kPackings) {
       for (auto& [parameters, name] : names) name = "packing " + name;
       if (names.size() < 2) continue;  // the variant is called "packing"

@@ -22,12 +22,14 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of all variants in a store, by variant_names() of each manifest. A settled packing
+/// Display names of the variants of stages, by variant_names() of each manifest. A settled packing
 /// is called "packing". If an experiment has packings that differ at one scale, the values that
 /// differ follow: "packing N=600".
 class VariantNames {
  public:
+  using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
+  VariantNames(const std::vector<Stage>& stages, const Labels& labels);
   /// The name of the stage in this place; if unknown, the variant.
   std::string of(const Stage& stage, const Place& place) const;
 

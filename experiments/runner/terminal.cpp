@@ -5,9 +5,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cwchar>
 #include <memory>
+#include <sstream>
+#include <vector>
 
 #include "experiments/manifest/document.hpp"
 #include "provenance/io/clock.hpp"
@@ -49,7 +52,8 @@ std::optional<std::size_t> terminal_columns(std::FILE* stream) {
 }
 
 bool moves_cursor(std::FILE* stream) {
-  return isatty(fileno(stream)) != 0 && environment("TERM") != "dumb";
+  const std::string_view kind = environment("TERM");
+  return isatty(fileno(stream)) != 0 && !kind.empty() && kind != "dumb";
 }
 
 bool shows_colours(std::FILE* stream) {
@@ -77,12 +81,49 @@ std::string_view first_columns(std::string_view text, std::size_t count) {
   return text.substr(0, end);
 }
 
+std::string filled(std::string_view help, std::size_t width) {
+  constexpr std::size_t kNarrowest = 24;  // of a column of text
+  std::vector<std::string> paragraphs;
+  std::istringstream lines{std::string(help)};
+  bool goes_on = false;  // the paragraph
+  for (std::string line; std::getline(lines, line);) {
+    const bool heading = line.starts_with("Usage:") || (line.size() < 20 && line.ends_with(':'));
+    const bool plain = !line.empty() && line[0] != ' ' && !heading;
+    if (plain && goes_on) {
+      paragraphs.back() += " " + line;
+    } else {
+      paragraphs.push_back(line);
+    }
+    goes_on = plain;
+  }
+  std::string text;
+  for (const std::string& paragraph : paragraphs) {
+    const std::size_t begin = paragraph.find_first_not_of(' ');
+    std::size_t indent = begin == paragraph.npos ? 0 : begin;
+    // The last column begins after several blanks.
+    const std::size_t blanks = indent > 0 ? paragraph.find("  ", indent) : paragraph.npos;
+    if (blanks != paragraph.npos) indent = paragraph.find_first_not_of(' ', blanks);
+    if (indent + kNarrowest > width) indent = std::min(begin, width / 2);
+    std::string line = paragraph;
+    while (columns_of(line) > width) {
+      const std::size_t longest = first_columns(line, width + 1).size();
+      std::size_t end = line.rfind(' ', longest - 1);
+      if (end == line.npos || line.find_first_not_of(' ') > end) end = line.find(' ', longest);
+      if (end == line.npos || end <= indent) break;  // one long word
+      text += line.substr(0, line.find_last_not_of(' ', end) + 1) + '\n';
+      line = std::string(indent, ' ') + line.substr(line.find_first_not_of(' ', end));
+    }
+    text += line + '\n';
+  }
+  return text;
+}
+
 void write_stderr(std::string_view text) noexcept {
   (void)!std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
-  if (isatty(STDERR_FILENO) == 0) {
+  if (!moves_cursor(stderr)) {
     // Shared by all copies.
     return [what = std::move(what), said = std::make_shared<Stopwatch>()](std::size_t done,
                                                                           std::size_t total) {

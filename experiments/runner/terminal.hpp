@@ -19,7 +19,7 @@ namespace shearcell {
 /// Columns of the terminal behind the stream; none when it is a file or a pipe.
 std::optional<std::size_t> terminal_columns(std::FILE* stream);
 
-/// Whether the stream is a terminal that obeys control sequences: TERM is not "dumb".
+/// Whether the stream is a terminal that obeys control sequences: TERM is set, and not "dumb".
 bool moves_cursor(std::FILE* stream);
 
 /// Whether colours may be written to the stream: such a terminal, and NO_COLOR
@@ -32,6 +32,11 @@ std::size_t columns_of(std::string_view text);
 
 /// The beginning of a UTF-8 text that takes at most `count` columns.
 std::string_view first_columns(std::string_view text, std::size_t count);
+
+/// Fits a help page into `width` columns. Lines of a paragraph are joined and broken again.
+/// Indented lines are not joined; where they are broken, the rest is indented as far as their last
+/// column.
+std::string filled(std::string_view help, std::size_t width);
 
 /// fmt::print of untrusted texts.
 template <typename... Arguments>

@@ -54,7 +54,7 @@ class ChildProcess {
   /// Waits for the end of the program and returns exit_code().
   int wait();
 
-  /// Processor time of the program so far, without that of its children.
+  /// Processor time of the program so far, without its children.
   double core_seconds() const;
 
  private:

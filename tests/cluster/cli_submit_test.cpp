@@ -196,6 +196,11 @@ TEST_F(Submit, KnowsTheNumberOfAJobWhateverIsPrintedWithIt) {
   }
 }
 
+TEST_F(Submit, EndsWithOneIfNoJobMerges) {
+  slurm_that_works("[ $number = 100 ] || exit 1; echo $number");
+  expect(1, {"submit", manifest_}, {"are not merged by themselves", "Submitted as job 100"});
+}
+
 TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
   const std::string hides = "echo \"$name|$number|1|PENDING|Priority|\" >> hidden\n";
   for (const auto& [answer, says] :

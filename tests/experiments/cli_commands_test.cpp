@@ -267,7 +267,7 @@ TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
   write("b.yaml", after("b", "a"));
   expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
-         {"warning: a.yaml: its `start` and those of other manifests name each other's runs",
+         {"warning: a.yaml: these manifests start from each other's runs in a circle",
           "the store has no run of b"});
 }
 
@@ -344,6 +344,16 @@ TEST_F(SharedStore, AProgramContinuesTheRunsOfAKilledOne) {
 }
 
 class CommandLineStore : public ProgramTest {};
+
+TEST_F(CommandLineStore, ShowsARunOfAKilledProgramAsInterrupted) {
+  write("m.yaml", tiny_manifest("  cycles: 4000\n"));
+  EXPECT_EQ(run_until({"run", "m.yaml", "-q"}, 4, SIGKILL).signal, SIGKILL);
+  const std::string shown = expect(0, {"status"}, {"1 interrupted, 1 completed"}).out;
+  EXPECT_FALSE(has(shown, "running")) << shown;
+  const nlohmann::json run = json({"status", "--json"}).at("runs").back();
+  EXPECT_EQ(run.at("state"), "running");
+  EXPECT_TRUE(run.at("holder").is_null());
+}
 
 TEST_F(CommandLineStore, NamesATruncatedCheckpointAndContinues) {
   campaign(tiny_manifest(), {"--cycles", "1", "--seeds", "2"});

@@ -141,9 +141,36 @@ TEST_F(Convenience, TablesHaveColoursOnlyOnATerminal) {
   EXPECT_FALSE(has(on_terminal(80, "NO_COLOR=1", "status"), "\x1b"));
   // Long enough that progress is drawn.
   EXPECT_TRUE(has(on_terminal(80, "NO_COLOR=1", "run m.yaml --cycles 60"), "\x1b[2K"));
-  for (const char* words : {"status", "run m.yaml --cycles 80"}) {
-    EXPECT_FALSE(has(on_terminal(80, "TERM=dumb", words), "\x1b")) << words;
+  std::size_t cycles = 60;
+  for (const std::string environment : {"TERM=dumb", "env -u TERM"}) {
+    const std::string longer = "run m.yaml --cycles " + std::to_string(cycles += 20);
+    for (const std::string& words : {std::string("status"), longer}) {
+      EXPECT_FALSE(has(on_terminal(80, environment, words), "\x1b")) << environment << " " << words;
+    }
   }
+}
+
+TEST_F(Convenience, HelpFitsTheTerminal) {
+  for (const std::string command : {"", "prune ", "export ", "figures "}) {
+    const std::string whole = expect(0, split(command + "--help")).out;
+    for (const int columns : {60, 85}) {
+      std::string shown = on_terminal(columns, "", command + "--help");
+      std::erase(shown, '\r');
+      EXPECT_EQ(split(shown), split(whole)) << "the same words";
+      std::istringstream lines(shown);
+      for (std::string line; std::getline(lines, line);) {
+        const bool one_word = line.find(' ', line.find_first_not_of(' ')) == line.npos;
+        EXPECT_TRUE(one_word || columns_of(line) <= static_cast<std::size_t>(columns)) << line;
+      }
+    }
+  }
+}
+
+TEST(Terminal, FilledTextKeepsColumns) {
+  EXPECT_EQ(filled("One two three\nfour.\n\nExamples:\n  do it\n", 40),
+            "One two three four.\n\nExamples:\n  do it\n");
+  EXPECT_EQ(filled("  --name N      the quick brown fox jumps over the dog\n", 44),
+            "  --name N      the quick brown fox jumps\n                over the dog\n");
 }
 
 TEST_F(Convenience, TablesAreCutBetweenCharacters) {
@@ -205,11 +232,94 @@ TEST_F(Convenience, ExportsTheRequestedCycles) {
 
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "99"},
                  {"shearcell: run ", " has no stored checkpoint in cycles 99"});
+  expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "20:0"},
+                 {"--cycles 20:0: the first cycle is after the last; write 0:20"});
   for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
                                  "h5md --license https://x.org"}) {
     expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),
                    {"has no effect with --to " + line.substr(0, line.find(' '))});
   }
+}
+
+TEST_F(Convenience, OutputGoesToStreams) {
+  campaign(tiny_manifest());
+  const std::string id = last_run();
+  const Arguments xyz = {"export", id, "--to", "extxyz", "--out"};
+  expect(0, joined(xyz, {"run.xyz"}));
+  expect(0, {"report", "--drawings", "--out", "page.html"});
+  const Outcome exported = expect(0, joined(xyz, {"-"}));
+  EXPECT_EQ(exported.out, read_bytes(path("run.xyz")));
+  EXPECT_TRUE(expect(0, {"report", "--drawings", "--out", "-"}).out.starts_with("<!doctype html>"));
+  const std::set<std::string> before = listing();
+  for (const Arguments& words :
+       {Arguments{"table"}, {"report", "--drawings"}, {"export", id, "--to", "extxyz"}}) {
+    EXPECT_EQ(expect(0, joined(words, {"--out", "/dev/null"})).out, "");
+    EXPECT_NE(expect(0, joined(words, {"--out", "/dev/fd/2"})).err, "");
+  }
+  EXPECT_EQ(shell("\"$0\" table --out /dev/fd/3 3>&1 | cat").out, expect(0, {"table"}).out);
+  for (const Arguments& words : {Arguments{"figures"}, {"export", id, "--to", "vtk"}}) {
+    expect_refused(joined(words, {"--out", "-"}), {"this is a folder; name one"});
+  }
+  EXPECT_EQ(listing(), before);
+}
+
+TEST_F(Convenience, LabelsSelectVariants) {
+  campaign(
+      tiny_manifest("  cycles: 0\n", kBothFluids + "labels: {\"fluid=still\": \"at rest\"}\n"));
+  const auto runs = [&](const std::string& variant) {
+    return json({"status", "--json", "--variant", variant}).at("runs").size();
+  };
+  EXPECT_EQ(runs("at rest"), 1U);
+  EXPECT_EQ(runs("fluid=still"), 1U);
+  EXPECT_EQ(json({"plan", "m.yaml", "--json", "--variant", "at rest"}).at("runs"), 1);
+  expect_refused({"table", "--variant", "at rst"}, {"did you mean at rest?"});
+  expect_refused({"plan", "m.yaml", "--variant", "at sea"}, {"fluid=still; at rest; fluid=cell"});
+  expect_refused({"show", "tiny"}, {"tiny is an experiment", "status --experiment tiny"});
+}
+
+TEST_F(Convenience, PlanNamesPackings) {
+  write("m.yaml", tiny_manifest("", "sweep: {grid: {pressure_Pa: [300, 3000]}}\n"));
+  expect(0, {"plan", "m.yaml"}, {"packing P=300 Pa", "packing P=3000 Pa"});
+  write("m.yaml", tiny_manifest("", kBothFluids));
+  expect(0, {"plan", "m.yaml"}, {"  packing "});
+}
+
+TEST_F(Convenience, RunSumsUpManyWarnings) {
+  write("m.yaml", tiny_manifest("  cycles: 0\n",
+                                "seeds: 1\nplots:\n"
+                                "  - {name: a, y: phi, at_cycle: 9}\n"
+                                "  - {name: b, y: phi, at_cycle: 9}\n"
+                                "  - {name: c, y: phi, at_cycle: 9}\n"
+                                "  - {name: d, y: phi, at_cycle: 9}\n"));
+  const auto warnings = [](const Outcome& outcome) {
+    std::istringstream lines(outcome.err);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line);) count += line.starts_with("warning: ");
+    return count;
+  };
+  EXPECT_GT(warnings(expect(0, {"plan", "m.yaml"})), 3U);
+  EXPECT_EQ(warnings(expect(0, {"run", "m.yaml", "-q"}, {"which `shearcell plan` prints"})), 1U);
+}
+
+TEST_F(Convenience, StatusShowsWhatEachExperimentAsksFor) {
+  campaign(tiny_manifest(), {"--cycles", "5"});
+  write("early.yaml", renamed(tiny_manifest("", "until: {phi: 0.1, extra_cycles: 2}\n"), "early"));
+  expect(0, {"run", "early.yaml", "--cycles", "9", "-q"});
+  const std::string shown = expect(0, {"status"}).out;
+  const std::string tiny = shown.substr(shown.find("tiny at"));
+  EXPECT_TRUE(has(shown, "2/9 (until)")) << shown;
+  EXPECT_TRUE(has(tiny, " 5/5 ")) << shown;
+}
+
+// Its end would be decided by a measure that is lost.
+TEST_F(Convenience, ExportOfARunWithAnUnknownEndEnds) {
+  campaign(tiny_manifest(), {"--cycles", "5"});
+  write("early.yaml", renamed(tiny_manifest("", "until: {phi: 0.99}\n"), "early"));
+  expect(0, {"run", "early.yaml", "--cycles", "3", "-q"});
+  expect(0, {"prune", "--last-too", "--yes"});
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  expect_refused({"export", "--experiment", "early", "--to", "extxyz", "--out", "x"},
+                 {"`shearcell regenerate "});
 }
 
 class TimeSteps : public ProgramTest {};

@@ -375,8 +375,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
        [&] { write_bytes(cache, std::string(5000, 'x')); },
        4,
        {"it is not a database of measures"}},
-      {"emptied", [&] { fs::resize_file(cache, 0); }, 0, {" absent; those of 0 checkpoints"}},
-      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; those of 0 checkpoints"}},
+      {"emptied",
+       [&] { fs::resize_file(cache, 0); },
+       0,
+       {" absent; the log does not cover 0 checkpoints"}},
+      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; the log does not cover 0 checkpoints"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -387,7 +390,10 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
     fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
     one.damage();
     expect(one.code, {"verify"}, one.verify_says);
-    expect(one.code, {"table"}, {one.code == 4 ? "derived.sqlite" : "not measured: "});
+    for (int k = 0; k < 2; ++k) {  // the second time the file has been set aside
+      expect(one.code, {"table"}, {one.code == 4 ? "derived.sqlite" : "not measured: "});
+      expect(one.code, {"verify"});
+    }
   }
   // The remedy that the message gives.
   fs::remove_all(path("shearcell-store"));
@@ -423,8 +429,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"},
-         {"those of 20 checkpoints not covered by the log", "nothing was changed\n"});
+  expect(0, {"verify"}, {"the log does not cover 20 checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 

@@ -49,7 +49,7 @@ class Checkpoint:
         mass_kg: mass of a grain [kg].
         position: (N, 3) [d]; z is not folded back into the cell.
         velocity: (N, 3) [d/s].
-        wall_position: (M, 3) [d], centres of the wall grains.
+        wall_position: (M, 3) [d], centres of the M wall grains; smooth walls are planes and have none.
         wall_velocity: (M, 3) [d/s], with the shear and of the moving wall; by the program.
         wall_side: (M,) 1 left, 2 right, 3 bottom, 4 top.
         cell: (3, 3) [d], the edges of the cell as rows; only the third is periodic.

@@ -18,7 +18,7 @@
 namespace shearcell {
 namespace {
 
-// Atom types: those of Particles and one more, and the atom of the moving wall.
+// Atom types: Particles::type plus one; the last type is the atom of the moving wall.
 enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
 constexpr const char* kSides[] = {"left", "right", "bottom", "top"};
 
@@ -273,9 +273,9 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     }
   }
 
-  // Our velocities are those of half a step before, LAMMPS's those of the step.
+  // Our velocities are half a step older than LAMMPS's.
   void begin() {
-    add(text_, "\n# The velocities of the data file are those of half a step before: half a kick.");
+    add(text_, "\n# The velocities of the data file are half a step old: add half a kick.");
     add(text_, "# Under mpirun each process gets equally many grains.");
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
@@ -315,7 +315,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
   }
 
   // A cycle, or of a packing a second. What is defined after the first `run` would need another
-  // setup, in which the drag of the kicked velocities would replace that of the half step.
+  // setup, in which the drag would be computed from the kicked velocities.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));

@@ -22,7 +22,7 @@ struct LammpsTask {
   Drive drive;
   State state;                      ///< at the start
   std::uint64_t end = 0;            ///< step at which it ends
-  std::uint64_t stride = 1;         ///< a frame at every multiple of it, and at the end
+  std::uint64_t stride = 1;         ///< steps between frames; the last step has a frame too
   std::uint64_t check_every = 100;  ///< steps between two checks for a file `stop`, which ends it
   bool added_mass = true;           ///< false: LAMMPS's explicit drag, wrong by order dt
   Units units = {1, 1};             ///< of lengths and masses in deck and data file
@@ -47,7 +47,7 @@ std::string lammps_script(const LammpsTask& task, std::string_view data, std::st
 /// Limit for files that LAMMPS writes [bytes], far above their sizes.
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
-/// Reads a frame, whose ids are those of the data file; an id above those of the grains is the
+/// Reads a frame, which has the ids of the data file; the id after the last grain is the
 /// moving wall. Throws ProgramError, with the file's name, unless it is a complete state of this
 /// number of grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
