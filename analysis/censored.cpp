@@ -223,7 +223,17 @@ std::optional<Estimate> censored_slope(CensoredValues values, std::span<const do
   if (observed(values) < 3 || std::ranges::min(x) == std::ranges::max(x)) return std::nullopt;
   const double t = quantile_at(level, static_cast<double>(values.size() - 2));
   const Fit found = fitted(values, x, t);
-  return estimate_with(found.value, found.interval, t, values.size());
+  Estimate slope = estimate_with(found.value, found.interval, t, values.size());
+  const auto first = std::ranges::find(values, false, &CensoredValue::censored) - values.begin();
+  bool elsewhere = false, above = false, below = false;  // x of observed, of censored values
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double away = x[k] - x[static_cast<std::size_t>(first)];
+    elsewhere = elsewhere || (away != 0 && !values[k].censored);
+    above = above || away > 0;
+    below = below || away < 0;
+  }
+  if (!elsewhere && above != below) slope.value = above ? infinite : -infinite;
+  return slope;
 }
 
 }  // namespace shearcell

@@ -16,8 +16,8 @@ namespace shearcell {
 
 /// Published numbers: one value, or points.
 struct PublishedSpec {
-  std::string label;  ///< in the key of a plot
-  std::string source;
+  std::string label = {};  ///< in the key of a plot
+  std::string source = {};
   std::optional<double> value = {};
   double error = 0;                              ///< of the value; 0: not stated
   std::vector<std::vector<double>> points = {};  ///< x, y and perhaps the error of y
@@ -25,9 +25,9 @@ struct PublishedSpec {
 
 /// A claim that a manifest states.
 struct ClaimSpec {
-  std::string id;           ///< "S2.phi"; the same in every manifest that lists its figure
-  std::string figure = {};  ///< as PlotSpec::figure
-  std::string compare;      ///< as PlotSpec::y, but no curve
+  std::string id;            ///< "S2.phi"; the same in every manifest that lists its figure
+  std::string figure = {};   ///< as PlotSpec::figure
+  std::string compare = {};  ///< as PlotSpec::y, but no curve
   /// The estimator's name; "": the one that the other keys imply (estimator_of()).
   std::string estimator = {};
   /// What estimators take, each one of these: first and last cycle; a window of phi; a value to be
@@ -51,14 +51,15 @@ struct ClaimSpec {
   /// What the claim says, for people; "": from its keys. "{KEY}" is the value of `for_each`.
   std::string statement = {};
   Relation is = Relation::same;
-  bool optional = false;  ///< no verdict if a side has no runs
+  bool optional = false;               ///< no verdict if a side has no runs
+  std::string cannot_be_decided = {};  ///< as Claim::cannot_be_decided
   /// As PlotSpec::listed. A side that is not one variant then has no runs; otherwise it is an
   /// error.
   bool listed = false;
 };
 
-/// Whether the claim has one group of runs: it compares with a published number, or estimates a
-/// slope.
+/// Whether the claim has one group of runs: it compares with a published number, or its estimator
+/// takes one group.
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: as stated, or what its id has before the dot, or its id.

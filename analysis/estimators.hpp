@@ -28,7 +28,10 @@ struct Estimator {
   std::string_view name;      ///< in manifests
   std::string_view meaning;   ///< for the reference
   std::string_view key = {};  ///< that its claims must state; "": none
-  bool of_run = false;        ///< compares a number of the whole run, not one of checkpoints
+  /// Whether it compares a number of the whole run, not one of checkpoints; empty: either.
+  std::optional<bool> of_run = false;
+  bool over_variants = false;  ///< each of its groups may have several variants
+  bool one_side = false;       ///< it takes one group and no published number
   /// The number of each run, whose mean or whose difference of means is estimated; or null.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Otherwise the verdict on the groups; the second is empty if the claim has a published number.
@@ -41,11 +44,13 @@ struct Estimator {
 std::span<const Estimator> all_estimators();
 /// The estimator that the claim names, or that its keys imply.
 const Estimator& estimator_of(const ClaimSpec& claim);
+/// The estimator of one number of each run that `cycles` or `phi` of the claim implies.
+const Estimator& estimator_by_keys(const ClaimSpec& claim);
 
 // The estimators, a file each.
 extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, change_over_cycles,
     relative_fall, slope_over_cycles, first_cycle_reached, waiting_ratio, slope_against,
-    spread_of_variants;
+    spread_of_variants, spread_ratio, pooled_difference, rate_exponent;
 
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
