@@ -16,7 +16,7 @@
 namespace shearcell {
 namespace {
 
-/// What is compared of the value of a run.
+/// Converts a run's value to the number that is compared, such as its logarithm.
 using Number = std::function<double(double value)>;
 
 /// The numbers of one or two groups of runs, and why other runs have none.
@@ -59,7 +59,7 @@ struct Values {
   }
 };
 
-/// `runs`: those with a number, or pairs of them.
+/// `runs`: number of runs, or of pairs, with a number.
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
                  std::size_t runs, Values values, const Scalar& scalar, std::string note,
                  bool two_sides) {
@@ -104,11 +104,11 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   return verdict;
 }
 
-/// The numbers of the packings that both groups have: each of the mean over its runs.
+/// For each packing that both groups have, the means over its runs in both groups.
 struct Pairs {
   std::vector<CensoredValue> a, b;
-  bool any = false;    ///< different runs share a packing, with numbers or without
-  bool enough = true;  ///< three quarters of the packings of each group
+  bool any = false;    ///< different runs share a packing, whether or not they have numbers
+  bool enough = true;  ///< three quarters of the packings of each group have a partner
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values) {
   Pairs pairs;
@@ -199,7 +199,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   Values all;
   all.take(scalar, runs, number);
   std::vector<CensoredValue> values = all.over_packings(runs);
-  // The same bits in any order of the runs.
+  // So that the order of the runs does not change a bit.
   std::ranges::sort(values, {},
                     [](const CensoredValue& v) { return std::pair(v.value, v.censored); });
   std::string quantity = scalar.name;

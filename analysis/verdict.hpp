@@ -25,8 +25,8 @@ inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "support
                                                               "refuted", "undecided",
                                                               "cannot be decided");
 
-/// Where a claim puts its quantity: from -margin to margin, above the margin, or below it. What it
-/// says of the first of two variants: it has the same value, a higher or a lower one.
+/// Where a claim puts its quantity: from -margin to margin (`same`), above the margin, or below it.
+/// The quantity of two variants is the difference, the first less the second.
 enum class Relation : std::uint8_t { same, higher, lower };
 template <>
 inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
@@ -88,8 +88,8 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// "1 agrees, 1 refuted"; "" without claims.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
-/// The rows of all verdicts in one table, each row after its claim, with the columns of all
-/// verdicts.
+/// The rows of all verdicts in one table, which has the columns of all verdicts. The first column
+/// is the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",
