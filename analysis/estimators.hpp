@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/censored.hpp"
@@ -57,10 +58,15 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
+/// The statistic of the (cycle, value) points of a column at the whole cycles first .. last, all of
+/// which the run must have.
+using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
+RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
+                   PointStatistic statistic);
+
 /// Mean of a column over the checkpoints of cycles first .. last, all of which the run must have.
 /// Sentences call it `name`.
-Scalar over_cycles(const std::string& name, const std::string& column, std::int64_t first,
-                   std::int64_t last);
+Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
 /// Mean of a column over a window of phi: the polygon through the means of the run's bins of phi
 /// (binning.hpp), integrated over the window. Sentences call it `name`.

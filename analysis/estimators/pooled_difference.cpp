@@ -3,9 +3,11 @@
 // amplitude. Runs are compared within strata of equal parameters, and the strata are pooled.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
-#include <set>
+#include <utility>
 
 #include "analysis/estimators.hpp"
 #include "analysis/estimators/notes.hpp"
@@ -16,28 +18,21 @@ namespace {
 
 using nlohmann::json;
 
-/// Parameters with several values among the runs, without those that tell the two sides apart.
-std::set<std::string> keys_of_strata(const ClaimSpec& claim, std::span<const RunGroup> sides) {
-  std::map<std::string, std::set<json>> values;
-  for (const RunGroup side : sides) {
-    for (const FrameRun* run : side) {
-      for (const auto& [key, value] : run->parameters.items()) values[key].insert(value);
-    }
-  }
-  std::set<std::string> keys;
-  for (const auto& [key, different] : values) {
-    const bool of_side = claim.between[0].contains(key) || claim.between[1].contains(key);
-    if (different.size() > 1 && !of_side) keys.insert(key);
-  }
-  return keys;
-}
-
 /// The means of each stratum have their own variances; the degrees of freedom are Welch's. The
 /// weights do not depend on the values.
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Scalar number = estimator_by_keys(claim).scalar(claim);
   const RunGroup sides[] = {a, b};
-  const std::set<std::string> keys = keys_of_strata(claim, sides);
+  std::vector<json> others;  // parameters without those that distinguish the two sides
+  for (const RunGroup side : sides) {
+    for (const FrameRun* run : side) {
+      json& other = others.emplace_back(run->parameters);
+      for (const json& of_side : claim.between) {
+        for (const auto& [key, value] : of_side.items()) other.erase(key);
+      }
+    }
+  }
+  const std::vector<std::string> keys = varied_keys(others);
   using Side = std::pair<std::vector<const FrameRun*>, std::vector<CensoredValue>>;
   std::map<json, std::array<Side, 2>> strata;
   Table entered = entered_with({"stratum", "side", "value", "missing", "above"});
