@@ -45,8 +45,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
       runs.push_back(run);
       values.push_back(censored_value(value));
       enter(*run,
-            {words_of(stratum), k + 1, value.or_nan(), std::string(name_of(value.missing)),
-             value.above},
+            {shearcell::words_of(stratum), k + 1, value.or_nan(),
+             std::string(name_of(value.missing)), value.above},
             entered);
     }
   }

@@ -20,7 +20,8 @@ import sys
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
 
-# A row of README.md: for each claim its figure, its id (of older manifests its name), and the cells "claim" and "supplement".
+# A row of README.md: for each claim its figure, its id (of older manifests its name), the cells "claim" and "supplement",
+# and perhaps words in place of the verdict.
 HEADLINES = [
     [("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001")],
     [("S5b", "S5b.slope", "change of phi at the onset with ln N_inves", "none from 6000 on"),
@@ -33,9 +34,11 @@ HEADLINES = [
     [("B5", "B5_drawn", "phi with pauses minus without, as drawn", "grows faster"),
      ("B5", "B5_phi", "at rest", "grows faster")],
     [("C", "C.critical_size@amplitude_rad=0.0833", "critical size [grains], A = 0.0833, by delta_rho with the supplement's scatter", "about 16"),
-     ("committor", "committor.size@amplitude_rad=0.0833", "by the committor", "about 16"),
+     ("committor", "committor.size@amplitude_rad=0.0833", "by the committor", "16 by delta_rho", "another observable"),
      ("C", "C.growth", "its relative growth with A at n_bin = 5", "grows")],
-    [("nucleation", "nucleation.volume", "exponent of the nucleation rate against N_inves", "1 (homogeneous)")],
+    [("nucleation", "nucleation.volume", "exponent of the nucleation rate against N_inves", "1 (homogeneous)"),
+     ("summary", "summary.core_exponent", "against core grains, all experiments (chosen after seeing)", "1")],
+    [("summary", "summary.time_step", "onset at a step of 1.0e-4 s minus smaller steps, pooled (chosen after seeing)", "not stated")],
     [("S7", "S7.inner", "share of nuclei in the inner minus the outer half", "equal"),
      ("S7", "S7.top", "in the upper minus the lower third", "more near the top, by over 0.2")],
 ]
@@ -132,13 +135,13 @@ def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "margin", "packings", "verdict"])
     for parts in HEADLINES:
         cells = []
-        for figure, identity, name, supplement in parts:
+        for figure, identity, name, supplement, *instead in parts:
             found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
                      if of == figure and claim.get("id") == identity]
             if found:
                 _, drawing, claim = best_of(found)
                 cells.append([name, supplement, measured(claim), margin(claim), runs(claim),
-                              link(claim["verdict"], drawing, page)])
+                              link(instead[0] if instead else claim["verdict"], drawing, page)])
         if cells:
             text += row(["; ".join(column) for column in zip(*cells)])
     return text
@@ -162,13 +165,15 @@ def all_claims(page, results):
         asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
     for (figure, name), found in sorted(asked.items(), key=lambda item: in_order(*item[0])):
         best = best_of(found)
-        place, _, claim = best
+        folder, _, claim = best
         low, high = claim["interval"] or (None, None)
         is_measured = claim["estimate"] is not None
         value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})" if is_measured else "not measured"
-        others = [f"{one[0]}: {digits(one[2]['estimate'])}, {one[2]['verdict']} ({runs(one[2])})"
-                  for one in found if one != best and one[2]["estimate"] is not None]
-        rows.append([figure, claim.get("id", ""), name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], place,
+        others = []
+        for place, _, one in (one for one in found if one != best and one[2]["estimate"] is not None):
+            at = "" if one["margin"] == claim["margin"] else f" at a margin of {digits(one['margin'])}"
+            others.append(f"{place}: {digits(one['estimate'])}, {one['verdict']}{at} ({runs(one)})")
+        rows.append([figure, claim.get("id", ""), name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], folder,
                      "; ".join(others)])
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
