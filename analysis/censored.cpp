@@ -224,15 +224,12 @@ std::optional<Estimate> censored_slope(CensoredValues values, std::span<const do
   const double t = quantile_at(level, static_cast<double>(values.size() - 2));
   const Fit found = fitted(values, x, t);
   Estimate slope = estimate_with(found.value, found.interval, t, values.size());
-  const auto first = std::ranges::find(values, false, &CensoredValue::censored) - values.begin();
-  bool elsewhere = false, above = false, below = false;  // x of observed, of censored values
+  double low = infinite, high = -infinite;  // x of the observed values
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double away = x[k] - x[static_cast<std::size_t>(first)];
-    elsewhere = elsewhere || (away != 0 && !values[k].censored);
-    above = above || away > 0;
-    below = below || away < 0;
+    if (!values[k].censored) low = std::min(low, x[k]), high = std::max(high, x[k]);
   }
-  if (!elsewhere && above != below) slope.value = above ? infinite : -infinite;
+  const bool above = std::ranges::max(x) > high, below = std::ranges::min(x) < low;
+  if (low == high && above != below) slope.value = above ? infinite : -infinite;
   return slope;
 }
 
