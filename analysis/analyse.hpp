@@ -53,7 +53,7 @@ struct Analysis {
 /// a cell less than 1 d deep, which no engine takes.
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// Mean of the finite values of interior grains; not a number without any.
+/// Mean of the finite values of interior grains; not a number without such values.
 template <class Value>
 double interior_mean(const GrainMeasures& grains, const Value& value_of) {
   double sum = 0, count = 0;
@@ -66,14 +66,14 @@ double interior_mean(const GrainMeasures& grains, const Value& value_of) {
   return sum / count;
 }
 
-/// Share of the interior grains for which `holds` [%]; not a number without any.
+/// Share of the interior grains for which `holds` [%]; not a number without interior grains.
 template <class Predicate>
 double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
   return interior_mean(grains, [&](std::size_t i) { return holds(i) ? 100 : 0; });
 }
 
-/// Those of crystalline interior grains, connected by faces of at least this share of the mean
-/// surface of the interior grains' cells.
+/// Crystallites of the crystalline interior grains. Faces connect two grains if their area is at
+/// least this share of the mean cell surface of interior grains.
 Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
                              double least_share);
 

@@ -27,23 +27,23 @@ inline const Axis amplitude_axis = {
 /// The supplement's critical size [grains] of one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 
-/// Columns of a size, its interval and its standard error, all in grains.
+/// Adds the columns of a size, its interval and its standard error, all in grains.
 void add_size_columns(const std::string& name, std::vector<TableColumn>& columns);
-/// The values of those columns; empty without an estimate.
+/// Adds the values of the columns of add_size_columns(); empty cells without an estimate.
 void add_size(const std::optional<Estimate>& size, TableRow& row);
 
 /// One quantity of a panel: its columns are NAME_mean (or NAME_rms) and NAME_standard_error, with
 /// the unit at the end where there is one.
 struct MeasureColumn {
   std::string name;
-  std::string unit;  ///< as part of a column's name: "d", "percent" or ""
+  std::string unit;  ///< as it ends a column's name: "d", "percent" or ""
   bool rms = false;  ///< the root mean square over runs in place of the mean
 
   RunStatistics over(std::span<const double> values) const;  ///< one value of each run
 };
 
-/// Name of the column of a statistic, "mean" or "standard_error". "mean" is the root mean square if
-/// `rms`.
+/// Name of the column of a statistic, "mean" or "standard_error". With MeasureColumn::rms the
+/// "mean" is the root mean square.
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<TableColumn>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);

@@ -223,7 +223,14 @@ std::optional<Estimate> censored_slope(CensoredValues values, std::span<const do
   if (observed(values) < 3 || std::ranges::min(x) == std::ranges::max(x)) return std::nullopt;
   const double t = quantile_at(level, static_cast<double>(values.size() - 2));
   const Fit found = fitted(values, x, t);
-  return estimate_with(found.value, found.interval, t, values.size());
+  Estimate slope = estimate_with(found.value, found.interval, t, values.size());
+  double low = infinite, high = -infinite;  // x of the observed values
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!values[k].censored) low = std::min(low, x[k]), high = std::max(high, x[k]);
+  }
+  const bool above = std::ranges::max(x) > high, below = std::ranges::min(x) < low;
+  if (low == high && above != below) slope.value = above ? infinite : -infinite;
+  return slope;
 }
 
 }  // namespace shearcell

@@ -47,8 +47,9 @@ std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             double level = confidence_level);
 
 /// Slope b of values[k] ~ a + b x[k], with the same sigma at every x. None for fewer than three
-/// observed values, or if all x are equal. An end of the interval is infinite if the observed
-/// values are at one x.
+/// observed values, or if all x are equal. If all observed values are at one x, and all censored
+/// values of other x are on one side of it, any steeper slope is more likely: the estimate and one
+/// end of the interval are then infinite.
 std::optional<Estimate> censored_slope(std::span<const CensoredValue> values,
                                        std::span<const double> x, double level = confidence_level);
 

@@ -45,7 +45,7 @@ struct TableCell : std::variant<std::monostate, double, std::int64_t, std::strin
 };
 using TableRow = std::vector<TableCell>;
 
-/// Null, number or text.
+/// The cell of a JSON null, number or text.
 TableCell cell_of(const nlohmann::json& value);
 nlohmann::json json_of(const TableCell& cell);
 
@@ -104,16 +104,16 @@ struct Series {
   int point = 7;  ///< 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down, 12 diamond;
                   ///< + 1 filled
   Join join = Join::none;  ///< points are joined in their order
-  bool band = false;       ///< errors of y are drawn as a band, not as bars; those of x are not
+  bool band = false;       ///< errors of y are drawn as a band; errors of x are not drawn
   bool thin = false;       ///< one of many traces
-  bool large = false;      ///< larger points, seen around those of another series
+  bool large = false;      ///< larger points, which stay visible around smaller ones
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
-  /// Of a curve with the same runs at each point: how many these are, those of one packing as one;
-  /// 0 for other series.
+  /// Number of independent packings per point, if all points of the curve have the same runs; else
+  /// 0.
   std::size_t runs = 0;
-  double shift = 0;  ///< added to x in the drawing, so that equal x do not hide each other
+  double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
 
 /// A dashed line across the frame; `stub` is a short mark at the lower end of a vertical one.
@@ -134,7 +134,7 @@ struct Chart {
   bool wide = false;         ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
   std::string letter = {};   ///< of the panel: "a"
   std::string note = {};     ///< a sentence of the caption, without its full stop
-  std::string sources = {};  ///< of published numbers; likewise
+  std::string sources = {};  ///< a sentence on the sources of published numbers, also without it
   /// For the caption: what bars and bands are if they are not standard errors over runs.
   std::string errors = {};
 };
@@ -165,11 +165,11 @@ struct Table {
   }
 };
 
-/// A text as a field of RFC 4180: in quotes where it needs them.
+/// A text as a CSV field (RFC 4180), in quotes if it needs them.
 std::string csv_field(const std::string& text);
 
-/// Of numbers in a CSV: of a column digits_between() its least and its largest number, or the
-/// shortest text of each number that reads back to the same double.
+/// Digits of the numbers in a CSV. `enough`: digits_between() the smallest and the largest number
+/// of the column. `all`: the shortest text that reads back to the same double.
 enum class Digits { enough, all };
 
 /// RFC 4180 with a header row and "\n" line ends. A number that is not finite leaves its field
@@ -194,7 +194,7 @@ void name_run_counts(Table& table);
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 
-/// Without styles; "v_fluid" of a subscript.
+/// The text without styles. A subscript becomes "v_fluid".
 std::string plain_text(const Text& text);
 
 /// Whether the chart can draw the point or line: a logarithmic axis has positive values only.
@@ -205,7 +205,7 @@ bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 /// lines are. One paragraph that begins with `title`.
 std::string caption_of(const std::string& title, std::span<const Table> tables);
 
-/// [[text, style], ...].
+/// The text as [[text, style], ...].
 nlohmann::json to_json(const Text& text);
 
 /// The chart with the points of its series, for the front end of the report. The same table gives

@@ -60,14 +60,8 @@ std::string published_in_words(const PublishedSpec& published) {
 
 }  // namespace
 
-/// Whether the estimator is over variants, not of one.
-bool takes_all_variants(const ClaimSpec& claim) {
-  const std::string_view name = estimator_of(claim).name;
-  return name == slope_against.name || name == spread_of_variants.name;
-}
-
 bool has_one_side(const ClaimSpec& claim) {
-  return claim.published || takes_all_variants(claim);
+  return claim.published || estimator_of(claim).one_side;
 }
 
 std::string figure_of(const ClaimSpec& claim) {
@@ -94,7 +88,11 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
     text = fmt::format("{}: {} is {} for {} {} {}", claim.id, name, how, sides[0],
                        same ? "and" : "than for", sides[1]);
   }
-  return {text, claim.is == Relation::lower ? -claim.margin : claim.margin, claim.is, claim.id};
+  return {.text = text,
+          .margin = claim.is == Relation::lower ? -claim.margin : claim.margin,
+          .claimed = claim.is,
+          .id = claim.id,
+          .cannot_be_decided = claim.cannot_be_decided};
 }
 
 namespace {
@@ -160,7 +158,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   const std::size_t shown = ended > 0 ? ended : seeds.size();
   if (verdict.ruling == Ruling::undecided && shown != taken) {
     verdict = of_first(shown);
-    verdict.ruling = Ruling::undecided;
+    if (stated.cannot_be_decided.empty()) verdict.ruling = Ruling::undecided;
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
@@ -192,6 +190,10 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
     if (sides.runs[k].empty() && !planned.runs[k].empty()) sides.names[k] = planned.names[k];
   }
   if (claim.optional && sides.lacks_one) return {};
+  const ClaimSides planned = sides_of(claim, frame.pending);
+  for (std::size_t k = 0; k < 2; ++k) {  // a side without runs has the name of the planned ones
+    if (sides.runs[k].empty() && !planned.runs[k].empty()) sides.names[k] = planned.names[k];
+  }
   const Claim decided = stated(claim, sides.names);
   const std::vector<std::string> problems = problems_of_sides(claim, sides, false);
   if (!problems.empty() && !claim.listed) {
@@ -252,7 +254,7 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
       !has_one_side(claim) && others_of(claim, sides, 0) == others_of(claim, sides, 1);
   for (std::size_t k = 0; k < (has_one_side(claim) ? 1U : 2U); ++k) {
     const std::size_t variants = count_variants(sides.runs[k]);
-    if (variants == 1 || (variants > 1 && averages) || takes_all_variants(claim) ||
+    if (variants == 1 || (variants > 1 && (averages || estimator_of(claim).over_variants)) ||
         (variants == 0 && !planned))
       continue;
     problems.push_back(

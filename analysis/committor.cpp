@@ -20,7 +20,8 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
   return grains;
 }
 
-/// What a crystallite has of the grains that are followed, and of crystallites of the cycle before.
+/// Grains that a crystallite shares with the followed one and with crystallites of the cycle
+/// before.
 struct Origin {
   std::size_t own = 0;                           ///< followed
   std::size_t last = 0;                          ///< of the descendants that were last

@@ -31,7 +31,7 @@ struct Neighbour {
   Eigen::Vector3d separation;  // from the grain to the neighbour's nearest image [d]
 };
 
-// The neighbours of each grain, nearest first; those at equal distances in the order of sites.
+// The neighbours of each grain, nearest first; at equal distances in the order of the sites.
 std::vector<std::vector<Neighbour>> neighbours_of_all(const Cell& cell, const WallPose& pose,
                                                       const Eigen::Matrix3Xd& grains) {
   std::vector<std::vector<Neighbour>> near(static_cast<std::size_t>(grains.cols()));
@@ -73,7 +73,7 @@ int bonds_among(const Bonds& bonds, std::uint32_t members) {
   return ends / 2;
 }
 
-// Most bonds in a connected part of the graph that the members form.
+// Number of bonds in the largest connected part of the graph of the members.
 int longest_chain(const Bonds& bonds, std::uint32_t members) {
   int longest = 0;
   for (std::uint32_t left = members; left != 0;) {

@@ -99,7 +99,7 @@ void check(const CrystalliteMap& map) {
   if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("they lie in no cell");
 }
 
-/// Arrays as little-endian bytes, reals as JSON numbers.
+/// Writes arrays as little-endian bytes and reals as JSON numbers.
 json packed_map(const MeasureInput& input) {
   const CrystalliteMap& map = input.analysis->crystallites;
   json centres = json::array();
@@ -113,7 +113,7 @@ json packed_map(const MeasureInput& input) {
           {"top_d", map.top}};
 }
 
-/// The inverse. The result is not trusted: throws AnalysisError when arrays do not fit together.
+/// Reads what the function above wrote. Throws AnalysisError if the arrays do not fit together.
 void read_map(const json& result, Measures& measures) {
   CrystalliteMap map;
   map.grain = unpacked(result, "grain");

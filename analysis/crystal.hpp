@@ -37,7 +37,7 @@ struct Crystallites {
   /// Crystallite of each grain, -1 for none. Numbered in the order of their lowest grain id.
   std::vector<std::int32_t> label;
   std::vector<std::int32_t> size;  ///< grains in each crystallite
-  std::int32_t largest = 0;        ///< grains in the largest; 0 when there is none
+  std::int32_t largest = 0;        ///< grains in the largest one; 0 without crystallites
 };
 
 /// Sets of grains with `crystalline[i] != 0` that are connected through Voronoi faces between two

@@ -16,7 +16,7 @@
 namespace shearcell {
 namespace {
 
-/// What is compared of the value of a run.
+/// Converts a run's value to the number that is compared, such as its logarithm.
 using Number = std::function<double(double value)>;
 
 /// The numbers of one or two groups of runs, and why other runs have none.
@@ -59,9 +59,10 @@ struct Values {
   }
 };
 
-/// `runs`: those with a number, or pairs of them.
+/// `runs`: number of runs, or of pairs, with a number.
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
-                 std::size_t runs, Values values, const Scalar& scalar, std::string note) {
+                 std::size_t runs, Values values, const Scalar& scalar, std::string note,
+                 bool two_sides) {
   if (values.not_positive > 0) {
     add_note(note,
              fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
@@ -87,17 +88,27 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   } else if (runs < least_runs) {
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   }
+  const bool no_scatter = estimate && estimate->interval.low == estimate->interval.high;
+  const bool equal_sides = no_scatter && two_sides && estimate->value == 0;
+  if (no_scatter) {
+    add_note(note,
+             equal_sides
+                 ? "the numbers of both sides are equal to all digits: usually both sides are "
+                   "the same computation up to here, which is no evidence that they agree"
+                 : "the numbers have no scatter, so the interval has no width");
+  }
   Verdict verdict =
       decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
+  if (equal_sides) verdict.ruling = Ruling::undecided;
   verdict.censored = values.censored;
   return verdict;
 }
 
-/// The numbers of the packings that both groups have: each of the mean over its runs.
+/// For each packing that both groups have, the means over its runs in both groups.
 struct Pairs {
   std::vector<CensoredValue> a, b;
-  bool any = false;    ///< different runs share a packing, with numbers or without
-  bool enough = true;  ///< three quarters of the packings of each group
+  bool any = false;    ///< different runs share a packing, whether or not they have numbers
+  bool enough = true;  ///< three quarters of the packings of each group have a partner
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values) {
   Pairs pairs;
@@ -122,7 +133,8 @@ std::span<const Estimator> all_estimators() {
   static const std::array all = {mean_over_cycles,    mean_over_phi, number_of_the_run,
                                  change_over_cycles,  relative_fall, slope_over_cycles,
                                  first_cycle_reached, waiting_ratio, slope_against,
-                                 spread_of_variants};
+                                 spread_of_variants,  spread_ratio,  pooled_difference,
+                                 rate_exponent};
   return all;
 }
 
@@ -132,6 +144,10 @@ const Estimator& estimator_of(const ClaimSpec& claim) {
   if (claim.reaches) return first_cycle_reached;
   const Measure* of_run = find_measure(claim.compare, MeasureKind::run);
   if (of_run != nullptr && of_run->waits && !claim.published) return waiting_ratio;
+  return estimator_by_keys(claim);
+}
+
+const Estimator& estimator_by_keys(const ClaimSpec& claim) {
   return claim.cycles ? mean_over_cycles : claim.phi ? mean_over_phi : number_of_the_run;
 }
 
@@ -170,7 +186,7 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
   if (a.empty() || b.empty()) all.runs = 0;
   Verdict verdict = conclude(
       claim, (scalar.relative ? "relative difference in " : "difference in ") + scalar.name,
-      estimate, runs, all, scalar, std::move(note));
+      estimate, runs, all, scalar, std::move(note), true);
   verdict.counted = pairs.any ? Counted::pairs : Counted::runs_per_variant;
   return verdict;
 }
@@ -183,7 +199,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   Values all;
   all.take(scalar, runs, number);
   std::vector<CensoredValue> values = all.over_packings(runs);
-  // The same bits in any order of the runs.
+  // So that the order of the runs does not change a bit.
   std::ranges::sort(values, {},
                     [](const CensoredValue& v) { return std::pair(v.value, v.censored); });
   std::string quantity = scalar.name;
@@ -193,7 +209,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
     quantity += fmt::format(" less {:.6g}", published);
   }
   return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
-                  "");
+                  "", false);
 }
 
 CensoredValue censored_value(const RunValue& value) {

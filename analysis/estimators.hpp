@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/censored.hpp"
@@ -27,13 +28,18 @@ struct Scalar {
 struct Estimator {
   std::string_view name;      ///< in manifests
   std::string_view meaning;   ///< for the reference
-  std::string_view key = {};  ///< that its claims must state; "": none
-  bool of_run = false;        ///< compares a number of the whole run, not one of checkpoints
-  /// The number of each run, whose mean or whose difference of means is estimated; or null.
+  std::string_view key = {};  ///< the key that its claims must state; "": none
+  /// Whether it compares a number of the whole run, not one of checkpoints; empty: either.
+  std::optional<bool> of_run = false;
+  bool over_variants = false;  ///< each of its groups may have several variants
+  bool one_side = false;       ///< it takes one group and no published number
+  /// The number of each run. The mean over runs, or a difference of means, is estimated. Null: see
+  /// `decide`.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
-  /// Otherwise the verdict on the groups; the second is empty if the claim has a published number.
+  /// Used if `scalar` is null: the verdict on the groups. The second group is empty if the claim
+  /// has a published number or takes one side.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// What it estimates, in sentences. Empty: the name of its Scalar.
+  /// Words for what is estimated. Null: the name of its Scalar.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 
@@ -41,38 +47,46 @@ struct Estimator {
 std::span<const Estimator> all_estimators();
 /// The estimator that the claim names, or that its keys imply.
 const Estimator& estimator_of(const ClaimSpec& claim);
+/// The estimator of one number of each run that `cycles` or `phi` of the claim implies.
+const Estimator& estimator_by_keys(const ClaimSpec& claim);
 
 // The estimators, a file each.
 extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, change_over_cycles,
     relative_fall, slope_over_cycles, first_cycle_reached, waiting_ratio, slope_against,
-    spread_of_variants;
+    spread_of_variants, spread_ratio, pooled_difference, rate_exponent;
 
 /// Whether the claim compares waiting times: a run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
+/// The statistic of the (cycle, value) points of a column at the whole cycles first .. last, all of
+/// which the run must have.
+using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
+RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
+                   PointStatistic statistic);
+
 /// Mean of a column over the checkpoints of cycles first .. last, all of which the run must have.
 /// Sentences call it `name`.
-Scalar over_cycles(const std::string& name, const std::string& column, std::int64_t first,
-                   std::int64_t last);
+Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
 /// Mean of a column over a window of phi: the polygon through the means of the run's bins of phi
 /// (binning.hpp), integrated over the window. Sentences call it `name`.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
-/// a less b. Paired, by Student's t, if some runs share a packing; runs without a partner are then
-/// left out. Otherwise Welch's interval. A run that ends before an event is censored
-/// (censored.hpp). A verdict needs least_runs runs or pairs. So that other runs without the number
-/// do not bias it, three quarters of each group must have it, and with pairs also a partner.
-/// [choice]
+/// The difference a less b. If some runs share a packing, these pairs are compared by Student's t
+/// and other runs are left out; otherwise the interval is Welch's. Runs that end before an event
+/// are censored (censored.hpp). A verdict needs least_runs runs or pairs. Three quarters of each
+/// group must have the number, and with pairs also a partner, lest the missing runs bias the
+/// verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// The mean over runs less the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
-/// For each run the first cycle at which the column is at least `level`; without one, the run's
-/// last cycle, as censored.
+/// For each run the first cycle at which the column is at least `level`. A run without such a cycle
+/// is censored at its last cycle.
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level);
-/// For each run the cycle of the onset by method 1, or its last cycle, as censored.
+/// For each run the cycle of the onset by method 1. A run without onset is censored at its last
+/// cycle.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
 /// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
@@ -82,12 +96,12 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
 
-/// The mean of `of` over items of runs, such as nuclei: the bootstrap draws the packings with all
-/// their items.
+/// Mean over the items of all packings, such as nuclei. The bootstrap draws packings with all their
+/// items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
-/// The number of a run, or what it exceeds if the run ended before the event; NaN if neither is
-/// known.
+/// The number of a run. If the run ended before the event: the censored number, which is larger
+/// than the value. NaN if neither is known.
 CensoredValue censored_value(const RunValue& value);
 
 /// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if

@@ -27,10 +27,9 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table`: made of the runs of all experiments, each with its last checkpoint, which is not
-/// measured. `curves`: runs of one experiment, one curve for each
-/// variant. `groups`: runs of one experiment, one mean for all variants with the same values of
-/// `keys`.
+/// `table`: takes the runs of all experiments, each with its last checkpoint, without measures.
+/// `curves`: takes runs of one experiment, one curve for each variant. `groups`: takes runs of one
+/// experiment and averages over variants with the same values of Figure::keys.
 enum class FigureForm { table, curves, groups };
 
 /// A figure of the supplement, or of plots and claims in a manifest.
@@ -48,7 +47,7 @@ struct Figure {
   std::optional<std::array<std::uint64_t, 2>> within = {};
   /// First and last cycle for which simulated measures are needed; default: all cycles.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
-  /// The experiments whose runs it is of; empty: its own.
+  /// The experiments whose runs the figure takes; empty: its own experiment.
   std::vector<std::string> of = {};
   /// Whether the figure uses the run, whose checkpoints are not read yet; empty: it uses all runs.
   std::function<bool(const FrameRun& run)> uses = {};

@@ -22,7 +22,7 @@
 
 namespace shearcell {
 
-/// A checkpoint and what was measured on it.
+/// A checkpoint with its measures.
 struct CheckpointMeasures : CheckpointRecord {
   Measures measures = {};
   /// Names of the providers without a result, because this checkpoint or an earlier one could not
@@ -32,12 +32,13 @@ struct CheckpointMeasures : CheckpointRecord {
 
 /// A run with its rows.
 struct FrameRun : Run {
-  /// Id of the stage that settled its packing, or SHA-256 of the file that all packings of its
-  /// seeds are made of; "" if there is neither.
+  /// Id of the stage that settled its packing, or SHA-256 of the file from which its packing was
+  /// made;
+  /// "" without either.
   std::string packing = {};
-  nlohmann::json parameters = {};  ///< of all its stages, by their keys in a manifest
+  nlohmann::json parameters = {};  ///< parameters of all its stages, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< by step
-  double end = 0;  ///< last cycle of the run so far, also if the frame leaves it out
+  double end = 0;  ///< last cycle of the run so far, even if the frame lacks its checkpoint
   /// Computing time up to its end; known if cost_provider was asked for.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -46,10 +47,10 @@ using RunGroup = std::span<const FrameRun* const>;
 
 struct Frame {
   std::vector<FrameRun> runs;
-  /// Swept values of all variants of the experiments at this scale, whether or not they are in
-  /// `runs`: the colours of variants follow from these. Empty: those of `runs`.
+  /// Swept values of all variants of the experiments at this scale, with or without runs. Colours
+  /// of variants follow from them. Empty: the variants of `runs`.
   std::vector<nlohmann::json> variants;
-  /// Planned runs that have not ended: their place and parameters.
+  /// Places and parameters of the planned runs that have not ended.
   std::vector<FrameRun> pending = {};
   /// Seeds of the experiments at this scale in their order, and the planned looks, in numbers of
   /// these seeds. Without seeds every claim is decided by the runs that there are.
@@ -93,8 +94,8 @@ double number_of(const FrameRun& run, const std::string& key);
 class NumberColumn {
  public:
   explicit NumberColumn(std::string text);
-  /// The number in the row of the checkpoint or, without checkpoint, of the whole run; NaN if the
-  /// row has none.
+  /// The number in the row of the checkpoint, or in the row of the whole run if `checkpoint` is
+  /// null; NaN if the row has no such number.
   double operator()(const FrameRun& run, const CheckpointMeasures* checkpoint = nullptr) const;
 
  private:
@@ -160,8 +161,8 @@ std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
 /// The swept keys that distinguish the variants of the runs.
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
-/// If there is one curve for each set of values of `keys`: a swept key whose values differ within
-/// one curve, so that the curve would average over them; "" if there is none.
+/// With one curve for each set of values of `keys`: the name of a swept key over whose values a
+/// curve would average; "" without such a key.
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
 /// Throws UsageError if averaged_key() finds a key for curves by `keys`. Keys that change together
 /// with `keys` are allowed. The message ends with `remedy`.

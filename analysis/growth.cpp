@@ -14,8 +14,8 @@ using Selection = std::span<const std::size_t>;
 using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
-/// Rows of the sums of GrowthCurve: moments 0 to 2 of the crystallites, moments 0 and 1 of the
-/// excess of those that grew, and that excess from the size on.
+/// Rows of GrowthCurve::Sums: moments 0 to 2 of the crystallites, moments 0 and 1 of the excess of
+/// growing crystallites, and the excess summed from the size on.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -39,7 +39,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// Of each row of the sums. The line has no slope where all crystallites are of one size.
+/// delta_rho of each row of the sums. The line has no slope where all crystallites have one size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
@@ -48,8 +48,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size at which delta_rho rises through zero; infinite if it does nowhere, and negative if
-/// crystallites of all sizes grow.
+/// The size at which delta_rho rises through zero: infinite if no size grows, negatively infinite
+/// if all sizes grow.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -67,7 +67,7 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size from which on the excess is the greatest; negative if that is all sizes.
+/// The largest size that maximizes the excess summed from it on; negative if all sizes do.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -78,7 +78,7 @@ double best_division(const Sums& sums) {
   return excess[0] < greatest ? static_cast<double>(k + 1) : -infinite;
 }
 
-/// Of independent crystallites; not zero if all grew.
+/// Standard error for independent crystallites; it is not zero even if all of them grew.
 double standard_error(const GrowthCount& count) {
   const auto larger = static_cast<double>(count.larger()) + 1;
   const auto smaller = static_cast<double>(count.smaller()) + 1;

@@ -15,44 +15,44 @@
 
 namespace shearcell {
 
-/// What became of the crystallites of one size. Each is counted once at most: those of which as
-/// many grains are in larger crystallites as elsewhere are left out.
+/// What became of the crystallites of one size. A crystallite counts once at most. Omits
+/// crystallites whose grains split equally between larger crystallites and elsewhere.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Likewise, but most grains of the crystallite that they end in come from a larger one.
+  /// Also more than half, but most grains of that larger crystallite come from another, larger one.
   std::size_t absorbed = 0;
-  std::size_t shrank = 0;    ///< more than half are in smaller ones
-  std::size_t vanished = 0;  ///< more than half are in smaller ones or in none
+  std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
+  std::size_t vanished = 0;  ///< more than half are in smaller crystallites or in none
 
-  std::size_t larger() const { return grew + absorbed; }  ///< that grew, in the supplement's sense
-  std::size_t smaller() const { return shrank + vanished; }  ///< that shrank
+  std::size_t larger() const { return grew + absorbed; }     ///< what the supplement calls growing
+  std::size_t smaller() const { return shrank + vanished; }  ///< what it calls shrinking
   GrowthCount& operator+=(const GrowthCount& other);
   bool operator==(const GrowthCount&) const = default;
 };
 
-/// By size in grains; has every size that was followed.
+/// Counts by size in grains, with an entry for every size that was followed.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
 /// Follows every crystallite of `now` to `later` and counts it.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
-/// Of all pairs of checkpoints of a run that are `cycles` apart, from every cycle on. One
-/// crystallite is counted at many cycles, so counts of one run are not independent.
+/// Counts over all pairs of a run's checkpoints that are `cycles` apart. One crystallite is counted
+/// at many cycles, so the counts of one run are not independent.
 GrowthBySize growth_of(const FrameRun& run, std::int64_t cycles);
 
 /// delta_rho = rho_g - rho_s in a bin of sizes, with rho_g = larger / (larger + smaller).
 struct GrowthRate {
-  double size = 0;  ///< geometric mean over crystallites; of one size, that up to rounding
+  double size = 0;  ///< geometric mean over the crystallites
   GrowthCount count;
   double delta = 0;
-  /// Standard error of the bootstrap over runs, or that of independent crystallites if that is
-  /// greater: 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2), n = larger + smaller.
+  /// The larger of two standard errors: of the bootstrap over runs, and of independent
+  /// crystallites, 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2), n = larger + smaller.
   double delta_error = 0;
 };
 
-/// Of all runs, in bins of sizes: each bin takes sizes, from the smallest on, until it has at least
-/// `least_counted` crystallites. By default a bin is one size. The last bin is left out if it has
-/// fewer.
+/// Rates over all runs in bins of sizes. From the smallest size on, each bin takes sizes until it
+/// has at least `least_counted` crystallites; a last bin with fewer is left out. By default each
+/// size is a bin.
 std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
                                      std::size_t least_counted = 1);
 
@@ -62,34 +62,34 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
 /// unit of every error.
 class GrowthCurve {
  public:
-  /// Standard deviation of that Gaussian [choice]: sizes of up to a fifth more or less count.
+  /// Standard deviation of the Gaussian in ln(size): sizes within about a fifth count. [choice]
   static constexpr double bandwidth = 0.2;
   /// Larger crystallites are left out: their growth ends when the cell is one crystal. [choice]
   static constexpr std::int32_t largest = 100;
 
-  /// delta_rho is counted from `background`, above which crystallites are said to grow.
+  /// `background` is subtracted from delta_rho: crystallites grow where the rest is positive.
   explicit GrowthCurve(std::span<const GrowthBySize> runs, double background = 0);
 
-  /// Of 1 to `largest` grains. Not a number if no crystallite was counted.
+  /// `size`: 1 to `largest` grains. Not a number if no crystallite was counted.
   double delta_rho(std::int32_t size) const;
   std::optional<double> delta_rho_error(std::int32_t size) const;  ///< of the bootstrap over runs
 
-  /// The size at which delta_rho rises through zero. If there are several, that which best tells
-  /// those that grew from those that shrank: with the greatest excess of the former among larger
-  /// ones. None for fewer than least_bootstrap_runs, or if there is no such size. The interval is
-  /// the bootstrap's; an end is infinite if all sizes grow, or none does, in too many selections of
-  /// runs.
+  /// The size at which delta_rho rises through zero. Of several such sizes, the one that best
+  /// separates growing from shrinking: larger crystallites have the greatest excess of growing
+  /// ones. Empty for fewer than least_bootstrap_runs, or without such a size. The interval is the
+  /// bootstrap's. An end is infinite if all sizes grow, or none does, in too many of its
+  /// selections.
   std::optional<Estimate> critical_size() const;
-  /// The size from which on the excess of those that grew is greatest. An unsmoothed delta_rho that
-  /// may only rise with size crosses zero there (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)).
-  /// Tests critical_size(), with a larger error.
+  /// The size that maximizes the excess of growing over shrinking crystallites of this size and
+  /// above. There delta_rho crosses zero if it is not smoothed but may only rise with size (M. Ayer
+  /// et al., Ann. Math. Stat. 26, 641 (1955)). A check of critical_size() with a larger error.
   std::optional<Estimate> monotone_critical_size() const;
-  /// Where the critical size of 90 % of repetitions with so many runs would lie.
+  /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;
 
  private:
-  /// Of each size, what is linear in the counts, so that it may be added over runs: moments of the
-  /// crystallites near it, and the excess of those that grew from this size on.
+  /// For each size, numbers that are linear in the counts and so add over runs: moments of the
+  /// crystallites near the size, and the excess of growing crystallites from the size on.
   using Sums = Eigen::Array<double, largest, 6>;
   std::vector<Sums> runs_;
 

@@ -21,16 +21,16 @@ namespace shearcell {
 /// 132, 235 (1969).
 double look_level(std::span<const std::size_t> looks, double level = confidence_level);
 
-/// Probabilities of a verdict at a look or at one before it. The first verdict is final.
+/// Probabilities of a verdict at this look or an earlier one. The first verdict is final.
 struct LookPower {
   std::size_t runs = 0;
   double as_claimed = 0;  ///< agrees, or supported
   double against = 0;     ///< differs, or refuted
 };
 
-/// A look each, if the true value is `truth` and runs are normal with `spread` (Estimate::spread)
-/// in one group, or pairs, or in two `groups` of that many runs each. 4000 campaigns are
-/// simulated, always the same ones: errors are at most 0.008.
+/// The power at each look if the true value is `truth` and the runs are normally distributed with
+/// `spread` (Estimate::spread). `groups`: 1 for one group or pairs, 2 for two groups of that many
+/// runs each. 4000 campaigns are simulated, always the same ones; errors are at most 0.008.
 std::vector<LookPower> power_of(const Claim& claim, double truth, double spread, std::size_t groups,
                                 std::span<const std::size_t> looks);
 

@@ -27,8 +27,8 @@ namespace shearcell {
 struct FrameRun;  // analysis/figure.hpp
 struct RunValue;
 
-/// Raise it with every change that may alter a bit of any result: results that were stored with
-/// another version are computed again. tests/analysis/test_derived_measures.cpp pins results to it.
+/// Raise this version with every change that may alter a bit of any result: results stored with
+/// another version are recomputed. tests/analysis/test_derived_measures.cpp pins results to it.
 inline constexpr std::uint64_t analysis_version = 2;
 
 /// A function measured on one packing, as g(r): values at ascending x.
@@ -55,11 +55,11 @@ enum class MeasureKind { number, count, curve, grains, run };
 /// How a measure of each grain is shown: numbers from `low` to `high`, or 0, 1, ... for classes.
 struct GrainScale {
   double low = 0, high = 0;
-  std::string_view parameter = {};  ///< of the run, in whose value low and high are multiples
+  std::string_view parameter = {};  ///< parameter of the run: the unit of `low` and `high`
   bool logarithmic = false;
   std::vector<std::string> classes = {};
   bool whole = false;         ///< a whole number, such as a class
-  double of_wall_grains = 0;  ///< its value in exports
+  double of_wall_grains = 0;  ///< the value that exports give wall grains
 };
 
 struct Measure {
@@ -70,8 +70,8 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< of a curve
   GrainScale scale = {};                 ///< of a measure of each grain
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// The name in sentences; "": `name`. Numbers of a whole run and measures of each grain have such
-  /// a name.
+  /// The name in sentences; "": `name`. Required for numbers of a whole run and measures of each
+  /// grain.
   std::string_view words = {};
   std::string_view reach = {};  ///< what a run must reach to have it
   bool waits = false;           ///< the cycle of an event, before which a run may end
@@ -99,7 +99,7 @@ struct RunFacts {
 
 /// What measures of a checkpoint are computed from.
 struct MeasureInput {
-  /// Of the checkpoint; may be null for a provider that simulates.
+  /// The packing of the checkpoint; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
   const Checkpoint* checkpoint = nullptr;
   /// The checkpoint of the same run Provider::cycles_back earlier; null if the run has none.
@@ -120,7 +120,7 @@ enum class ComputedFrom { record, checkpoint, simulation, history };
 struct Provider {
   std::string name;
   nlohmann::json parameters =
-      nlohmann::json::object();        ///< on which results depend besides the checkpoint
+      nlohmann::json::object();        ///< what results depend on besides the checkpoint
   std::vector<Measure> measures = {};  ///< all of each grain, or none
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
   /// each grain is an array. A measure is left out if the run lacks the checkpoint or the shear
@@ -128,7 +128,7 @@ struct Provider {
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
   std::uint64_t cycles_back = 0;  ///< to the earlier checkpoint that it needs; 0 for none
   ComputedFrom from = ComputedFrom::checkpoint;
-  std::string_view cost = {};  ///< of a simulation, in words
+  std::string_view cost = {};  ///< cost of a simulation, in words
   /// Reads what a result has besides its measures, and checks it.
   void (*read_more)(const nlohmann::json& result, Measures& measures) = nullptr;
 
@@ -146,7 +146,7 @@ struct Provider {
 std::span<const Provider> all_providers();
 /// The provider of that name, which must exist.
 const Provider& provider(std::string_view name);
-/// The names of the providers that fit.
+/// The names of the providers for which the function returns true.
 std::vector<std::string> provider_names(bool (*fits)(const Provider&));
 /// The provider of volume fractions and numbers of crystallites, which every measured frame has.
 inline constexpr const char* scalars_provider = "scalars";

@@ -13,7 +13,7 @@
 namespace shearcell {
 namespace {
 
-using Selected = std::span<const std::uint8_t>;
+using GrainMask = std::span<const std::uint8_t>;
 
 // A frictionless sphere is held by four contacts or more.
 constexpr int kHeld = 4;
@@ -54,7 +54,7 @@ struct ContactSums {
   std::vector<double> trace;  // of each grain's own contacts [k d^2]
 };
 
-ContactSums sums_of(const Checkpoint& checkpoint, Selected interior) {
+ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   ContactSums sums;
   sums.trace.assign(interior.size(), 0.0);
   const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
@@ -81,7 +81,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, Selected interior) {
 }
 
 // Sum over the interior grains of the squares of their velocities less the mean flow [d^2/s^2].
-double fluctuation(const State& state, Selected interior) {
+double fluctuation(const State& state, GrainMask interior) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double count = 0, height = 0;
   const auto each = [&](auto&& visit) {
@@ -112,7 +112,7 @@ double fluctuation(const State& state, Selected interior) {
   return sum;
 }
 
-void set_coordination(std::size_t grains, std::span<const Touch> touches, Selected interior,
+void set_coordination(std::size_t grains, std::span<const Touch> touches, GrainMask interior,
                       Mechanics& m) {
   const std::vector<std::uint8_t> rattler = find_rattlers(grains, touches);
   double count = 0, rattlers = 0, ends = 0, held_ends = 0;
@@ -140,7 +140,7 @@ void set_coordination(std::size_t grains, std::span<const Touch> touches, Select
 }  // namespace
 
 Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
-                    Selected interior) {
+                    GrainMask interior) {
   const State& state = checkpoint.state;
   const auto grains = static_cast<std::size_t>(state.position.cols());
   double volume = 0;

@@ -26,12 +26,13 @@ struct Mechanics {
   double coordination = 0;  ///< contacts per interior grain
   /// Interior grains [%] with fewer than four contacts with walls and grains that are not rattlers.
   double rattlers = 0;
-  /// Contacts of interior grains that are not rattlers with walls and such grains, per such grain.
+  /// Coordination without rattlers: contacts among interior grains that are not rattlers, and with
+  /// walls, per such grain.
   double coordination_without_rattlers = 0;
   /// x and y of the force of all grains on each wall, by WallSide [k d].
   Eigen::Matrix<double, 2, 4, Eigen::DontAlign> wall_force;
   double elastic_energy = 0;  ///< of contacts, those with walls included, per grain [k d^2]
-  double kinetic_energy = 0;  ///< per grain, half a step earlier [m d^2/s^2]
+  double kinetic_energy = 0;  ///< per grain, half a time step before the checkpoint [m d^2/s^2]
   double height = 0;          ///< mean, above the bottom wall's plane [d]
   /// Pressure of each grain [k/d]: trace / 3 of the sum over the contacts of the grain, also with
   /// walls, over the volume of its cell.

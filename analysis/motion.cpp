@@ -19,7 +19,7 @@ namespace {
 /// Neighbours of a grain for its motion are at most this far away [d]: about the first minimum of
 /// g(r).
 constexpr double motion_neighbour_d = 1.5;
-/// A grain returned if it is within this distance of where it was [d].
+/// A grain has returned if it is within this distance of its earlier place [d].
 constexpr double reversible_d = 0.01;
 
 /// One column or entry per grain, by grain id.
@@ -108,7 +108,7 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
   return boundary;
 }
 
-/// Since the earlier checkpoint; nothing if there is none.
+/// Motion since the earlier checkpoint; empty without an earlier checkpoint.
 std::optional<Motion> motion_of(const MeasureInput& input) {
   const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
   if (earlier == nullptr) return std::nullopt;
@@ -130,7 +130,7 @@ nlohmann::json motion_over_cycles(const MeasureInput& input) {
   return means_of(*moved, input.analysis->grains, fmt::format("{}_cycles_d2", cycles));
 }
 
-/// Over one cycle, also by the structure of the grains.
+/// Motion over one cycle, in total and by the structure of the grains.
 nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
   const std::optional<Motion> moved = motion_of(input);
   if (!moved) return nlohmann::json::object();

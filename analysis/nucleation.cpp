@@ -33,7 +33,7 @@ Interval poisson_interval(std::size_t events) {
   return {events == 0 ? 0 : quantile(tail, 2 * n), quantile(1 - tail, 2 * n + 2)};
 }
 
-/// One run in one range of phi.
+/// What one run contributes in one range of phi.
 struct Share {
   double grains;  ///< N
   const std::string* packing;
@@ -46,9 +46,9 @@ struct Share {
 
 using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
-/// 1 / variance of normal priors of the terms of ln c, of which the last two have 3 and 0.5 as
-/// standard deviations: few events have a likelihood with a maximum then. Runs show 1 and 0.1.
-/// [choice]
+/// 1 / variance of the normal priors on the terms of ln c. The linear and the quadratic term have
+/// standard deviations of 3 and 0.5 (runs show 1 and 0.1), so that the likelihood of a few events
+/// has a maximum. [choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
@@ -58,8 +58,8 @@ struct Likelihood {
   std::map<std::string, double> score_of;  ///< the part of each packing
 };
 
-/// Adds that of one amplitude with the most likely ln c, which Newton's method finds: the logarithm
-/// is concave. A step that would lower it is halved.
+/// Adds one amplitude's log-likelihood, maximized over ln c by Newton's method: it is concave. A
+/// step that would lower it is halved.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {
@@ -118,10 +118,9 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether an event could have been in a larger cell of that amplitude at about its phi, and one in
-/// a smaller cell: only then do the runs say how the rate grows with the size. Sizes are those of
-/// N. Seeds of one N differ a little in their number of interior grains, which says nothing about
-/// the size.
+/// Whether some event could as well have happened in a larger cell (same amplitude, about the same
+/// phi), and some event in a smaller cell: only then do the runs show how the rate depends on size.
+/// Cells are compared by N, since interior grains differ a little between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {
@@ -137,14 +136,14 @@ bool is_bounded(const Shares& amplitudes) {
   return larger && smaller;
 }
 
-/// What the drop of the logarithm is multiplied by for runs that share a packing.
+/// Factor on the allowed drop of the log-likelihood where runs share a packing.
 double variance_between_packings(const Likelihood& at) {
   double squares = 0;
   for (const auto& [packing, score] : at.score_of) squares += score * score;
   return std::max(1.0, squares / at.information);
 }
 
-/// The point between the ends from which on `holds` is true.
+/// The point between `low` and `high` above which `holds` is true, by bisection.
 double bisected(double low, double high, const auto& holds) {
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;

@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// `y` is relative to the height of the cell at that moment, `y_nominal` to 1.675 L, with L the
+/// Heights are relative to the cell's present height (`y`) or to 1.675 L (`y_nominal`), with L the
 /// free width.
 enum class CellAxis { x, y, y_nominal };
 inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
@@ -38,14 +38,14 @@ struct DensityBin {
   std::optional<double> error;  ///< bootstrap, as one crystallite is seen many times
 };
 
-/// Of all places together; empty when there are none. The bootstrap draws groups, which must be
-/// independent; each has the places of one packing.
+/// Density of all places together; empty without places. Each group has the places of one packing.
+/// The bootstrap draws groups, which must be independent.
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
 /// The grains whose number and phi a rate is taken with: at least 1.5 d (interior) or 4 d (core)
 /// from the wall surfaces (packing_fraction.hpp). The onset is the same for both.
 enum class Region { interior, core };
-/// The measure that counts them.
+/// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);
 
 /// A bin of phi (binning.hpp) before the onset of crystallization (onset.hpp, method 1).
@@ -58,9 +58,9 @@ struct NucleationRate {
   Interval interval;  ///< of the rate; of a Poisson count, F. Garwood, Biometrika 28, 437 (1936)
 };
 
-/// Ascending; only bins in which some run spent time. The phi of an interval between two
-/// checkpoints is that of its beginning, so that a growing crystallite does not raise it. Runs that
-/// begin with a critical crystallite do not count.
+/// Rates in ascending bins of phi; bins in which no run spent time are left out. An interval
+/// between two checkpoints counts in the bin of phi at its beginning, which a growing crystallite
+/// has not raised yet. Runs that begin with a critical crystallite do not count.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
 /// What one run adds to a rate while phi is in a range, before its onset.
@@ -70,7 +70,7 @@ struct Exposure {
   double grain_cycles = 0;  ///< grains of the region times cycles
   std::size_t onsets = 0;   ///< 0 or 1
 };
-/// In ranges from whole multiples of `width` on, by that multiple.
+/// Exposures of a run in ranges of phi: range k begins at k times `width`.
 std::map<std::int64_t, Exposure> exposures_of(const FrameRun& run, Region region, double width);
 
 /// Ranges of phi in which size_exponent() takes the rate as constant.
@@ -82,9 +82,9 @@ inline constexpr double rate_step = 0.0005;
 /// Analysis of Survival Data, 1984). If runs share a packing, the drop of the logarithm that the
 /// interval allows is multiplied by the ratio of the variance of the score between packings to that
 /// between independent runs, where that is larger than 1 (L. Pace, A. Salvan, N. Sartori, Stat.
-/// Sinica 21, 129 (2011)). None unless runs of a larger cell (more grains N) were at about the phi
-/// of some event, and runs of a smaller cell at that of some event; none for fewer than least_runs
-/// packings.
+/// Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Empty also unless runs of
+/// larger cells (more grains N) were at about the phi of some event, and runs of smaller cells at
+/// about the phi of some event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

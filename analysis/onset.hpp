@@ -12,8 +12,8 @@
 
 namespace shearcell {
 
-/// A run is censored if its onset is before its first or after its last checkpoint. `unclear`: the
-/// onset is between them, and the method finds no phi.
+/// A run is censored if its onset lies before its first or after its last checkpoint. `unclear`:
+/// the onset lies between them, but the method finds no phi.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>
 inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",
@@ -30,11 +30,11 @@ struct RunOnset {
 /// begins with a critical crystallite is censored at its start.
 RunOnset onset_by_size(const FrameRun& run);
 
-/// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is that of the
-/// least-squares line through the checkpoints within `slope_window / 2` of phi. There must be at
-/// least four such checkpoints, which span half of the window; a run without such a window is
-/// unclear. A packing without a crystallite counts as one grain. A run whose largest crystallite
-/// never has the critical size is censored. [choice]
+/// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is the slope
+/// of the least-squares line through the checkpoints within `slope_window / 2` of phi. These must
+/// be at least four and span half of the window; a run without such a window is unclear. A packing
+/// without a crystallite counts as one grain. A run whose largest crystallite never has the
+/// critical size is censored. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

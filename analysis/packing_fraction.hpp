@@ -32,7 +32,7 @@ inline double interior_margin(const Cell& cell) {
 struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
   std::vector<std::int32_t> contacts;  ///< of each grain, with grains and wall grains
-  double mean = 0;                     ///< Eq. S3 over distinct pairs of grains [d]; 0 without any
+  double mean = 0;  ///< Eq. S3 over distinct pairs of grains [d]; 0 without pairs
 };
 
 /// Contacts of `grains` (3 x n [d], z unwrapped).
@@ -53,7 +53,7 @@ double local_packing_fraction(double largest_overlap, double cell_volume);
 
 struct PackingFractions {
   double phi;              ///< Eq. S4; not a number when no grain is selected
-  double phi_uncorrected;  ///< phi_u, Eq. S2; likewise
+  double phi_uncorrected;  ///< phi_u, Eq. S2; not a number when no grain is selected
 };
 
 /// Global fractions over the grains with `selected[i] != 0`. All spans have one entry per grain.

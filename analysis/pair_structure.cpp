@@ -67,7 +67,7 @@ inline TwoSites operator*(const TwoSites& a, const TwoSites& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-// A wave at a block of sites, so few that all waves of the block are in the cache.
+// A wave at a block of sites. Blocks are small, so that all waves of a block fit into the cache.
 using Wave = std::array<TwoSites, 16>;
 constexpr auto kBlock = static_cast<Eigen::Index>(2 * std::tuple_size_v<Wave>);
 

@@ -18,11 +18,11 @@ struct InteriorRegion {
 
   double volume() const { return width * height * depth; }
 };
-/// Width or height of the result are negative if the cell is too small for interior grains.
+/// The region has a negative width or height if the cell is too small for interior grains.
 InteriorRegion interior_region(const Cell& cell, const WallPose& pose);
 
-inline constexpr double pair_bin_d = 0.02;  ///< [d]
-inline constexpr double pair_reach_d = 5;   ///< largest r, or half the depth if that is less [d]
+inline constexpr double pair_bin_d = 0.02;        ///< [d]
+inline constexpr double pair_reach_d = 5;         ///< largest r; at most half the depth [d]
 inline constexpr double wave_bin_per_d = 0.25;    ///< [1/d]
 inline constexpr double largest_wave_per_d = 25;  ///< [1/d]
 

@@ -13,8 +13,8 @@
 namespace shearcell {
 namespace {
 
-/// The name is part of a script and of file names: it may only have characters that are special in
-/// neither.
+/// Throws unless the name has only characters that are special neither in scripts nor in file
+/// names.
 void require_plain_name(const std::string& name) {
   const bool plain = !name.empty() && name.front() != '-' &&
                      name.find_first_not_of(
@@ -23,10 +23,10 @@ void require_plain_name(const std::string& name) {
   if (!plain) throw AnalysisError("'" + name + "' cannot name a figure's files");
 }
 
-/// Programs write this date into their files, whenever they run.
+/// Makes programs write a fixed date into their files.
 constexpr const char* fixed_date = "SOURCE_DATE_EPOCH=0";
 
-/// Why what a program drew on its standard output cannot be used; "" if it is whole.
+/// Why the drawing that a program wrote to its standard output cannot be used; "" if it can.
 std::string fault_of(const char* program, const ProgramOutcome& outcome,
                      const std::filesystem::path& file, std::string_view begins,
                      std::string_view ends) {

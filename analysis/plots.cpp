@@ -898,19 +898,24 @@ Table draw(const Panel& panel) {
   return table;
 }
 
-/// Adds the published numbers in black: a dashed line, or two at the ends of an error, and points
-/// with open symbols. The caption names their sources.
+/// Adds the published numbers: dashed lines, black or grey, two at the ends of an error, and points
+/// with open symbols. The key names them, the caption their sources.
 void add_published(const PlotSpec& plot, Chart& chart) {
   std::vector<std::string> sources;
   int point = 6;
   for (const PublishedSpec& one : plot.published) {
-    Series series{.title = formula(one.label), .colour = "#000000", .point = point};
+    const std::string value = !one.value       ? ""
+                              : one.error == 0 ? fmt::format(" {}", *one.value)
+                                               : fmt::format(" {} ± {}", *one.value, one.error);
+    const Text title = formula(one.label) + Text(value);
+    Series series{.title = title, .colour = "#000000", .point = point};
     if (one.value) {
+      series.colour = chart.lines.empty() ? "#000000" : ReferenceLine().colour;
       series.point = 0;
       series.join = Join::dashes;
       for (const double end : {-one.error, one.error}) {
         if (end != 0 || chart.lines.empty() || chart.lines.back().at != *one.value) {
-          chart.lines.push_back({.at = *one.value + end, .colour = "#000000"});
+          chart.lines.push_back({.at = *one.value + end, .colour = series.colour});
         }
       }
     } else {
@@ -921,10 +926,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
       if (p.size() > 2) series.points.back().y_error = p[2];
     }
     chart.series.push_back(std::move(series));
-    const std::string value = !one.value       ? ""
-                              : one.error == 0 ? fmt::format(" {}", *one.value)
-                                               : fmt::format(" {} ± {}", *one.value, one.error);
-    sources.push_back(fmt::format("{}{}: {}", plain_text(formula(one.label)), value, one.source));
+    sources.push_back(fmt::format("{}: {}", plain_text(title), one.source));
   }
   if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }

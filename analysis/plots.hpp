@@ -30,11 +30,11 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// How the curve of the variants with these parameters is drawn. What is not stated follows from
-/// what varies (styles.hpp).
+/// How the curve of the variants with these parameters is drawn. Styles that are not stated follow
+/// from the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
-  std::string column = {};  ///< instead: of the y with this name
+  std::string column = {};  ///< instead of `where`: the name of one of several y
   std::string label = {};   ///< with formulas (formula)
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names
@@ -43,7 +43,7 @@ struct SeriesSpec {
 /// A further column of a plot's CSV.
 struct ColumnSpec {
   std::string measure;
-  std::string name = {};  ///< of the column, without unit; "": that of the measure
+  std::string name = {};  ///< name of the column, without unit; "": the measure's name
 };
 
 /// A black point on each curve, at the means of two measures of the whole run.
@@ -73,8 +73,8 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints are those of
-  /// the run's first one. The first `drawn` of them have curves too.
+  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints are taken at
+  /// the run's first checkpoint. The first `drawn` of these columns have curves, too.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
@@ -83,7 +83,7 @@ struct PlotSpec {
   std::optional<std::uint64_t> cycle = {};
   /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
-  std::string column = {};  ///< name of y's column, without unit; "": that of the measure
+  std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
   /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
   /// user's manifest then replace those of `series`. Styles of `series` are used only if the runs

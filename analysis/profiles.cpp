@@ -83,7 +83,7 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", crystalline}};
 }
 
-/// Layers of half a diameter. Not a number for a layer without grains.
+/// phi in layers of half a diameter; not a number for a layer without grains.
 MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   constexpr double layer = 0.5;
   const std::vector<double> distance =
@@ -97,7 +97,7 @@ MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeas
   return found;
 }
 
-/// phi is not a number without any grain.
+/// phi is not a number without grains.
 json core_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const std::vector<double> distance =
@@ -108,7 +108,7 @@ json core_of(const MeasureInput& input) {
                                    std::numeric_limits<double>::infinity())}};
 }
 
-/// The other criteria stay.
+/// Crystalline percentage with one criterion changed; the other criteria stay the same.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
   MeasuredCurve found;
   for (int n = 1; n <= 20; ++n) {
@@ -127,7 +127,7 @@ MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
   return found;
 }
 
-/// Computes the Voronoi cells again.
+/// Needs the Voronoi cells, which it computes again.
 MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);

@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// The statistic of each selection of `chosen` of the runs that has one.
+/// The statistic of each selection of `chosen` runs; selections without a statistic are left out.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);
@@ -44,8 +44,8 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
   return values;
 }
 
-/// Without a share `tail` of the selections at each end. Selections without a value widen the
-/// interval at both ends.
+/// The interval that leaves out a share `tail` of the selections at each end. Selections without a
+/// value widen it at both ends.
 Interval percentiles(std::vector<double> values, double tail) {
   const std::size_t missing = bootstrap_selections - values.size();
   values.insert(values.end(), missing, infinite);
@@ -248,7 +248,7 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   constexpr double power = 0.9;
   const double hit = both_sides ? (1 + power) / 2 : power;
   const double ratio = estimate.spread / distance;
-  // Student's quantiles exceed the normal ones, so fewer runs are never enough.
+  // Student's quantiles exceed the normal quantiles, so the normal ones give a lower limit.
   const double least = std::pow((normal_quantile(upper()) + normal_quantile(hit)) * ratio, 2);
   if (!(least <= most)) return std::nullopt;
   for (auto n = std::max(least_runs, static_cast<std::size_t>(least)); n <= most; ++n) {

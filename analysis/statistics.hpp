@@ -45,9 +45,9 @@ inline constexpr double confidence_level = 0.9;
 
 /// With fewer runs, or fewer pairs of runs, nothing is estimated. [choice]
 inline constexpr std::size_t least_runs = 3;
-/// Fewest runs for the bootstrap. The interval of a mean cannot extend beyond the smallest and the
-/// largest run, which enclose the median with a probability of 1 - 2^(1 - runs): 75 % for 3 runs,
-/// 94 % for 5.
+/// Fewest runs for the bootstrap. Its interval of a mean lies between the smallest and the largest
+/// run, and these enclose the median with a probability of 1 - 2^(1 - runs): 75 % for 3 runs, 94 %
+/// for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
 
 /// An end of an interval without a bound.
@@ -84,16 +84,17 @@ std::optional<Estimate> mean_of(std::span<const double> values, double level = c
 std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b,
                                             double level = confidence_level);
 
-/// Estimates a statistic that is not a mean, with the expanded percentile interval of the
-/// bootstrap: T. C. Hesterberg, The American Statistician 69, 371 (2015). For a mean this interval
-/// would have the length of Student's interval. The statistic of a selection may be infinite;
-/// selections without a statistic widen the interval at both ends. None for fewer than
-/// least_bootstrap_runs, or if all runs together have no finite statistic.
+/// Estimates any statistic by the bootstrap, with the expanded percentile interval: T. C.
+/// Hesterberg, The American Statistician 69, 371 (2015). For a mean this interval has the length of
+/// Student's. The statistic of a selection may be infinite; selections without a statistic widen
+/// the interval at both ends. Empty for fewer than least_bootstrap_runs, or if the statistic of all
+/// runs is not finite.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
                                      double level = confidence_level);
 
-/// Where 90 % of repetitions with `chosen` runs lie: 5 and 95 % quantiles of the statistic of so
-/// many of the `runs`, drawn with replacement. Unbounded for fewer than least_bootstrap_runs.
+/// 90 % interval of the statistic in repeated studies with `chosen` runs: its 5 and 95 % quantiles
+/// if `chosen` of the `runs` are drawn with replacement. Unbounded for fewer than
+/// least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
 
 /// Standard deviation between the true means of groups that are drawn from many (one-way random
@@ -114,9 +115,9 @@ struct SpreadBetween {
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
-/// a / b of two independent estimates of positive quantities. The errors of the logarithms are
-/// added in squares, on each side those that move the ratio there: G. Y. Zou and A. Donner, Stat.
-/// Med. 27, 1693 (2008).
+/// a / b of two independent estimates of positive quantities. At each end of the interval, the
+/// errors of both logarithms that move the ratio to this end are added in squares: G. Y. Zou and A.
+/// Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
 /// Runs per group, or pairs, from which on an interval excludes a value at `distance` from the

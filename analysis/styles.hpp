@@ -22,7 +22,7 @@ inline constexpr std::array<const char*, 7> safe_colours = {
 inline constexpr std::array<std::string_view, 7> colour_names = {
     "blue", "vermilion", "green", "purple", "orange", "sky", "black"};
 
-/// No symbol, then those of curve_symbol(), as manifests name them.
+/// Names of symbols in manifests: none, then the symbols of curve_symbol() in their order.
 inline constexpr std::array<std::string_view, 11> marker_names = {
     "none",        "square",      "circle",        "triangle",           "triangle_down", "diamond",
     "open_square", "open_circle", "open_triangle", "open_triangle_down", "open_diamond"};
@@ -39,8 +39,8 @@ struct Look {
   Join join = Join::line;   ///< of a curve without symbols: dashes once its colour occurs twice
 };
 
-/// The look of an amplitude in all figures; of one that the supplement does not have, that of the
-/// k-th curve.
+/// The look of one of the supplement's amplitudes, the same in all figures. Other amplitudes have
+/// the look of the k-th curve.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
 /// Looks by the values of the keys that vary in the frame: the rank of the first key's value

@@ -82,11 +82,16 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   verdict.counted = counted;
   verdict.note = std::move(note);
   verdict.entered = std::move(entered);
+  if (!claim.cannot_be_decided.empty()) {
+    verdict.ruling = Ruling::undecidable;
+    verdict.note += (verdict.note.empty() ? "" : "; ") + claim.cannot_be_decided;
+  }
   if (!estimate) return verdict;
   verdict.estimate = estimate->value;
   verdict.interval = estimate->interval;
   verdict.spread = estimate->spread;
   verdict.groups = estimate->groups;
+  if (verdict.ruling == Ruling::undecidable) return verdict;
   verdict.ruling = ruling_of(estimate->interval, claim.margin, claim.claimed);
   if (verdict.ruling == Ruling::undecided) {
     verdict.runs_needed = runs_needed(*estimate, claim.margin, claim.claimed);

@@ -17,14 +17,16 @@
 
 namespace shearcell {
 
-/// A claim of equality agrees or differs. A claim of a direction is supported or refuted.
-enum class Ruling { agrees, supported, differs, refuted, undecided };
+/// A claim of equality agrees or differs. A claim of a direction is supported or refuted. More runs
+/// may decide a claim that is undecided, but not one that cannot be decided.
+enum class Ruling { agrees, supported, differs, refuted, undecided, undecidable };
 template <>
 inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "supported", "differs",
-                                                              "refuted", "undecided");
+                                                              "refuted", "undecided",
+                                                              "cannot be decided");
 
-/// Where a claim puts its quantity: from -margin to margin, above the margin, or below it. What it
-/// says of the first of two variants: it has the same value, a higher or a lower one.
+/// Where a claim puts its quantity: from -margin to margin (`same`), above the margin, or below it.
+/// The quantity of two variants is the difference, the first less the second.
 enum class Relation : std::uint8_t { same, higher, lower };
 template <>
 inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
@@ -35,6 +37,7 @@ struct Claim {
   Relation claimed = Relation::same;
   std::string id = {};  ///< "S5a.onset@amplitude_rad=0.05"
   double level = confidence_level;
+  std::string cannot_be_decided = {};  ///< why no number of runs would decide it; "": runs may
 };
 
 /// What the runs of a verdict are counted in.
@@ -70,7 +73,8 @@ struct Verdict {
 /// lies wholly outside. undecided: otherwise.
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
-/// The ruling of the estimate's interval; undecided without an estimate. `runs_needed` runs would
+/// The ruling of the estimate's interval; undecided without an estimate. A claim that states why it
+/// cannot be decided gets this ruling, with the reason in the note. `runs_needed` runs would
 /// decide with 90 % probability if the true value is 0 or twice the margin. If the interval
 /// excludes 0, or that many runs exist already, the true value is taken to be the estimate.
 /// `runs_needed` is always more than the runs of the estimate.
@@ -84,8 +88,8 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// "1 agrees, 1 refuted"; "" without claims.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
-/// The rows of all verdicts in one table, each row after its claim, with the columns of all
-/// verdicts.
+/// The rows of all verdicts in one table, which has the columns of all verdicts. The first column
+/// is the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",

@@ -8,26 +8,26 @@
 
 namespace shearcell {
 
-Scalar over_cycles(const std::string& name, const std::string& column, std::int64_t first,
-                   std::int64_t last) {
-  const auto of = [number = NumberColumn(column), first, last](const FrameRun& run) -> RunValue {
-    double sum = 0;
-    std::int64_t count = 0;
-    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-      const double cycle = checkpoint.cycle;
-      if (std::floor(cycle) != cycle || cycle < static_cast<double>(first) ||
-          cycle > static_cast<double>(last)) {
-        continue;
-      }
-      sum += number(run, &checkpoint);
-      ++count;
-    }
-    if (count != last - first + 1) {
-      const double end = run.checkpoints.empty() ? 0 : run.checkpoints.back().cycle;
-      const bool ended = std::max(run.end, end) < static_cast<double>(last);
-      return {0, ended ? Missing::too_short : Missing::checkpoint};
-    }
-    return measured(sum / static_cast<double>(count));
+RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
+                   PointStatistic statistic) {
+  std::vector<std::pair<double, double>> points;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    const double cycle = checkpoint.cycle;
+    if (std::floor(cycle) != cycle || cycle < first || cycle > last) continue;
+    points.emplace_back(cycle, column(run, &checkpoint));
+  }
+  if (static_cast<double>(points.size()) == last - first + 1) return measured(statistic(points));
+  const double end = run.checkpoints.empty() ? 0 : run.checkpoints.back().cycle;
+  return {0, std::max(run.end, end) < last ? Missing::too_short : Missing::checkpoint};
+}
+
+Scalar over_cycles(const std::string& name, const std::string& column, double first, double last) {
+  const auto of = [number = NumberColumn(column), first, last](const FrameRun& run) {
+    return at_cycles(run, number, first, last, [](auto points) {
+      double sum = 0;
+      for (const auto& [cycle, value] : points) sum += value;
+      return sum / static_cast<double>(points.size());
+    });
   };
   if (first == last) {
     return {fmt::format("{} at cycle {}", name, last), fmt::format("cycle {}", last), of};
@@ -42,8 +42,8 @@ const Estimator mean_over_cycles = {
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return over_cycles(words_of_column(claim.compare), claim.compare,
-                         static_cast<std::int64_t>(claim.cycles->at(0)),
-                         static_cast<std::int64_t>(claim.cycles->at(1)));
+                         static_cast<double>(claim.cycles->at(0)),
+                         static_cast<double>(claim.cycles->at(1)));
     }};
 
 }  // namespace shearcell

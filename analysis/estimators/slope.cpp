@@ -55,6 +55,8 @@ const Estimator slope_against = {
     .meaning = "slope against the column `against` at each run's first checkpoint",
     .key = "against",
     .of_run = true,
+    .over_variants = true,
+    .one_side = true,
     .decide = decide_slope,
     .words = words_of_slope};
 

@@ -12,19 +12,12 @@
 namespace shearcell {
 namespace {
 
-Scalar scalar_of_spread(const ClaimSpec& claim) {
-  return (claim.phi      ? mean_over_phi
-          : claim.cycles ? mean_over_cycles
-                         : number_of_the_run)
-      .scalar(claim);
-}
-
 std::string words_of_spread(const ClaimSpec& claim) {
-  return "standard deviation between variants of " + scalar_of_spread(claim).name;
+  return "standard deviation between variants of " + estimator_by_keys(claim).scalar(claim).name;
 }
 
 Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
-  const Scalar number = scalar_of_spread(claim);
+  const Scalar number = estimator_by_keys(claim).scalar(claim);
   std::map<std::string, std::vector<const FrameRun*>> variants;
   for (const FrameRun* run : runs) variants[run->place.variant].push_back(run);
   std::vector<std::vector<double>> groups;
@@ -64,6 +57,9 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
 const Estimator spread_of_variants = {
     .name = "spread_of_variants",
     .meaning = "standard deviation between the true means of the variants, by their variance ratio",
+    .of_run = std::nullopt,
+    .over_variants = true,
+    .one_side = true,
     .decide = decide_spread,
     .words = words_of_spread};
 

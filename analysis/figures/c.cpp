@@ -318,10 +318,11 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
       all.vanished, all.smaller());
   const AmplitudeGrowth* const alone = &one;
   Verdict verdict =
-      decide({fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
-                          published),
-              margin_critical_size, Relation::same,
-              fmt::format("C.critical_size@amplitude_rad={}", one.amplitude)},
+      decide({.text = fmt::format("C: the critical size at A = {} rad is about {} grains",
+                                  one.amplitude, published),
+              .margin = margin_critical_size,
+              .id = fmt::format("C.critical_size@amplitude_rad={}", one.amplitude),
+              .cannot_be_decided = one.published->cannot_be_decided},
              fmt::format("critical size, relative difference from {} grains", published), relative,
              runs.size(), note, growth_entered({&alone, 1}, one.published->n_bin));
   if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
@@ -347,12 +348,14 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
     growth = mapped(ratio(size(1), size(0)), [](double r) { return r - 1; });
   }
   if (!growth) sized.clear();
-  return decide(
-      {.text = "C: the critical size grows with A", .claimed = Relation::higher, .id = "C.growth"},
-      "critical size at the largest amplitude relative to that at the smallest, "
-      "less 1",
-      growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
-      Counted::runs_per_variant);
+  return decide({.text = "C: the critical size grows with A",
+                 .claimed = Relation::higher,
+                 .id = "C.growth",
+                 .cannot_be_decided = growth_cannot_be_decided},
+                "critical size at the largest amplitude relative to that at the smallest, "
+                "less 1",
+                growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
+                Counted::runs_per_variant);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure committor: the probability that a crystallite of n grains grows, from clones of states. A
-// run is a clone: its cycle 0 is a recorded state with noise of its own. The clones of one state
-// have the same variant and the same stage before them. Not in the supplement.
+// Figure committor: the probability that a crystallite of n grains grows, from clones of states.
+// Each run is a clone: it begins with a recorded state to which noise was added. Clones of one
+// state have the same variant and the same parent stage. The supplement has no such figure.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,11 +21,11 @@
 namespace shearcell {
 namespace {
 
-/// The others show how the result depends on cycles_gone.
+/// The other numbers of cycles show how the result depends on cycles_gone.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< the place of cycles_gone
-/// Controls that grow more often than this, and as often as the smallest crystallites, leave no
-/// critical size. [choice]
+/// No critical size is defined if controls grow more often than this and at least as often as the
+/// smallest crystallites. [choice]
 constexpr double rare = 0.1;
 
 /// What became of crystallites in the clones of their states.
@@ -45,11 +45,11 @@ struct Fates {
   }
 };
 
-/// For each of cycles_without.
+/// Fates by each of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
-/// A crystallite of a state, or, with size 0, a state without crystallites, whose clones are grown
-/// or gone.
+/// A crystallite of a state with the fates of the state's clones. Size 0: a control, which is a
+/// state without crystallites.
 struct Subject {
   const FrameRun* run;  ///< the first clone
   std::int32_t size;
@@ -130,7 +130,7 @@ std::vector<Amplitude> amplitudes_of(std::span<const FrameRun> runs) {
   return all;
 }
 
-/// Of the subjects of low to high - 1 grains.
+/// Sum over the subjects of low to high - 1 grains.
 Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t low = 0,
              std::int32_t high = grown_size) {
   Fates sum;
@@ -140,21 +140,21 @@ Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t l
   return sum;
 }
 
-/// Share that grew of those that are grown or gone; none without any.
+/// Fraction of decided clones that grew; empty if none is decided.
 std::optional<double> grown_share(const Fates& fates) {
   const std::size_t decided = fates.of(Fate::grown) + fates.of(Fate::gone);
   if (decided == 0) return std::nullopt;
   return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
 }
 
-/// Share of the controls that grow.
+/// Fraction of decided controls that grew.
 std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }
 
-/// The crystallites that grew and that were gone in clones, of each packing. Merged ones are left
-/// out. Clones that end before the fate is decided count as `undecided`, which leaves them out, as
-/// grown or as gone.
+/// For each packing, the numbers of clones whose crystallite grew or was gone, by size. Merged
+/// crystallites do not count. Undecided clones count as the fate `undecided`: grown, gone, or not
+/// at all.
 std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
                                               Fate undecided = Fate::undecided) {
   std::map<std::string_view, GrowthBySize> packings;
@@ -184,14 +184,14 @@ std::string why_undefined(const Amplitude& one) {
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
-/// The size at which (p - q) / (1 - q) = 1/2: p = (1 + q) / 2, so delta_rho = 2 p - 1 = q. None if
-/// no critical size is defined.
+/// The size at which (p - q) / (1 - q) = 1/2, which is where delta_rho = 2 p - 1 = q. Empty if no
+/// critical size is defined.
 std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   if (!why_undefined(one).empty()) return std::nullopt;
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
-/// At least so many clones that are grown or gone make a point of the drawing. [choice]
+/// A point of the drawing needs at least this many decided clones. [choice]
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {
@@ -276,7 +276,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// What enters a verdict: a row for each crystallite, one of size 0 for each control.
+/// The rows that enter a verdict: one for each crystallite, and one of size 0 for each control.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -322,7 +322,7 @@ Verdict size_is_published(const Amplitude& one) {
       size, packings, note, fates_of({&one}));
 }
 
-/// The supplement's size grows from the one amplitude to the other. Their clones are taken as
+/// The supplement's critical size grows between these two amplitudes. Their clones count as
 /// independent, since states of one packing at two amplitudes have nothing else in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);

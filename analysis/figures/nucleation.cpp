@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/axes.hpp"
+#include "analysis/binning.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/nucleation.hpp"
@@ -35,18 +37,27 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// One curve for each group. The first column of the table names the group.
+/// One curve for each group. Of several amplitudes each has its colour in all figures; of one
+/// amplitude the sizes differ in colour. With bins of phi, points are side by side in their bin.
+/// The first column of the table names the group.
 std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
   std::vector<Series> series;
+  std::set<double> amplitudes;
+  for (const auto& [group, runs] : groups) amplitudes.insert(group.first);
+  const auto count = static_cast<double>(groups.size());
   for (const auto& [group, runs] : groups) {
     const std::size_t k = series.size();
     series.push_back(
         {.title = formula(fmt::format("$A$ = {}, $N$ = {}", group.first, group.second)),
-         .colour = safe_colours[k % safe_colours.size()],
-         .point = curve_symbol(k),
+         .colour = amplitudes.size() > 1 ? amplitude_look(group.first, k).colour
+                                         : safe_colours[k % safe_colours.size()],
+         .point = join == Join::none ? curve_symbol(k) : 0,
          .join = join,
          .columns = columns,
-         .filter = {"group", name_of(group)}});
+         .filter = {"group", name_of(group)},
+         .shift = columns.x_high.empty()
+                      ? 0
+                      : phi_bin * ((static_cast<double>(k) + 0.5) / count - 0.5) * 0.8});
   }
   return series;
 }
@@ -74,7 +85,6 @@ Table survival_table(const Groups& groups) {
       .x = cycle_axis,
       .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
       .series = series_by(groups, {.x = "cycle", .y = "share_without_onset"}, Join::line)};
-  for (Series& series : table.chart.series) series.point = 0;
   return table;
 }
 
@@ -105,7 +115,8 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
                                       .y_error = "rate_standard_error",
                                       .x_high = "phi_high"},
                                      Join::none),
-                 .errors = "bars are errors of Poisson counts"};
+                 .note = fmt::format("points of a bin of {} in phi stand side by side", phi_bin),
+                 .errors = "bars are standard errors of Poisson counts, none for one onset"};
   return table;
 }
 
@@ -123,33 +134,18 @@ double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
 }
 
 /// The claim that the exponent is 1. The margin is half of the distance from 1 of the exponent for
-/// the area of the walls. None with cells of one size.
+/// the area of the walls. No verdict with cells of one size.
 std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
-                                         const std::string& id, const std::string& claim,
-                                         const std::string& grains) {
+                                         const std::string& id, const std::string& text) {
   if (runs_by(runs, "grains").size() < 2) return {};
   const double walls = exponent_of_walls(runs, region);
   if (!(walls < 1)) return {};
-  const std::vector<const FrameRun*> all = pointers(runs);
-  std::optional<Estimate> excess = size_exponent(all, region);
-  if (excess) excess = mapped(*excess, [](double exponent) { return exponent - 1; });
-  Table entered =
-      entered_with({"amplitude_rad", "grains", "phi", "cycles", "grain_cycles", "onsets"});
-  for (const FrameRun* run : all) {
-    for (const auto& [step, one] : exposures_of(*run, region, rate_step)) {
-      enter(*run,
-            {number_of(*run, "amplitude_rad"), number_of(*run, "grains"), one.phi, one.cycles,
-             one.grain_cycles, one.onsets},
-            entered);
-    }
-  }
-  return {decide({claim, (1 - walls) / 2, Relation::same, id},
-                 "exponent of the rate against " + grains + " less 1", excess,
-                 excess ? excess->runs : all.size(),
-                 excess
-                     ? fmt::format("maximum likelihood; walls would give {:.2f}", walls - 1)
-                     : "three runs, and runs of two sizes with onsets at the same phi, are needed",
-                 std::move(entered))};
+  const ClaimSpec claim{
+      .id = id, .against = grains_of(region), .published = PublishedSpec{.value = 1}};
+  Verdict verdict = rate_exponent.decide(claim, {.text = text, .margin = (1 - walls) / 2, .id = id},
+                                         pointers(runs), {});
+  if (verdict.estimate) verdict.note += fmt::format("; walls would give {:.2f}", walls - 1);
+  return {std::move(verdict)};
 }
 
 }  // namespace
@@ -160,8 +156,7 @@ FigureResult figure_nucleation(const Frame& frame) {
   return {{survival_table(groups), rate_table(groups, Region::interior, "nucleation_b")},
           rate_follows_volume(runs, Region::interior, "nucleation.volume",
                               "title: the rate of nucleation is proportional to the volume, not to "
-                              "the area of the walls",
-                              "N_inves")};
+                              "the area of the walls")};
 }
 
 FigureResult figure_nucleation_core(const Frame& frame) {
@@ -169,8 +164,7 @@ FigureResult figure_nucleation_core(const Frame& frame) {
   return {{rate_table(grouped(runs), Region::core, "nucleation_core")},
           rate_follows_volume(runs, Region::core, "nucleation_core.volume",
                               "title: at least 4 d from the walls the rate of nucleation is "
-                              "proportional to the volume",
-                              "core_grains")};
+                              "proportional to the volume")};
 }
 
 }  // namespace shearcell

@@ -19,7 +19,7 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t density_bins = 20;
+constexpr std::size_t density_bins = 8;
 /// Centres of such crystallites cannot lie nearer to a plane than this [d]: interior grains begin
 /// 1.875 d inside a rough plane, and the crystallite has a radius. [choice]
 constexpr double inaccessible = 4;

@@ -322,7 +322,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.against,
         {.name = "against",
          .doc =
-             "for `estimator: slope`: the column on the other axis, at each run's first checkpoint",
+             "for `estimator: slope`: the column on the other axis, at each run's first checkpoint; "
+             "for `spread_ratio`: the other number",
          .names = can_be_compared,
          .terms = terms});
   visit(claim.where,
@@ -382,6 +383,12 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.optional, {.name = "optional",
                          .doc = "`true`: no verdict where a scale lacks one of the variants",
                          .example = "true"});
+  visit(claim.cannot_be_decided,
+        {.name = "cannot_be_decided",
+         .doc = "why no number of runs would decide the claim. The verdict is then `cannot be "
+                "decided`, with this reason and the numbers",
+         .example = "the published number scatters by more than the margin",
+         .longest = 300});
 }
 
 void fields(Manifest& manifest, const auto& visit) {
@@ -1350,20 +1357,19 @@ struct Reader {
     require_one("id", {"id", "name"});
     reject_if(!is_claim_id(claim.id), &in, "has no id",
               "It takes letters, digits, -, _ and dots: `id: S2.phi`.");
-    const bool is_slope = claim.estimator == slope_against.name;
-    const bool of_all = is_slope || claim.estimator == spread_of_variants.name;
+    const Estimator* named = find_named(all_estimators(), claim.estimator);
+    const bool of_all = named != nullptr && named->one_side;
     require_one(of_all ? nullptr : "between", {"between", "published"});
-    require_one(is_slope ? "against" : nullptr, {"against"});
-    if (const Estimator* named = find_named(all_estimators(), claim.estimator)) {
+    if (named != nullptr) {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
                 fmt::format("`estimator: {}` takes it.", named->name));
-      const bool any = claim.compare.empty() || claim.estimator == spread_of_variants.name;
-      reject_value_if(!any && is_of_run(claim.compare) != named->of_run, in.find("estimator"),
+      const bool any = claim.compare.empty() || !named->of_run;
+      reject_value_if(!any && is_of_run(claim.compare) != *named->of_run, in.find("estimator"),
                       fmt::format("does not go with {}", claim.compare),
-                      named->of_run ? "Compare a number of the whole run, as onset_size_phi."
-                                    : "Compare a number of checkpoints, as phi.");
+                      *named->of_run ? "Compare a number of the whole run, as onset_size_phi."
+                                     : "Compare a number of checkpoints, as phi.");
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});

@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// The value of a parameter at this scale, if it is not swept; or "auto".
+/// The value of a parameter that the scale does not sweep, or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// A combination of swept values.
@@ -25,8 +25,8 @@ struct Variant {
   std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
   nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
-  Parameters packing = {};  ///< `parameters`, with those of `settle` in their place
-  /// How many of the seeds it has, the first ones; default: all.
+  Parameters packing = {};  ///< `parameters` while the packing settles, with the values of `settle`
+  /// The variant has this many of the scale's seeds, the first ones; default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -73,7 +73,7 @@ std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::
 /// The swept axis of this key, or nullptr.
 const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 
-/// The number of variants; ManifestLimits::runs + 1 for all larger numbers.
+/// The number of variants, or ManifestLimits::runs + 1 if there are more.
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the

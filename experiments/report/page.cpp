@@ -94,7 +94,8 @@ std::string text_of(const Maker& maker) {
 /// A ruling with a mark that needs no colour.
 json ruling_json(Ruling ruling) {
   const bool good = ruling == Ruling::agrees || ruling == Ruling::supported;
-  const char* mark = ruling == Ruling::undecided ? "?" : good ? "✓" : "✗";
+  const bool open = ruling == Ruling::undecided || ruling == Ruling::undecidable;
+  const char* mark = open ? "?" : good ? "✓" : "✗";
   return {{"name", name_of(ruling)}, {"mark", mark}};
 }
 

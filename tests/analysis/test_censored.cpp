@@ -132,12 +132,28 @@ TEST(Censored, FewObservedValuesBoundOneSide) {
   const Estimate two = censored_mean(values({1, 2, -2, -2, -2, -2})).value();
   std::printf("two of six: %.2f (%.2f to %.2f)\n", two.value, two.interval.low, two.interval.high);
   EXPECT_TRUE(two.interval.low < 2 && two.value > 2 && two.interval.high > 4);
-  // All values at x = 0 are observed, and none at x = 1: the slope has no upper bound.
-  const Estimate slope = censored_slope(values({1, 2, 3, 2, -4, -5, -4, -6}),
-                                        std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1})
-                             .value();
-  EXPECT_EQ(slope.interval.high, infinite);
-  EXPECT_GT(slope.interval.low, 0);
+}
+
+TEST(Censored, ASlopeIsInfiniteIfAllObservedValuesAreAtOneX) {
+  const Values observed_left = values({1, 2, 3, 2, -4, -5, -4, -6});
+  const auto slope = [](const Values& y, const std::vector<double>& x) {
+    return censored_slope(y, x).value();
+  };
+  const Estimate up = slope(observed_left, {0, 0, 0, 0, 1, 1, 1, 1});
+  EXPECT_EQ(up.value, infinite);
+  EXPECT_EQ(up.interval.high, infinite);
+  EXPECT_GT(up.interval.low, 0);
+  EXPECT_FALSE(runs_to_resolve(up, 1, true));
+  const Estimate down = slope(observed_left, {1, 1, 1, 1, 0, 0, 0, 0});
+  EXPECT_EQ(down.value, -infinite);
+  EXPECT_EQ(down.interval.low, -infinite);
+  EXPECT_NEAR(down.interval.high, -up.interval.low, 1e-6);
+  // Censored values at the same x change nothing; on both sides they bound the slope.
+  EXPECT_EQ(slope(observed_left, {0, 0, 0, 0, 0, 1, 1, 1}).value, infinite);
+  const Estimate both = slope(observed_left, {0, 0, 0, 0, 1, 1, -1, -1});
+  EXPECT_TRUE(std::isfinite(both.value) && std::isfinite(both.interval.low) &&
+              std::isfinite(both.interval.high));
+  EXPECT_TRUE(std::isfinite(slope(observed_left, {0, 0, 0, 0.5, 1, 1, 1, 1}).value));
 }
 
 TEST(Censored, EqualValues) {

@@ -226,8 +226,8 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
               .letter = "b"};
   const Table table{.name = "t", .columns = {}, .rows = {}, .chart = std::move(chart)};
   EXPECT_EQ(caption_of("A title", std::span(&table, 1)),
-            "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Reference "
-            "lines: the limit.");
+            "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Verdicts "
+            "have 90 % intervals instead. Reference lines: the limit.");
 }
 
 TEST(Chart, TheCaptionSaysWhichPanelANoteIsOf) {

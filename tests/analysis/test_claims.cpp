@@ -2,6 +2,7 @@
 // Numbers per run, pairs, missing checkpoints: comparisons with known answers.
 #include "analysis/claims.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -180,6 +181,133 @@ TEST(Compare, MostRunsOfTheLargerGroupMustHavePartners) {
   EXPECT_EQ(verdict.note,
             "4 pairs of runs that share a packing; more than a quarter of the runs have no "
             "partner");
+}
+
+TEST(Compare, EqualSidesAreNoEvidence) {
+  const Runs a = group(4, 0), b = group(4, 0);
+  const Verdict same = compare(equal, early_phi(), pointers(a), pointers(b));
+  EXPECT_EQ(same.interval.low, 0);
+  EXPECT_EQ(same.interval.high, 0);
+  EXPECT_EQ(same.ruling, Ruling::undecided);
+  EXPECT_FALSE(same.runs_needed);
+  EXPECT_EQ(same.note,
+            "4 pairs of runs that share a packing; the numbers of both sides are equal to all "
+            "digits: usually both sides are the same computation up to here, which is no evidence "
+            "that they agree");
+  Runs constant = group(4, 0);
+  for (FrameRun& run : constant) {
+    for (CheckpointMeasures& checkpoint : run.checkpoints) checkpoint.measures.numbers["phi"] = 0.5;
+  }
+  const Verdict one = compare_with(equal, over_cycles("phi", "phi", 1, 1), pointers(constant), 0.5);
+  EXPECT_EQ(one.note, "the numbers have no scatter, so the interval has no width");
+  EXPECT_EQ(one.ruling, Ruling::agrees);
+}
+
+/// Seeds 1, 2, ... of a variant, each with its phi at cycle 1.
+Runs with_phi(const char* fluid, double amplitude, std::initializer_list<double> phis) {
+  Runs all;
+  for (const double phi : phis) {
+    FrameRun& run = all.emplace_back(made_up_run(
+        "fluid", fluid, all.size() + 1, 1, [phi](int, Measures& m) { m.numbers["phi"] = phi; }));
+    run.parameters["amplitude_rad"] = amplitude;
+    run.parameters["fluid"] = fluid;
+    run.place.variant += fmt::format(",amplitude_rad={}", amplitude);
+    run.stage.id += run.place.variant;
+  }
+  return all;
+}
+
+// Expected: numpy and scipy.stats.t. All runs together would give -0.0021.
+TEST(PooledDifference, ComparesRunsWithEqualParameters) {
+  Frame frame;
+  for (const Runs& runs : {with_phi("still", 0.05, {0.651, 0.652, 0.654, 0.650, 0.653}),
+                           with_phi("cell", 0.05, {0.650, 0.651, 0.6535}),
+                           with_phi("still", 0.1, {0.660, 0.662, 0.6615}),
+                           with_phi("cell", 0.1, {0.661, 0.6605, 0.663, 0.659, 0.662}),
+                           with_phi("still", 0.2, {0.7, 0.8, 0.9})}) {
+    frame.runs.insert(frame.runs.end(), runs.begin(), runs.end());
+  }
+  ClaimSpec claim{.id = "own",
+                  .compare = "phi",
+                  .estimator = "pooled_difference",
+                  .cycles = {{1, 1}},
+                  .between = {{{{"fluid", "still"}}, {{"fluid", "cell"}}}},
+                  .margin = 0.002};
+  const Verdict pooled = claim_figure(claim).make(frame).verdicts.at(0);
+  EXPECT_NEAR(pooled.estimate.value(), 0.000283333, 1e-9);
+  EXPECT_NEAR(pooled.interval.low, -0.001170055, 1e-9);
+  EXPECT_NEAR(pooled.interval.high, 0.001736722, 1e-9);
+  EXPECT_EQ(pooled.ruling, Ruling::agrees);
+  EXPECT_EQ(pooled.runs, 8U);
+  EXPECT_EQ(pooled.note,
+            "8 and 8 runs in 2 of 3 groups with equal parameters; the others lack 3 numbers on a "
+            "side");
+}
+
+// Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.
+TEST(SpreadRatio, IsThatOfPitmanAndMorgan) {
+  Frame frame;
+  const auto add = [&](double amplitude, std::initializer_list<double> a,
+                       std::initializer_list<double> b) {
+    Runs runs = with_phi("still", amplitude, a);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      runs[k].parameters["first"] = std::data(a)[k];
+      runs[k].parameters["second"] = std::data(b)[k];
+      frame.runs.push_back(runs[k]);
+    }
+  };
+  add(0.05, {1, 2, 3, 5}, {2, 1, 4, 6});
+  add(0.1, {7, 9, 8}, {10, 8, 13});
+  const ClaimSpec claim{.id = "own",
+                        .compare = "first",
+                        .estimator = "spread_ratio",
+                        .against = "second",
+                        .margin = 0.1,
+                        .is = Relation::lower};
+  const Verdict found = claim_figure(claim).make(frame).verdicts.at(0);
+  EXPECT_NEAR(found.estimate.value(), -0.373823296, 1e-9);
+  EXPECT_NEAR(found.interval.low, -0.728180503, 1e-9);
+  EXPECT_NEAR(found.interval.high, 0.442491319, 1e-9);
+  EXPECT_EQ(found.margin, -0.1);
+  EXPECT_EQ(found.ruling, Ruling::undecided);
+  EXPECT_EQ(found.note, "7 of 7 runs have both numbers, in 2 variants; test of Pitman and Morgan");
+}
+
+TEST(CannotBeDecided, IsTheVerdictWithItsReasonWhateverTheNumbers) {
+  Frame frame(group(4, 0.0002));
+  ClaimSpec claim{.id = "own",
+                  .compare = "phi",
+                  .cycles = {{1, 15}},
+                  .published = PublishedSpec{.value = 0.63},
+                  .margin = 0.1,
+                  .cannot_be_decided = "the published number has no error"};
+  Verdict verdict = claim_figure(claim).make(frame).verdicts.at(0);
+  EXPECT_EQ(name_of(verdict.ruling), "cannot be decided");
+  EXPECT_TRUE(has(verdict.note, "the published number has no error"));
+  EXPECT_TRUE(verdict.estimate.has_value());
+  EXPECT_FALSE(verdict.runs_needed);
+  frame.seeds = {1, 2, 3, 4, 5};
+  frame.looks = {5};
+  frame.pending = group(1, 0, 0, 5);
+  verdict = claim_figure(claim).make(frame).verdicts.at(0);
+  EXPECT_EQ(verdict.ruling, Ruling::undecidable) << "before its look, too";
+  claim.cannot_be_decided.clear();
+  EXPECT_EQ(claim_figure(claim).make(frame).verdicts.at(0).ruling, Ruling::undecided);
+}
+
+TEST(Claims, NameASideWithoutRunsAsItsPlannedRuns) {
+  Frame frame(group(3, 0));
+  frame.pending = with_phi("cell", 0.0833, {0.6});
+  frame.pending.front().name = "moving fluid";
+  for (FrameRun& run : frame.runs) run.name = "still fluid";
+  for (FrameRun& run : frame.runs) run.parameters["fluid"] = "still";
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "cell"}}, {{"fluid", "still"}}}},
+                        .margin = 0.1};
+  EXPECT_EQ(claim_figure(claim).make(frame).verdicts.at(0).claim,
+            "own: phi at cycle 1 is the same for moving fluid and still fluid");
 }
 
 TEST(CompareWaits, CountsRunsThatEndBefore) {

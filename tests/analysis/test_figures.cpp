@@ -93,12 +93,13 @@ TEST(FigureS7, HasBothHeightsAndEachStiffness) {
   const std::vector<FrameRun> runs = {nucleated(6540), nucleated(654)};
   const FigureResult made = find_figure("S7")->make(runs);
   for (const auto& [name, row] :
-       {std::pair("S7", "x/w,0.3,0.35"),               // (3 + 1) / (10 + 2)
-        std::pair("S7", "y/h,0.25,0.3"),               // 4 / 16, softest only
-        std::pair("S7_heights", "y/1.675L,0.2,0.25"),  // 4 / 16.75
-        std::pair("S7_stiffness", "654,0.25,0.3"), std::pair("S7_stiffness", "6540,0.25,0.3")}) {
+       {std::pair("S7", "x/w,0.25,0.375"),               // (3 + 1) / (10 + 2)
+        std::pair("S7", "y/h,0.25,0.375"),               // 4 / 16, softest only
+        std::pair("S7_heights", "y/1.675L,0.125,0.25"),  // 4 / 16.75
+        std::pair("S7_stiffness", "654,0.25,0.375"),
+        std::pair("S7_stiffness", "6540,0.25,0.375")}) {
     const std::string csv = to_csv(panel(made, name));
-    EXPECT_TRUE(has(csv, std::string("\n") + row + ",20,,1,1\n"));
+    EXPECT_TRUE(has(csv, std::string("\n") + row + ",8,,1,1\n"));
   }
 }
 

@@ -6,11 +6,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
@@ -232,6 +237,86 @@ TEST(SecondLook, PowerOfTheSharesOfNuclei) {
     const bool decided = std::max(found.agrees, found.differs) >= 80;
     EXPECT_EQ(decided, one.id == std::string_view("S7.top"));
   }
+}
+
+/// The published counts behind a claim of figure C: of each packing, by amplitude.
+std::map<std::string, std::vector<GrowthBySize>> published_counts(const std::string& claim) {
+  std::ifstream file(std::string(SHEARCELL_TEST_DATA) +
+                     "/../../experiments/results/C/C.verdict.csv");
+  std::map<std::string, std::map<std::string, GrowthBySize>> groups;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> cells;
+    boost::split(cells, line, boost::is_any_of(","));
+    if (cells.at(0) != claim) continue;
+    const auto number = [&](std::size_t k) { return std::stoul(cells.at(k)); };
+    groups[cells.at(1)][cells.at(3)][std::stoi(cells.at(5))] = {number(6), number(7), number(8),
+                                                                number(9)};
+  }
+  std::map<std::string, std::vector<GrowthBySize>> packings;
+  for (const auto& [group, all] : groups) {
+    for (const auto& [packing, counts] : all) packings[group].push_back(counts);
+  }
+  return packings;
+}
+
+/// The critical size from 10,000 runs, drawn from the packings with replacement. The bootstrap
+/// takes groups of 100 runs as its units, which gives the same errors.
+Estimate size_of_many(const std::vector<GrowthBySize>& packings, std::uint32_t campaign) {
+  std::vector<GrowthBySize> groups(100);
+  for (std::uint32_t k = 0; k < 10000; ++k) {
+    const double u = uniform_pair({campaign, k, 0, 0}, 31)[0];
+    const auto drawn = static_cast<std::size_t>(u * static_cast<double>(packings.size()));
+    for (const auto& [size, count] : packings[drawn]) groups[k % 100][size] += count;
+  }
+  return GrowthCurve(groups).critical_size().value();
+}
+
+// If the truth is what the campaign found, 10,000 runs do not decide the claims either.
+TEST(CannotBeDecided, TheClaimsOfFigureCWithTenThousandRuns) {
+  std::size_t stated = 0;
+  for (const PublishedAmplitude& one : published_amplitudes) {
+    if (std::string_view(one.cannot_be_decided).empty()) continue;
+    ++stated;
+    const auto counts =
+        published_counts(fmt::format("C: the critical size at A = {} rad is about {} grains",
+                                     one.amplitude_rad, one.critical_size));
+    ASSERT_EQ(counts.size(), 1U);
+    const std::vector<GrowthBySize>& packings = counts.begin()->second;
+    const auto [low, high] = GrowthCurve(packings).repeated_critical_size(8);
+    std::uint32_t decided = 0;
+    constexpr std::uint32_t campaigns = 20;
+    Interval interval;
+    for (std::uint32_t campaign = 0; campaign < campaigns; ++campaign) {
+      const Estimate ours = size_of_many(packings, campaign);
+      const double theirs = one.critical_size, size = ours.value;
+      interval = ratio(ours, {theirs, {theirs * size / high, theirs * size / low}}).interval;
+      interval = {interval.low - 1, interval.high - 1};
+      decided += ruling_of(interval, margin_critical_size, Relation::same) != Ruling::undecided;
+    }
+    fmt::print(
+        "critical size at A = {}: {} of {} campaigns of 10,000 runs are decided; interval "
+        "of the last {:.2f} to {:.2f}, margin {}\n",
+        one.amplitude_rad, decided, campaigns, interval.low, interval.high, margin_critical_size);
+    EXPECT_EQ(decided, 0U);
+  }
+  EXPECT_EQ(stated, 2U);
+  // The ratio is 1: the same counts at both amplitudes.
+  const auto counts = published_counts("C: the critical size grows with A");
+  ASSERT_EQ(counts.size(), 2U);
+  const std::vector<GrowthBySize>& packings = counts.rbegin()->second;
+  std::uint32_t decided = 0;
+  constexpr std::uint32_t campaigns = 60;
+  for (std::uint32_t campaign = 0; campaign < campaigns; ++campaign) {
+    const Estimate growth =
+        ratio(size_of_many(packings, 2 * campaign), size_of_many(packings, 2 * campaign + 1));
+    const Interval interval = {growth.interval.low - 1, growth.interval.high - 1};
+    decided += ruling_of(interval, 0, Relation::higher) != Ruling::undecided;
+  }
+  fmt::print(
+      "growth, if the ratio is 1: {} of {} campaigns of 10,000 runs at each amplitude are "
+      "decided\n",
+      decided, campaigns);
+  EXPECT_LE(decided, campaigns / 5);
 }
 
 }  // namespace

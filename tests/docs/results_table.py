@@ -20,7 +20,8 @@ import sys
 BEGIN = "<!-- results, by tests/docs/results_table.py -->\n"
 END = "<!-- end of results -->\n"
 
-# The rows of README.md, one claim each: figure, id (in older manifests: name), and the cells "claim" and "supplement".
+# The rows of README.md, one claim each: figure, id (in older manifests: name), the cells "claim" and "supplement", and
+# perhaps words in place of the verdict.
 HEADLINES = [
     ("S1", "S1.fall", "fall of the uncorrected phi (Eq. S2) as k grows a hundredfold", "about 2 %"),
     ("S1", "S1.phi", "change of the corrected phi (Eq. S4) as k grows a hundredfold", "none"),
@@ -33,12 +34,14 @@ HEADLINES = [
     ("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
     ("S5b", "S5b.slope", "change of phi at the onset, if the number of interior grains grows by a factor of e",
      "none from 6000 on"),
-    ("nucleation", "nucleation.volume", "exponent of the nucleation rate in the number of interior grains",
+    ("summary", "summary.core_exponent",
+     "exponent of the nucleation rate in the number of core grains, all experiments (claim chosen after the runs)",
      "1 (homogeneous)"),
     ("C", "C.critical_size@amplitude_rad=0.0833",
      "critical size [grains], A = 0.0833: as many crystallites of this size grow as shrink", "about 16"),
     ("committor", "committor.size@amplitude_rad=0.0833",
-     "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow", "about 16"),
+     "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow",
+     "16 by the first definition", "another observable"),
     ("S7", "S7.inner", "share of nuclei in the inner half of the width less the share in the outer half", "0"),
     ("S7", "S7.top", "share of nuclei in the upper third of the height less the share in the lower third", "over 0.2"),
 ]
@@ -133,13 +136,13 @@ def best_of(found):
 
 def headlines(page, results):
     text = header(["claim", "supplement", "ours (90 % interval)", "margin", "packings", "verdict"])
-    for figure, identity, name, supplement in HEADLINES:
+    for figure, identity, name, supplement, *instead in HEADLINES:
         found = [(place, drawing, claim) for place, of, drawing, claim in verdicts(results)
                  if of == figure and claim.get("id") == identity]
         if found:
             _, drawing, claim = best_of(found)
             text += row([name, supplement, measured(claim), margin(claim), runs(claim),
-                         link(claim["verdict"], drawing, page)])
+                         link(instead[0] if instead else claim["verdict"], drawing, page)])
     return text
 
 
@@ -161,13 +164,15 @@ def all_claims(page, results):
         asked.setdefault((figure, claim["claim"]), []).append((place, drawing, claim))
     for (figure, name), found in sorted(asked.items(), key=lambda item: in_order(*item[0])):
         best = best_of(found)
-        place, _, claim = best
+        folder, _, claim = best
         low, high = claim["interval"] or (None, None)
         is_measured = claim["estimate"] is not None
         value = f"{digits(claim['estimate'])} ({digits(low)} to {digits(high)})" if is_measured else "not measured"
-        others = [f"{one[0]}: {digits(one[2]['estimate'])}, {one[2]['verdict']} ({runs(one[2])})"
-                  for one in found if one != best and one[2]["estimate"] is not None]
-        rows.append([figure, claim.get("id", ""), name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], place,
+        others = []
+        for place, _, one in (one for one in found if one != best and one[2]["estimate"] is not None):
+            at = "" if one["margin"] == claim["margin"] else f" at a margin of {digits(one['margin'])}"
+            others.append(f"{place}: {digits(one['estimate'])}, {one['verdict']}{at} ({runs(one)})")
+        rows.append([figure, claim.get("id", ""), name, claim["quantity"], value, digits(claim["margin"]), runs(claim), claim["verdict"], folder,
                      "; ".join(others)])
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The difference between two sides whose runs also differ in other parameters, such as the
+// amplitude. Runs are compared within strata of equal parameters, and the strata are pooled.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "analysis/estimators.hpp"
+#include "analysis/estimators/notes.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+using nlohmann::json;
+
+/// The means of each stratum have their own variances; the degrees of freedom are Welch's. The
+/// weights do not depend on the values.
+Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
+  const Scalar number = estimator_by_keys(claim).scalar(claim);
+  const RunGroup sides[] = {a, b};
+  std::vector<json> others;  // parameters without those that distinguish the two sides
+  for (const RunGroup side : sides) {
+    for (const FrameRun* run : side) {
+      json& other = others.emplace_back(run->parameters);
+      for (const json& of_side : claim.between) {
+        for (const auto& [key, value] : of_side.items()) other.erase(key);
+      }
+    }
+  }
+  const std::vector<std::string> keys = varied_keys(others);
+  using Side = std::pair<std::vector<const FrameRun*>, std::vector<CensoredValue>>;
+  std::map<json, std::array<Side, 2>> strata;
+  Table entered = entered_with({"stratum", "side", "value", "missing", "above"});
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (const FrameRun* run : sides[k]) {
+      json stratum = json::object();
+      for (const std::string& key : keys) stratum[key] = run->parameters.value(key, json());
+      const RunValue value = number.of(*run);
+      auto& [runs, values] = strata[stratum].at(k);
+      runs.push_back(run);
+      values.push_back(censored_value(value));
+      enter(*run,
+            {shearcell::words_of(stratum), k + 1, value.or_nan(),
+             std::string(name_of(value.missing)), value.above},
+            entered);
+    }
+  }
+  double weights = 0, sum = 0, variance = 0, fourth = 0;
+  std::size_t pooled = 0, censored = 0, runs[2] = {0, 0};
+  for (const auto& [stratum, both] : strata) {
+    std::vector<CensoredValue> values[2];
+    std::optional<Estimate> mean[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+      values[k] = over_packings(both.at(k).first, both.at(k).second);
+      mean[k] = censored_mean(values[k], stated.level);
+    }
+    if (!mean[0] || !mean[1] || !std::isfinite(mean[0]->spread + mean[1]->spread)) continue;
+    ++pooled;
+    const double n = static_cast<double>(values[0].size()),
+                 m = static_cast<double>(values[1].size()), weight = n * m / (n + m);
+    weights += weight;
+    sum += weight * (mean[0]->value - mean[1]->value);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double count = static_cast<double>(values[k].size());
+      const double error = weight * weight * mean[k]->spread * mean[k]->spread / count;
+      variance += error;
+      fourth += error * error / (count - 1);
+      runs[k] += values[k].size();
+      censored +=
+          static_cast<std::size_t>(std::ranges::count(values[k], true, &CensoredValue::censored));
+    }
+  }
+  std::optional<Estimate> estimate;
+  if (pooled > 0) {
+    const double value = sum / weights,
+                 t = student_quantile((1 + stated.level) / 2, variance * variance / fourth);
+    const double half = t * std::sqrt(variance) / weights;
+    estimate = estimate_with(value, {value - half, value + half}, t, std::min(runs[0], runs[1]));
+    estimate->groups = 2;
+  }
+  Verdict verdict = decide(
+      stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
+      strata.empty()
+          ? std::string(no_group)
+          : fmt::format("{} and {} runs in {} of {} with equal parameters; the others "
+                        "lack {} numbers on a side",
+                        runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
+      std::move(entered), Counted::runs_per_variant);
+  verdict.censored = censored;
+  return verdict;
+}
+
+}  // namespace
+
+const Estimator pooled_difference = {
+    .name = "pooled_difference",
+    .meaning =
+        "difference between runs that are equal in all other parameters, pooled over "
+        "these; `between` may name several variants",
+    .of_run = std::nullopt,
+    .over_variants = true,
+    .decide = decide_pooled,
+    .words = [](const ClaimSpec& claim) { return estimator_by_keys(claim).scalar(claim).name; }};
+
+}  // namespace shearcell

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The ratio of the standard deviations of two numbers of the same runs, which are correlated:
+// E. J. G. Pitman, Biometrika 31, 9 (1939); W. A. Morgan, Biometrika 31, 13 (1939).
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "analysis/estimators.hpp"
+#include "provenance/words.hpp"
+
+namespace shearcell {
+namespace {
+
+std::string words_of_ratio(const ClaimSpec& claim) {
+  return fmt::format("standard deviation of {} relative to that of {}", claim.compare,
+                     claim.against);
+}
+
+/// Standard deviations are about the mean of each variant. With F the ratio of variances and r the
+/// correlation, the interval of the true ratio of variances is
+///
+///     F (K -+ sqrt(K^2 - 1)),   K = 1 + 2 (1 - r^2) t^2 / f,   f = runs - variants - 1
+Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
+  ClaimSpec other = claim;
+  other.compare = claim.against;
+  const Scalar first = number_of_the_run.scalar(claim), second = number_of_the_run.scalar(other);
+  Table entered = entered_with({"value", "other"});
+  std::map<std::string, std::vector<std::pair<double, double>>> variants;
+  for (const FrameRun* run : runs) {
+    const double x = first.of(*run).or_nan(), y = second.of(*run).or_nan();
+    enter(*run, {x, y}, entered);
+    if (std::isfinite(x) && std::isfinite(y)) variants[run->place.variant].emplace_back(x, y);
+  }
+  double n = 0, xx = 0, yy = 0, xy = 0;
+  for (const auto& [variant, pairs] : variants) {
+    const auto count = static_cast<double>(pairs.size());
+    double x_mean = 0, y_mean = 0;
+    for (const auto& [x, y] : pairs) x_mean += x / count, y_mean += y / count;
+    for (const auto& [x, y] : pairs) {
+      xx += (x - x_mean) * (x - x_mean);
+      yy += (y - y_mean) * (y - y_mean);
+      xy += (x - x_mean) * (y - y_mean);
+    }
+    n += count;
+  }
+  const auto with_both = static_cast<std::size_t>(n);
+  const double freedom = n - static_cast<double>(variants.size()) - 1;
+  std::optional<Estimate> estimate;
+  if (freedom >= 1 && xx > 0 && yy > 0) {
+    const double t = student_quantile((1 + stated.level) / 2, freedom);
+    const double k = 1 + 2 * (1 - xy * xy / (xx * yy)) * t * t / freedom;
+    const double log_ratio = std::log(xx / yy) / 2, half = std::acosh(k) / 2;
+    estimate = mapped(estimate_with(log_ratio, {log_ratio - half, log_ratio + half}, t, with_both),
+                      [](double log) { return std::expm1(log); });
+  }
+  return decide(stated, words_of_ratio(claim) + ", less 1", estimate, with_both,
+                fmt::format("{} of {} runs have both numbers, in {}; test of Pitman and Morgan",
+                            with_both, runs.size(), counted(variants.size(), "variant")),
+                std::move(entered));
+}
+
+}  // namespace
+
+const Estimator spread_ratio = {
+    .name = "spread_ratio",
+    .meaning =
+        "ratio of the standard deviations, within variants, of the number and of `against` "
+        "in the same runs, less 1",
+    .key = "against",
+    .of_run = true,
+    .over_variants = true,
+    .one_side = true,
+    .decide = decide_ratio,
+    .words = words_of_ratio};
+
+}  // namespace shearcell
