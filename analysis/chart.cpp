@@ -85,6 +85,7 @@ json to_json(const Table& table, const Series& series) {
                 {"points", std::move(points)}};
   if (series.thin) facts["thin"] = true;
   if (series.large) facts["large"] = true;
+  if (series.filter.column == "variant") facts["of"] = json_of(series.filter.value);
   return facts;
 }
 

@@ -610,7 +610,8 @@ Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
           .point = curve.look.point,
-          .join = Join::line};
+          .join = Join::line,
+          .filter = {"variant", curve.variant}};
 }
 
 /// Curves of single runs, and those of a curve measure, have no symbols, which would hide them.
@@ -865,7 +866,6 @@ Table draw(const Panel& panel) {
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
     if (what == Against::phi) series.columns.x_error = "phi_standard_error";
-    series.filter = {"variant", curve.variant};
     if (what == Against::curve) leave_out_symbol(curve, series);
     // Against a number of the run, the runs at each x are others.
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();

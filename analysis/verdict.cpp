@@ -56,6 +56,48 @@ json claim_of(const Verdict& verdict) {
   return claim;
 }
 
+/// "0.0012, 90 % interval -0.0003 to 0.0027".
+std::string estimate_with_interval(const Verdict& verdict) {
+  const auto end = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("unbounded");
+  };
+  const auto [low, high] = verdict.interval;
+  const bool any_end = std::isfinite(low) || std::isfinite(high);
+  return fmt::format("{}, {:.3g} % interval {}",
+                     std::isfinite(*verdict.estimate) ? end(*verdict.estimate) : "no finite value",
+                     100 * verdict.level, any_end ? end(low) + " to " + end(high) : end(low));
+}
+
+/// "3.3" of log2 3.3 and of log2 (1 / 3.3).
+std::string factor(double log2) {
+  const double value = std::exp2(std::abs(log2));
+  return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
+}
+
+/// "the first is 2.1 times later (90 % interval: 1.3 to 3.4 times later)", or the bound that the
+/// interval gives where it has one end or none.
+std::string order_of_waits(const Verdict& verdict) {
+  const auto times = [](double log2) {
+    return fmt::format("{} times {}", factor(log2), log2 < 0 ? "earlier" : "later");
+  };
+  const auto [low, high] = verdict.interval;
+  const std::string level = fmt::format("{:.3g} %", 100 * verdict.level);
+  if (std::isfinite(low) && std::isfinite(high)) {
+    const bool one_side = (low < 0) == (high < 0);
+    return fmt::format("the first is {} ({} interval: {} to {})", times(*verdict.estimate), level,
+                       one_side ? factor(low) : times(low), times(high));
+  }
+  const double end = std::isfinite(low) ? low : high;
+  if (!std::isfinite(end)) return fmt::format("no bound on the order of the two ({})", level);
+  // The bound of an interval that holds both orders limits only one of them.
+  const bool least = std::isfinite(low) ? low >= 0 : high < 0;
+  return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
+                     least     ? ""
+                     : end < 0 ? ", or later"
+                               : ", or earlier",
+                     level);
+}
+
 }  // namespace
 
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
@@ -139,31 +181,31 @@ json to_json(std::span<const Verdict> verdicts) {
 }
 
 std::string numbers_of(const Verdict& verdict) {
-  const auto end = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("unbounded");
-  };
-  const auto [low, high] = verdict.interval;
-  const bool any_end = std::isfinite(low) || std::isfinite(high);
-  std::string text = "not measured";
-  if (verdict.estimate) {
-    text = std::isfinite(*verdict.estimate) ? end(*verdict.estimate) : "no finite value";
-    text += fmt::format(", {:.3g} % interval {}", 100 * verdict.level,
-                        any_end ? end(low) + " to " + end(high) : end(low));
+  std::string text = verdict.estimate ? "" : "not measured, ";
+  if (!verdict.waits_for.empty()) {
+    if (verdict.estimate) text += order_of_waits(verdict) + ", ";
+    text +=
+        fmt::format("margin: {}",
+                    factor(verdict.margin) == "2.0" ? "twice" : factor(verdict.margin) + " times");
+  } else {
+    if (verdict.estimate) text += estimate_with_interval(verdict) + ", ";
+    text += fmt::format("margin {:.3g}", verdict.margin);
   }
-  text += fmt::format(", margin {:.3g}, {}{}", verdict.margin,
+  text += fmt::format(", {}{}",
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");
-  if (verdict.is_log2 && verdict.estimate && any_end) {
-    const double least = std::exp2(low), most = std::exp2(high);
-    text += std::isinf(high)  ? fmt::format(" (a ratio of at least {:.2g}", least)
-            : std::isinf(low) ? fmt::format(" (a ratio of at most {:.2g}", most)
-                              : fmt::format(" (a ratio from {:.2g} to {:.2g}", least, most);
-    text += fmt::format("; margin: a factor of {:.3g})", std::exp2(verdict.margin));
-  }
   if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
   if (verdict.censored > 0) text += fmt::format(", {} censored", verdict.censored);
   if (verdict.primary) text += ", primary claim";
   return text;
+}
+
+std::string result_of(const Verdict& verdict) {
+  const std::string quantity = verdict.waits_for.empty()
+                                   ? verdict.quantity
+                                   : fmt::format("cycle of {} (log-rank test)", verdict.waits_for);
+  return fmt::format("{}: {}{}{}", quantity, numbers_of(verdict), verdict.note.empty() ? "" : "; ",
+                     verdict.note);
 }
 
 }  // namespace shearcell

@@ -53,7 +53,9 @@ struct Verdict {
   std::optional<double> estimate;  ///< none if too few runs have the quantity
   Interval interval;               ///< only with an estimate
   double level = confidence_level;
-  bool is_log2 = false;  ///< of a ratio, which numbers_of() states too
+  /// The event of a claim on waiting times. `estimate`, `interval` and `margin` are then log2 of
+  /// the ratio of the first group's waiting time to the second's. "" for other claims.
+  std::string waits_for = {};
   double margin = 0;
   Ruling ruling = Ruling::undecided;
   std::size_t runs = 0;  ///< as `counted` says
@@ -98,7 +100,13 @@ Table entered_table(std::span<const Verdict> verdicts);
 /// none, for an infinite end of an interval too. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed".
+/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed". On
+/// waiting times: "the first is at least 3.3 times later (90 %), margin: twice, 6 runs per
+/// variant".
 std::string numbers_of(const Verdict& verdict);
+
+/// The quantity, numbers_of() and the note, as the terminal and the report print them:
+/// "cycle of the onset (log-rank test): the first is at least 3.3 times later (90 %), ...".
+std::string result_of(const Verdict& verdict);
 
 }  // namespace shearcell

@@ -91,7 +91,7 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
   Verdict verdict =
       decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
              runs, std::move(note), std::move(entered), Counted::runs_per_variant);
-  verdict.is_log2 = true;
+  verdict.waits_for = event;
   return verdict;
 }
 

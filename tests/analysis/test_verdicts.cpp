@@ -100,12 +100,38 @@ TEST(Verdict, WordsHaveNoInfinities) {
   verdict.estimate = 2;
   verdict.interval = {1.5, infinity};
   EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs");
-  verdict.is_log2 = true;
-  EXPECT_EQ(numbers_of(verdict),
-            "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs "
-            "(a ratio of at least 2.8; margin: a factor of 2)");
-  verdict.interval = {1, 3};
-  EXPECT_TRUE(has(numbers_of(verdict), "(a ratio from 2 to 8; margin: a factor of 2)"));
+}
+
+TEST(Verdict, WaitsAreComparedInWords) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Verdict verdict;
+  verdict.margin = 1;
+  verdict.quantity = "log2 of the ratio of the cycles of the onset, log-rank";
+  verdict.waits_for = "the onset";
+  verdict.runs = 6;
+  verdict.counted = Counted::runs_per_variant;
+  EXPECT_EQ(result_of(verdict),
+            "cycle of the onset (log-rank test): not measured, margin: twice, 6 runs per variant");
+  const auto words = [&](double estimate, double low, double high) {
+    verdict.estimate = estimate;
+    verdict.interval = {low, high};
+    const std::string numbers = numbers_of(verdict);
+    return numbers.substr(0, numbers.find(", margin"));
+  };
+  EXPECT_EQ(words(infinity, 1.74, infinity), "the first is at least 3.3 times later (90 %)");
+  EXPECT_EQ(words(-infinity, -infinity, -4), "the first is at least 16 times earlier (90 %)");
+  EXPECT_EQ(words(3, -1, infinity), "the first is at most 2.0 times earlier, or later (90 %)");
+  EXPECT_EQ(words(-3, -infinity, 1), "the first is at most 2.0 times later, or earlier (90 %)");
+  EXPECT_EQ(words(1, -infinity, infinity), "no bound on the order of the two (90 %)");
+  EXPECT_EQ(words(1, 0.5, 3),
+            "the first is 2.0 times later (90 % interval: 1.4 to 8.0 times later)");
+  EXPECT_EQ(words(0.1, -1, 1.5),
+            "the first is 1.1 times later (90 % interval: 2.0 times earlier to 2.8 times later)");
+  verdict.margin = 1.585;
+  verdict.note = "a note";
+  EXPECT_TRUE(has(result_of(verdict), "margin: 3.0 times, 6 runs per variant; a note"));
+  EXPECT_TRUE(has(to_json(std::span(&verdict, 1)).dump(), "\"estimate\":0.1"))
+      << "JSON keeps the logarithm";
 }
 
 TEST(Verdict, JsonHasSixDigitsAndNull) {

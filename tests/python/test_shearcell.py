@@ -4,6 +4,7 @@
 import csv
 import functools
 import hashlib
+import html
 import importlib.util
 import io
 import json
@@ -408,7 +409,7 @@ class Package(unittest.TestCase):
             self.assertAlmostEqual(run.checkpoint(asked).cycle, found, 9, asked)
         for asked, near in ((0.31, "0, 0.3, 0.333"), (0.30001, "0, 0.3, 0.333"), (0.9, "0.333.*, 0.7, 1"),
                             (17, "0.7, 1, 2"), (-1, "0, 0.3, 0.333"), (1 + 1 / 45600, "0.333.*, 0.7, 1"), (np.nan, "")):
-            with self.assertRaisesRegex(KeyError, f"has no checkpoint at cycle .*; nearest to it, .* of cycles {near}"):
+            with self.assertRaisesRegex(KeyError, f"has no checkpoint at cycle .*; the nearest checkpoints are at cycles {near}"):
                 run.checkpoint(asked)
 
     def test_the_working_directory_may_change(self):
@@ -574,6 +575,8 @@ class Package(unittest.TestCase):
         page = figure._repr_html_()
         self.assertIn('<img src="data:image/svg+xml;base64,', page)
         self.assertIn(figure.caption.split("<")[0][:40], page)
+        same = store.figure("same")
+        self.assertIn(html.escape(same.facts["results"][0]), same._repr_html_())
         self.assertEqual([f.name for f in store.figures(fluid="cell", out="of cell")], ["compaction", "same"])
         verdicts = store.verdicts(out="elsewhere")
         claim = json.loads(pathlib.Path("elsewhere/asked/base/same.verdict.json").read_text())["claims"][0]

@@ -22,13 +22,13 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-# As the program's exports call them.
+# Names of these measures in the program's exports.
 GRAIN_MEASURES = ("q6", "phi_local", "overlap", "contacts", "grain_pressure_Pa", "structure",
                   "lattice", "crystallite", "displacement_d", "d2min_d2")
 
 
 def _of_grains(name: str, doc: str) -> Any:
-    """A property: that measure of the grains."""
+    """A property that gives the measure `name` of the grains."""
     return property(lambda checkpoint: checkpoint._measured[name], doc=doc)
 
 
@@ -40,7 +40,7 @@ class Checkpoint:
 
     Attributes:
         run: the Run that it belongs to.
-        sha256: of its file.
+        sha256: SHA-256 of the file of the checkpoint.
         cycle: cycles since the shear began.
         step: time steps since the stage began.
         time_s: simulated time since the stage began [s].
@@ -50,11 +50,11 @@ class Checkpoint:
         position: (N, 3) [d]; z is not folded back into the cell.
         velocity: (N, 3) [d/s].
         wall_position: (M, 3) [d], centres of the M wall grains; smooth walls are planes and have none.
-        wall_velocity: (M, 3) [d/s], with the shear and of the moving wall; by the program.
+        wall_velocity: (M, 3) [d/s], from the tilt of the side walls and the motion of the moving wall.
         wall_side: (M,) 1 left, 2 right, 3 bottom, 4 top.
         cell: (3, 3) [d], the edges of the cell as rows; only the third is periodic.
         origin: (3,) [d], its lower left corner.
-        observables: what the program recorded with the state, by name.
+        observables: numbers that the program recorded with the state, by name.
     """
 
     def __init__(self, run: "Run", record: dict[str, Any]) -> None:
@@ -88,7 +88,7 @@ class Checkpoint:
 
     @functools.cached_property
     def _measured(self) -> dict[str, NDArray[Any]]:
-        # By the program, which has the Voronoi cells: the numbers are those of the figures.
+        # The program computes the Voronoi cells, so that these numbers and the figures agree.
         with tempfile.TemporaryDirectory(prefix="shearcell-python-") as folder:
             file = Path(folder) / "checkpoint.h5"
             self.run.store.call("export", self.run.id, "--to", "h5md", "--cycles",
@@ -107,22 +107,22 @@ class Checkpoint:
     phi_local = _of_grains("phi_local", "(N,) local volume fraction.")
     overlap = _of_grains("overlap", "(N,) largest overlap of each grain [d].")
     contacts = _of_grains("contacts", "(N,) contacts with grains and wall grains.")
-    pressure_Pa = _of_grains("grain_pressure_Pa", "(N,) of a grain's contacts, over its cell [Pa].")
+    pressure_Pa = _of_grains("grain_pressure_Pa", "(N,) pressure of a grain's contacts in its Voronoi cell [Pa].")
     structure = _of_grains("structure", "(N,) by q6: 0 disordered, 1 FCC, 2 HCP.")
     lattice = _of_grains("lattice", "(N,) by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC.")
     crystallite = _of_grains(
         "crystallite", "(N,) crystallite of each grain: 0 none; 1, 2, ... by their lowest grain id.")
     displacement = _of_grains(
-        "displacement_d", "(N,) distance since the cycle before [d]; NaN where that is not stored.")
+        "displacement_d", "(N,) distance since the previous cycle [d]; NaN if that cycle is not stored.")
     d2min = _of_grains(
-        "d2min_d2", "(N,) non-affine part D^2_min of that motion [d^2]; NaN likewise.")
+        "d2min_d2", "(N,) non-affine part D^2_min of this motion [d^2]; NaN if the previous cycle is not stored.")
 
     def to_ase(self) -> "ase.Atoms":
         """ase.Atoms of the N grains and M wall grains; needs ASE.
 
         Lengths are in grain diameters (`info["d_m"]` is d [m]), velocities (array "velo") in d/s.
-        H is a grain, He a wall grain. Arrays "wall_side" (0 for a grain) and those of
-        GRAIN_MEASURES are as in the program's export to extxyz.
+        H is a grain, He a wall grain. The arrays "wall_side" (0 for a grain) and GRAIN_MEASURES have the
+        values of the program's export to extxyz.
         """
         import ase
 

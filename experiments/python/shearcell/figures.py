@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures that the program has drawn, as notebooks show them."""
+"""Figures that the program has drawn, and how notebooks show them."""
 from __future__ import annotations
 
 import base64
 import html
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterable
 
@@ -18,10 +17,10 @@ class Figure:
     """One figure of an experiment. A notebook shows its drawings, its caption and its verdicts.
 
     Attributes:
-        name, experiment, scale: as the program has them. `experiment` is "" for a figure of all.
-        files: what was written: CSV, SVG, PDF, caption, verdicts and lineage.
-        undrawn: why drawings are missing, as where gnuplot is not installed; the CSV files are there.
-        facts: everything that `shearcell figures --json` says.
+        name, experiment, scale: as in the program. `experiment` is "" for a figure of all experiments.
+        files: the files that were written: CSV, SVG, PDF, caption, verdicts and lineage.
+        undrawn: why drawings are missing, for example because gnuplot is not installed. The CSV files exist.
+        facts: the figure's part of `shearcell figures --json`.
     """
 
     def __init__(self, facts: dict[str, Any]) -> None:
@@ -34,7 +33,7 @@ class Figure:
 
     @property
     def drawings(self) -> list[str]:
-        """Its panels as SVG."""
+        """The panels as texts in SVG."""
         return [file.read_text(encoding="utf-8") for file in self.files if file.suffix == ".svg"]
 
     @property
@@ -57,7 +56,8 @@ class Figure:
                  for drawing in self.drawings]
         parts += [f"<p>{html.escape(text)}</p>" for text in (self.caption, *self.undrawn) if text]
         parts += [f"<p><b>{html.escape(claim['verdict'])}</b>: {html.escape(claim['claim'])} "
-                  f"({html.escape(_numbers(claim))})</p>" for claim in self.facts["verdict"]["claims"]]
+                  f"({html.escape(result)})</p>"
+                  for claim, result in zip(self.facts["verdict"]["claims"], self.facts["results"])]
         return f"<div>{''.join(parts)}</div>"
 
     def __repr__(self) -> str:
@@ -84,10 +84,3 @@ def verdicts_of(figures: Iterable[Figure]) -> "pandas.DataFrame":
     first = ["figure", "experiment", "scale", "claim", "verdict", "estimate", "low", "high", "margin"]
     frame = pandas.DataFrame(rows, columns=None if rows else first)
     return frame[first + [name for name in frame if name not in first]]
-
-
-def _numbers(claim: dict[str, Any]) -> str:
-    if claim["estimate"] is None:
-        return claim["note"] or "not measured"
-    low, high = claim["interval"]
-    return f"{claim['quantity']} {claim['estimate']}, interval {json.dumps(low)} to {json.dumps(high)}, margin {claim['margin']}"

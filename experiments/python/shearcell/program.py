@@ -44,7 +44,7 @@ class ShearcellError(RuntimeError):
 
 
 def need(*modules: str) -> Any:
-    """The first of these modules. Raises ImportError that says how to install what is missing."""
+    """Imports the modules and returns the first one. Raises ImportError that says how to install a missing module."""
     for name in reversed(modules):
         try:
             found = importlib.import_module(name)
@@ -55,7 +55,7 @@ def need(*modules: str) -> Any:
 
 
 def find_program(program: PathLike | None = None) -> str:
-    """The program: as given, $SHEARCELL, that in this package's wheel, or that in PATH."""
+    """Path of the program: `program` if given, else $SHEARCELL, else the program in the wheel, else in PATH."""
     own = Path(__file__).with_name("program") / "shearcell"
     name = os.fspath(program or os.environ.get("SHEARCELL") or (own if own.is_file() else "shearcell"))
     found = shutil.which(name)
@@ -78,7 +78,7 @@ def output_of(program: str, *arguments: PathLike) -> str:
 
 
 def error_of(code: int, lines: Iterable[str], hidden: Iterable[PathLike] = ()) -> ShearcellError:
-    """The exception for an exit code and the lines on standard error. `hidden`: what _files() made."""
+    """The exception for an exit code and the lines on standard error. `hidden`: files that _files() made."""
     text = "\n".join(line[11:] if line.startswith("shearcell: ") else line for line in lines
                      if not line.startswith(("warning: ", "Run with --help", "Interrupted. ")))
     text = _shown(text, hidden)
@@ -108,13 +108,13 @@ def run(manifest: Manifest | Iterable[Manifest], scale: str | None = None,
         **more: Any) -> "Store":
     """Computes the runs of manifests that the store does not have, and returns the store.
 
-    Shows a progress bar: that of tqdm if it is installed, else lines of text. Ctrl-C (in a notebook
-    "interrupt") stops as in a terminal: the program writes checkpoints and KeyboardInterrupt is raised.
-    The same call continues, bit for bit. A second Ctrl-C ends the program at once; nothing recorded is lost.
+    Shows a progress bar of tqdm if tqdm is installed, else lines of text. On Ctrl-C ("interrupt" in a notebook)
+    the program writes checkpoints, and KeyboardInterrupt is raised. The same call continues the runs, bit for bit.
+    A second Ctrl-C ends the program at once; nothing that is recorded is lost.
 
     Args:
-        manifest: path of a manifest, its text (with a line break), or a dict of it; or a list of these.
-            A relative `start: {file: ...}` of a text or a dict is of the working directory.
+        manifest: path of a manifest, its text (with a line break), or its content as a dict; or a list of these.
+            In a text or a dict, a relative path in `start: {file: ...}` is relative to the working directory.
         scale: named size (default: desk).
         store: folder of the store, or a Store.
         jobs: runs at a time (default: one per core).
@@ -124,7 +124,7 @@ def run(manifest: Manifest | Iterable[Manifest], scale: str | None = None,
 
     Raises:
         ShearcellError: with the message and the exit code of the program; code 3 if a run failed
-            numerically. The other runs are computed before.
+            numerically, after all other runs were computed.
     """
     from .store import Store
 
@@ -140,9 +140,9 @@ def plan(manifest: Manifest | Iterable[Manifest], scale: str | None = None,
          **more: Any) -> "pandas.DataFrame":
     """What `run` with these arguments would compute, and its cost: a row for each stage; needs pandas.
 
-    `core_seconds_left` is an estimate by the speed of earlier runs of the store, or an assumed one
-    (`attrs["rate_measured"]`). `attrs` of the DataFrame has the sums: `seconds_left` on `cores` cores,
-    `bytes_left`, `runs`, `notes` and what else `shearcell plan --json` says.
+    `core_seconds_left` is estimated from the speed of earlier runs in the store. If there are none, a speed is
+    assumed, and `attrs["rate_measured"]` is false. `attrs` of the DataFrame also has the sums: `seconds_left` on
+    `cores` cores, `bytes_left`, `runs`, `notes` and the other facts of `shearcell plan --json`.
     """
     pandas = need("pandas")
     found = find_program(program)
@@ -183,8 +183,9 @@ def _folder(store: Any) -> Path:
 
 @contextlib.contextmanager
 def _files(manifest: Manifest | Iterable[Manifest]) -> Iterator[tuple[list[PathLike], list[PathLike]]]:
-    """Paths of the manifests, and those of them that exist for as long as the context does: texts and dicts. These are
-    in the working directory, if it can be written to, since paths in a manifest are relative to its folder."""
+    """Yields the paths of all manifests, and the paths of the files that were made from texts and dicts. These files
+    exist within the context. They are in the working directory if it can be written to, because paths in a manifest
+    are relative to its folder."""
     several = isinstance(manifest, Iterable) and not isinstance(manifest, (str, os.PathLike, Mapping))
     paths: list[PathLike] = []
     made: list[PathLike] = []
@@ -223,10 +224,10 @@ def _plain(value: Any) -> Any:
 
 
 class _Bar:
-    """Progress of a campaign in stages. With tqdm a bar, else a line that is written over on a terminal."""
+    """Progress of a campaign in stages: a bar of tqdm, or a line of text, which a terminal overwrites."""
 
     def __init__(self) -> None:
-        self.running: dict[str, float] = {}  # share that is done of each running stage
+        self.running: dict[str, float] = {}  # completed fraction of each running stage
         self.done, self.total, self.shown = 0, 0, 0
         self.tqdm = None
         try:
@@ -279,7 +280,7 @@ class _Bar:
 
 
 def _end_with_parent() -> None:
-    """In the child: it gets SIGTERM when Python is killed, and then writes checkpoints."""
+    """Runs in the child, so that the program gets SIGTERM when Python is killed, and writes checkpoints."""
     _prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
 
 
@@ -287,8 +288,8 @@ _prctl = ctypes.CDLL(None).prctl
 
 
 def _compute(program: str, words: list[PathLike], made: list[PathLike]) -> None:
-    """Runs `run` with its progress. In a session of its own, since a terminal or a notebook sends SIGINT to the whole
-    group, and the program takes a second one as the wish to end at once."""
+    """Runs `shearcell run` and shows its progress. The program has its own session, because a terminal or a notebook
+    sends SIGINT to a whole process group, and a second SIGINT would end the program without checkpoints."""
     lines: list[str] = []
     bar = _Bar()
     with tempfile.TemporaryFile() as output:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stores and runs, by the program's own commands."""
+"""Stores and runs. The commands of the program read them."""
 from __future__ import annotations
 
 import dis
@@ -35,18 +35,18 @@ def checkpoint_class() -> type["Checkpoint"]:
 
 
 class Store:
-    """A store. Only `figures`, `figure` and `verdicts` write into it: what they have drawn, as `shearcell
-    figures` does; and every method may fill its cache `derived.sqlite`.
+    """A store. `figures`, `figure` and `verdicts` record in it what they have drawn, as `shearcell figures` does. Other
+    methods write nothing but measures into its cache, `derived.sqlite`.
 
     Args:
-        path: folder of the store. A relative path is of the working directory at this call.
-        program: the program shearcell; default $SHEARCELL, that in this package's wheel, or that in PATH.
+        path: folder of the store. A relative path is relative to the working directory at this call.
+        program: the program shearcell (default: $SHEARCELL, else the program in this package's wheel, else in PATH).
     """
 
     def __init__(self, path: str | os.PathLike[str] = "shearcell-store",
                  program: str | os.PathLike[str] | None = None) -> None:
         self.path = Path(path).absolute()
-        self._not_kept: set[str] = set()  # measures of which measure() has said so
+        self._not_kept: set[str] = set()  # measures without a key, of which measure() has warned
         self.program = find_program(program)
         if not (self.path / "store.sqlite").is_file():
             raise FileNotFoundError(f"{self.path} is not a store")
@@ -60,8 +60,8 @@ class Store:
         return output_of(self.program, "--version").splitlines()[0]
 
     def runs(self, **select: Any) -> list["Run"]:
-        """The runs of each manifest as it stands, in the order of their declaration, without the packings
-        that they start from; a run of several experiments comes once for each.
+        """The runs of the newest version of each manifest, in the order of their declaration, without the stages
+        that settle packings. A run that several experiments share is listed once for each of them.
 
         Args:
             select: experiment, scale, variant, seed, state or a swept parameter, such as
@@ -71,15 +71,15 @@ class Store:
         return [run for run in self._recorded(select) if run.facts["newest"]]
 
     def _recorded(self, select: Mapping[str, Any]) -> list["Run"]:
-        """The same with the runs of older versions of manifests."""
+        """As runs(), with the runs of older versions of manifests."""
         listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
         return [Run(self, {**facts, **place})
                 for facts in listed if facts["kind"] != "prepare" for place in facts["places"]]
 
     def run(self, prefix: str) -> "Run":
-        """The run whose id begins with `prefix`. A run that several experiments share is that of the one which
-        declared it last; `runs(experiment=...)` gives it as another's. Raises KeyError if it is none
-        or several."""
+        """The run whose id begins with `prefix`. If several experiments share the run, `experiment` is the one that
+        declared it last; `runs(experiment=...)` gives it as a run of another experiment. Raises KeyError if no
+        id, or more than one, begins with `prefix`."""
         found = {run.id: run for run in self._recorded({}) if run.id.startswith(prefix)}
         if len(found) != 1:
             raise KeyError(f"{len(found)} runs begin with {prefix!r}")
@@ -89,8 +89,8 @@ class Store:
         """`shearcell table`: a row for each checkpoint, or for each run (per="run"), or for each
         value of a curve at each checkpoint (curve="pair_correlation"); needs pandas.
 
-        Columns have their unit in the name; `shearcell table --help` lists them and the curves.
-        Text stays text, even "NA", "007" or "1e3"; what is unknown or does not apply is missing.
+        Names of columns end in the unit; `shearcell table --help` lists the columns and the curves. Text stays
+        text, even "NA", "007" or "1e3". A value that is unknown or does not apply is missing.
 
         Args:
             per: "checkpoint" or "run".
@@ -111,21 +111,22 @@ class Store:
 
     def measure(self, function: Measure, *, key: str | None = None, fresh: bool = False,
                 **select: Any) -> "pandas.DataFrame":
-        """A measure of your own: the rows and columns of table(), and what the function returns
-        for each checkpoint; needs pandas.
+        """A measure of your own: the rows and columns of table(), and the results of the function for each
+        checkpoint; needs pandas.
 
-        A number goes into a column named as the key, or else as the function; a mapping into one
-        column for each of its names. They are missing where the checkpoint's file is pruned.
+        If the function returns a number, its column has the name of the key, or of the function if there is no
+        key. If it returns a mapping, each name of the mapping is a column. Where the file of the checkpoint is
+        pruned, the result is missing.
 
         With a key, results are kept beside the store, in PATH.measures/KEY.json: a checkpoint is
         computed once, and its results stay when its file is pruned. The key is your promise that
         the function is always the same and depends on the checkpoint alone: after a change use
         another key or fresh=True. A hash of the function is kept beside its results, and a warning
         says if it has changed since: its code, its defaults, and the numbers, texts and functions
-        that it captures. Data that it reads elsewhere are not compared, nor is anything after a
-        change of Python's version. Results by another build of the program are computed again.
-        Results that are not finite are not kept, since an earlier checkpoint that they need may
-        come back.
+        that it captures. Data that it reads elsewhere are not compared, and nothing is compared after a
+        change of Python's version. Results of another build of the program are computed again.
+        Results that are not finite are not kept: they may need an earlier checkpoint, whose file may be
+        restored.
 
         Args:
             function: from a Checkpoint to a number, or to a mapping of names to numbers.
@@ -178,9 +179,9 @@ class Store:
 
     def figures(self, *names: str, out: str | os.PathLike[str] = "shearcell-figures", wide: bool = False,
                 **select: Any) -> Figures:
-        """Draws figures as `shearcell figures` does, into OUT/EXPERIMENT/SCALE; without names all that
-        the store's manifests list. A notebook shows them. Without gnuplot the drawings are missing,
-        which a warning says; numbers and verdicts are there.
+        """Draws figures into OUT/EXPERIMENT/SCALE, as `shearcell figures` does: the figures in `names`, or all
+        figures that the store's manifests list. A notebook shows them. Without gnuplot, a warning says that the
+        drawings are missing; numbers and verdicts are written.
 
         Args:
             names: such as "S2".
@@ -229,9 +230,8 @@ class Store:
 class Run:
     """One run: a variant with a seed, as a part of one experiment.
 
-    Several experiments may share a run and ask for different checkpoints of it. `cycles`,
-    `checkpoints()` and the newest `checkpoint()` are those of `experiment`, as in `Store.table`;
-    `records()` has all.
+    Several experiments may share a run and ask for different checkpoints of it. `cycles`, `checkpoints()` and the
+    newest `checkpoint()` are the ones that `experiment` asks for, as in `Store.table`; `records()` has all.
 
     Attributes:
         store, id, experiment, scale, variant, seed, state: as `shearcell status` has them.
@@ -254,7 +254,7 @@ class Run:
 
     @functools.cached_property
     def _place(self) -> int:
-        """Of its experiment in the run's memberships."""
+        """Index of the run's experiment in `memberships` of `shearcell show`."""
         keys = ("experiment", "scale", "variant", "seed", "manifest")
         places = [[m[key] for key in keys] for m in self._shown["memberships"]]
         return places.index([self.facts[key] for key in keys])
@@ -265,8 +265,8 @@ class Run:
         return self._shown["parameters"]
 
     def records(self) -> list[dict[str, Any]]:
-        """What the store recorded of each checkpoint whose file it has, by cycle. `asked_by` is
-        empty for those that no experiment has in its figures."""
+        """The record of each checkpoint whose file is stored, by cycle. `asked_by` is empty for a checkpoint that
+        no experiment shows in its figures."""
         return [c for c in self._shown["checkpoints"] if c["state"] == "recorded"]
 
     @functools.cached_property
@@ -282,9 +282,8 @@ class Run:
         return [record["cycle"] for record in self._of_experiment()]
 
     def checkpoint(self, cycle: float | None = None) -> "Checkpoint":
-        """The checkpoint at that cycle, which may be any of `records()`, or the newest of `cycles`.
-        A cycle is found to within 1e-6, but never that of another time step. Raises KeyError if
-        there is none."""
+        """The checkpoint of `records()` at this cycle, or without a cycle the newest one of `cycles`. The cycle may
+        differ by 1e-6, but by less than half a time step. Raises KeyError if there is no such checkpoint."""
         if cycle is None:
             if not self._of_experiment():
                 raise KeyError(f"run {self.id[:12]} has no stored checkpoint of {self.experiment}")
@@ -298,10 +297,10 @@ class Run:
             return checkpoint_class()(self, found[0])
         if found:
             raise KeyError(f"the checkpoint of run {self.id[:12]} at cycle {cycle:g} was pruned; "
-                           f"`shearcell regenerate {found[0]['sha256'][:12]}` brings it back")
+                           f"`shearcell regenerate {found[0]['sha256'][:12]}` restores it")
         near = sorted(c["cycle"] for c in [c for c in known if c["state"] == "recorded"][:3])
-        raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; nearest to "
-                       f"it, it has those of cycles {', '.join(f'{c:.12g}' for c in near)}")
+        raise KeyError(f"run {self.id[:12]} has no checkpoint at cycle {cycle:.12g}; the nearest "
+                       f"checkpoints are at cycles {', '.join(f'{c:.12g}' for c in near)}")
 
     def checkpoints(self) -> Iterator["Checkpoint"]:
         """The checkpoints at `cycles`, read one after the other."""
@@ -322,12 +321,12 @@ class _Kept:
         self.key = key
         self.known: dict[str, dict[str, Any]] = {}  # by checkpoint: `program`, `function` and `results`
         self.new: dict[str, dict[str, Any]] = {}
-        self.changed = 0  # results that get() gave and another function has computed
+        self.changed = 0  # number of results from get() that a different function computed
         if key is not None:
             folder = store.path.resolve()
             self.file = folder.with_name(folder.name + ".measures") / f"{key}.json"
             self.program = store.version()
-            # The bytes of the code depend on the version of Python.
+            # The version of Python is part of the text, because the code's bytes depend on it.
             text = _text_of(function, {})
             self.function = f"{sys.version_info[0]}.{sys.version_info[1]} {hashlib.sha256(text.encode()).hexdigest()}"
             self.known = self._read()
@@ -335,7 +334,7 @@ class _Kept:
     def _read(self) -> dict[str, dict[str, Any]]:
         try:
             entries = json.loads(self.file.read_text(encoding="utf-8"))["checkpoints"]
-            # Files of earlier versions have other entries, maybe of another function.
+            # Entries of earlier versions lack `program`; a different function may have computed them.
             return {sha256: entry for sha256, entry in entries.items() if "program" in entry}
         except (FileNotFoundError, NotADirectoryError):
             return {}
@@ -343,7 +342,8 @@ class _Kept:
             raise ValueError(f"{self.file} is damaged; delete it or choose another key") from problem
 
     def get(self, sha256: str, stored: bool) -> dict[str, float] | None:
-        """Results by this build of the program; where nothing is stored, those of any build."""
+        """The kept results for a checkpoint: of this build of the program, or of any build if the file of the
+        checkpoint is not stored."""
         entry = self.known.get(sha256)
         if entry is None or (entry["program"] != self.program and stored):
             return None
@@ -359,8 +359,8 @@ class _Kept:
     def save(self) -> None:
         if not self.new:
             return
-        # Another process may have added results. A measure over two checkpoints is not a number
-        # where the earlier one is missing, which may come back.
+        # The file is read again, because another process may have added results. Results that are not finite are
+        # left out: they may need an earlier checkpoint, whose file may be restored.
         entries = {sha256: entry for sha256, entry in {**self._read(), **self.new}.items()
                    if all(map(math.isfinite, entry["results"].values()))}
         part = self.file.with_suffix(f".{os.getpid()}.tmp")
@@ -374,14 +374,15 @@ class _Kept:
 
 
 def _name_of(function: Measure) -> str:
-    """As pandas names it."""
+    """The name of the function, as pandas gives it."""
     while isinstance(function, functools.partial):
         function = function.func
     return getattr(function, "__name__", type(function).__name__)
 
 
 def _text_of(value: Any, seen: Mapping[int, int]) -> str:
-    """Equal for what computes the same: code without its places and documentation, with all that it captures."""
+    """A text of a function that is equal for two functions that compute the same: their code, without line numbers and
+    documentation, and the values that they capture."""
     if value is None or isinstance(value, (bool, int, float, complex, str, bytes, type(...))):
         return repr(value)
     if id(value) in seen:  # a function that calls itself
