@@ -114,7 +114,7 @@ function layoutOf(chart, width, color) {
     yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
     shapes: chart.lines.map(shape), uirevision: "kept",
     dragmode: window.matchMedia("(pointer: coarse)").matches ? false : "zoom",  // a finger scrolls the page
-    annotations: points.length > 0 ? [] : [{
+    annotations: points.length > 0 && !chart.empty ? [] : [{
       text: broken(plain(chart.empty ?? "no data yet"), lettersIn(width - left - right)), xref: "paper", yref: "paper", x: 0.5, y: 0.5, showarrow: false
     }]
   };
