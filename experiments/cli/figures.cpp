@@ -41,7 +41,8 @@ nlohmann::json facts(const ComputedFigure& result) {
           {"undrawn", result.undrawn},
           {"damage", result.damage},
           {"pruned", result.pruned},
-          {"verdict", to_json(result.verdicts)}};
+          {"verdict", to_json(result.verdicts)},
+          {"results", list_of(result.verdicts, result_of)}};
 }
 
 void print_verdicts(const ComputedFigure& result) {
@@ -49,9 +50,8 @@ void print_verdicts(const ComputedFigure& result) {
   print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
     const bool named = verdict.id.empty() || verdict.claim.starts_with(verdict.id);
-    print_text("    {}: {}{}\n      {}: {}{}{}\n", name_of(verdict.ruling),
-               named ? "" : verdict.id + ": ", verdict.claim, verdict.quantity, numbers_of(verdict),
-               verdict.note.empty() ? "" : "; ", verdict.note);
+    print_text("    {}: {}{}\n      {}\n", name_of(verdict.ruling), named ? "" : verdict.id + ": ",
+               verdict.claim, result_of(verdict));
   }
 }
 
@@ -67,9 +67,8 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   std::erase_if(problems.damage, is_told);
   std::erase_if(problems.pruned, is_told);
   print_problems(problems, "left out", context);
-  if (!result.empty.empty()) {
-    print_stderr("warning: figure {}: its runs have no values to draw in {}\n", path,
-                 fmt::join(result.empty, ", "));
+  if (!result.why_empty.empty()) {
+    print_stderr("warning: figure {}: {}\n", path, result.why_empty);
   }
   for (const std::string& why : result.undrawn) print_stderr("no plot: {}: {}\n", path, why);
   if (!result.undrawn.empty()) fail(context, kOtherError);
@@ -123,22 +122,6 @@ Store open_store(const std::string& folder, FigureOptions& how) {
   return Store(folder, Access::read);
 }
 
-/// Leaves out experiments of which the options select no run, unless these are all.
-void leave_out_unselected(const Store& store, const RunSelection& runs,
-                          std::vector<WantedFigure>& figures) {
-  std::set<std::string> selected, others;
-  for (const Run& run : select_runs(store, runs)) selected.insert(run.place.experiment);
-  for (const WantedFigure& figure : figures) {
-    const std::string& name = figure.experiment;
-    const auto is_selected = [&](const std::string& one) { return selected.contains(one); };
-    const bool any = std::ranges::any_of(figure.figure.of, is_selected) || is_selected(name);
-    if (!name.empty() && !any) others.insert(name);
-  }
-  if (selected.empty() || others.empty()) return;
-  std::erase_if(figures, [&](const auto& figure) { return others.contains(figure.experiment); });
-  print_stderr("left out: experiments without a selected run: {}\n", some_of(others));
-}
-
 void figures(FigureArguments& options, Context& context) {
   Store store = open_store(context.store, options.how);
   if (options.all) options.names.clear();
@@ -152,7 +135,10 @@ void figures(FigureArguments& options, Context& context) {
                                              ? "No manifest of this store"
                                              : "None of these experiments");
   }
-  if (options.names.empty()) leave_out_unselected(store, options.how.runs, wanted.figures);
+  if (options.names.empty()) {
+    const std::string others = leave_out_unselected(store, options.how.runs, wanted.figures);
+    if (!others.empty()) print_stderr("{}\n", others);
+  }
   std::set<std::string> told;  // each message once, not for each figure
   const auto complain_of = [&](const std::string& problem) {
     if (told.insert(problem).second) print_stderr("shearcell: {}\n", problem);

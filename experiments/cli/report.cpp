@@ -39,6 +39,8 @@ void report(ReportCommand& command, Context& context) {
   print_problems(made, "left out", context);
   if (!made.undrawn.empty()) fail(context, kOtherError);
   for (const std::string& line : made.undrawn) print_stderr("no drawing: {}\n", line);
+  if (!made.problems.empty()) fail(context, kUsageError);
+  for (const std::string& line : made.problems) print_stderr("shearcell: {}\n", line);
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
@@ -58,6 +60,7 @@ void report(ReportCommand& command, Context& context) {
                        {"damage", made.damage},
                        {"pruned", made.pruned},
                        {"undrawn", made.undrawn},
+                       {"problems", made.problems},
                        {"notes", made.notes}});
   }
   print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),

@@ -322,6 +322,7 @@ void print(const FigureLineage& lineage, bool list) {
       text_at(recorded, "analysis_version"));
   say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
       made.is_object() ? ", " + makers.number(made) : "");
+  if (!lineage.plots.empty()) say("  plots", "{}", lineage.plots);
   for (const auto& [name, sha256] : lineage.outputs) say("  file", "{}  {}", sha256, name);
   print_manifests(lineage);
   for (const FigureInput& input : lineage.inputs) {

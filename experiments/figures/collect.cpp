@@ -7,6 +7,7 @@
 #include <array>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -26,8 +27,9 @@
 namespace shearcell {
 namespace {
 
-/// The stage that settled the packing from which the stage descends, or the file that all packings
-/// of its seeds are made of; "" if there is none.
+/// Returns the id of the stage that settled the packing from which `stage` descends. If packings
+/// were made of a file of grains, returns the SHA-256 of the file; "" for a stage without a
+/// packing.
 std::string packing_before(const Store& store, const Stage& stage) {
   if (stage.parent.empty()) return "";
   const Stage first = chain_of(store, stage.parent).front();
@@ -40,7 +42,7 @@ std::string unknown_name(const char* what, const std::string& name,
   return fmt::format("there is no {} {}; {}", what, name, did_you_mean(name, known));
 }
 
-/// Sets FrameRun::core_time_s. Notes if the runs were computed by different processors.
+/// Sets FrameRun::core_time_s. Adds a note if different processors computed the runs.
 void add_core_times(const Store& store, CollectedRuns& collected) {
   std::set<std::string> processors;
   for (FrameRun& run : collected.runs) {
@@ -53,10 +55,10 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
       fmt::format("core times are of different processors: {}", some_of(processors)));
 }
 
-/// Adds the checkpoints that the figure takes, up to the run's end. Removes the runs without any.
-/// Notes those, the unfinished ones, and how many checkpoints before the last one are missing: a
-/// manifest may state a denser cadence than that of the runs. A figure that measures nothing takes
-/// the last checkpoint of each run.
+/// Adds to each run the checkpoints that the figure takes, up to the end of the run, and removes
+/// runs without such a checkpoint. A figure that measures nothing takes the last checkpoint of each
+/// run. Adds notes on removed runs, on unfinished runs, and on missing checkpoints before the last
+/// one: a manifest may ask for checkpoints more often than the runs recorded them.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =
@@ -66,7 +68,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
-  std::map<bool, Lack> lacks;  // of our runs, and of those of LAMMPS
+  std::map<bool, Lack> lacks;  // true: of runs that LAMMPS computed
   const bool last_only = figure.form == FigureForm::table;
   for (FrameRun& run : collected.runs) {
     run.end = last_only ? static_cast<double>(run.ask.target_cycles)
@@ -113,7 +115,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
   }
   if (!going_on.empty()) {
     collected.notes.push_back(
-        fmt::format("not finished, and taken as if ended where they are: {}: {}",
+        fmt::format("not finished, and shown up to their last checkpoint: {}: {}",
                     counted(going_on.size(), "run"), some_of(going_on)));
   }
   if (std::ranges::count(figure.needs, cost_provider) > 0) add_core_times(store, collected);
@@ -144,32 +146,42 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
   }
 }
 
+/// The planned runs of the scale. A sweep that is too large for a manifest has none.
+PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
+  PlannedRuns planned;
+  for (const Scale& scale : scales_of(manifest)) {
+    if (scale.name != scale_name || variant_count(scale.sweep) > ManifestLimits::runs) continue;
+    planned.seeds = scale.seeds.values;
+    planned.looks = scale.looks;
+    const std::vector<Variant> variants = variants_of(scale);
+    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
+    for (std::size_t k = 0; k < variants.size(); ++k) {
+      for (const std::uint64_t seed : planned.seeds | std::views::take(variants[k].seeds)) {
+        planned.runs.push_back(runs[k]);
+        planned.runs.back().place.seed = seed;
+      }
+    }
+  }
+  return planned;
+}
+
 /// Sets Frame::seeds, Frame::looks, and in Frame::pending the planned runs that are not declared.
-void add_planned(const Manifest& manifest, CollectedRuns& collected) {
+void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
+  const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
+  if (fresh) known->second = plan_runs(manifest.content, collected.scale);
+  const PlannedRuns& planned = known->second;
   std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
   for (const FrameRun& run : collected.runs) {
     if (run.place.experiment != manifest.experiment) continue;
     declared.emplace(run.place.seed, run.place.swept);
   }
-  for (const Scale& scale : scales_of(manifest)) {
-    if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
-      continue;
-    const std::vector<std::uint64_t>& seeds = scale.seeds.values;
-    for (const std::uint64_t seed : seeds) {
-      if (std::ranges::count(collected.seeds, seed) == 0) collected.seeds.push_back(seed);
-    }
-    collected.looks = scale.looks;
-    const std::vector<Variant> variants = variants_of(scale);
-    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
-    for (std::size_t k = 0; k < variants.size(); ++k) {
-      for (const std::uint64_t seed :
-           std::span(seeds).first(std::min<std::size_t>(variants[k].seeds, seeds.size()))) {
-        if (declared.contains({seed, variants[k].swept})) continue;
-        collected.pending.push_back(runs[k]);
-        collected.pending.back().place.seed = seed;
-      }
-    }
+  for (const std::uint64_t seed : planned.seeds) {
+    if (std::ranges::count(collected.seeds, seed) == 0) collected.seeds.push_back(seed);
   }
+  if (!planned.seeds.empty()) collected.looks = planned.looks;
+  std::ranges::copy_if(planned.runs, std::back_inserter(collected.pending), [&](const auto& run) {
+    return !declared.contains({run.place.seed, run.place.swept});
+  });
 }
 
 /// Makes the experiment a swept value of the run.
@@ -181,8 +193,8 @@ void add_experiment(FrameRun& run) {
   run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
 }
 
-/// Makes one list of the runs of several experiments: a stage that two of them share is a run of
-/// the first. Notes experiments without runs.
+/// Joins the runs of several experiments to one list. A stage that two experiments share is a run
+/// of the first one only. Adds a note on experiments without runs.
 void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
   std::set<std::string> known;
   std::vector<FrameRun> joined;
@@ -201,7 +213,8 @@ void join(const std::vector<std::string>& experiments, CollectedRuns& collected)
   std::ranges::for_each(collected.pending, add_experiment);
 }
 
-/// The selected runs of any version of the manifest, at least one. Throws NotFound.
+/// Returns the selected runs of the figure's experiments, of all versions of their manifests.
+/// Throws NotFound if there is no such run.
 std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
                          const RunSelection& selection) {
   std::vector<Run> found = select_runs(store, selection);
@@ -212,20 +225,19 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
     return !wanted.experiment.empty() && s.place.experiment != wanted.experiment;
   });
   if (found.empty()) {
-    throw NotFound(
-        fmt::format("no run selected belongs to figure {}; `status` lists the runs of the store, "
-                    "`run` adds those of a manifest",
-                    wanted.path()));
+    throw NotFound(fmt::format(
+        "no selected run belongs to figure {}; `shearcell status` lists the runs of the "
+        "store, and `shearcell run` adds the runs of a manifest",
+        wanted.path()));
   }
   return found;
 }
 
-/// The scale of the last run that a newest manifest declared; else that of the last run.
-std::string last_scale(const std::vector<Run>& runs,
-                       const std::vector<RegisteredManifest>& manifests) {
+/// The scale of the run that was declared last among the runs of the newest manifests, or among all
+/// runs if there is none.
+std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
-    return std::ranges::find(manifests, run.place.manifest, &RegisteredManifest::sha256) !=
-           manifests.end();
+    return std::ranges::count(manifests, run.place.manifest, &ReadManifest::sha256) > 0;
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
   return (last == runs.rend() ? runs.back() : *last).place.scale;
@@ -288,9 +300,10 @@ std::string WantedFigure::path() const {
 
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names,
                              const std::vector<std::string>& experiments) {
-  std::vector<RegisteredManifest> manifests = newest_manifests(store);
+  const ReadManifests read = read_manifests(store);
+  const std::vector<ReadManifest>& manifests = *read;
   std::vector<std::string_view> registered;
-  for (const RegisteredManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
+  for (const ReadManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
   for (const std::string& experiment : experiments) {
     if (std::ranges::count(registered, experiment) == 0) {
       throw NotFound(unknown_name("experiment", experiment, registered));
@@ -299,15 +312,15 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   const auto among = [](const auto& some, const std::string& name) {
     return some.empty() || std::ranges::count(some, name) > 0;
   };
-  std::erase_if(manifests, [&](const auto& m) { return !among(experiments, m.experiment); });
   const auto asked = [&](const std::string& name) { return among(names, name); };
   const bool named = !experiments.empty() && !names.empty();
   WantedFigures wanted;
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
-  for (const RegisteredManifest& manifest : manifests) {
-    std::vector<Figure> stated = stated_figures(recorded_manifest(manifest.text));
+  for (const ReadManifest& manifest : manifests) {
+    if (!among(experiments, manifest.experiment)) continue;
+    std::vector<Figure> stated = stated_figures(manifest.content);
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (is_across(figure) || !asked(figure.name) || !(named || lists)) continue;
@@ -328,7 +341,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
     // Without names, table1 is drawn if a manifest lists figures of the supplement, a comparison of
     // several experiments if the store has two of them.
-    const auto lists_any = [](const auto& manifest) { return !manifest.figures.empty(); };
+    const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)
                                             : std::ranges::count_if(figure.of, registers) > 1;
@@ -340,12 +353,37 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
       throw NotFound(unknown_name("figure", name, {known.begin(), known.end()}));
   }
   share_needs(wanted.figures);
+  for (WantedFigure& figure : wanted.figures) figure.manifests = read;
   return wanted;
+}
+
+std::string leave_out_unselected(const Store& store, const RunSelection& runs,
+                                 std::vector<WantedFigure>& figures) {
+  std::set<std::string> selected, others;
+  for (const Run& run : select_runs(store, runs)) selected.insert(run.place.experiment);
+  for (const WantedFigure& figure : figures) {
+    const std::string& name = figure.experiment;
+    const auto is_selected = [&](const std::string& one) { return selected.contains(one); };
+    const bool any = std::ranges::any_of(figure.figure.of, is_selected) || is_selected(name);
+    if (!name.empty() && !any) others.insert(name);
+  }
+  if (selected.empty() || others.empty()) return "";
+  std::erase_if(figures, [&](const auto& figure) { return others.contains(figure.experiment); });
+  return "left out: experiments without a selected run: " + some_of(others);
+}
+
+ReadManifests read_manifests(const Store& store) {
+  std::vector<ReadManifest> read;
+  for (const RegisteredManifest& one : newest_manifests(store)) {
+    read.push_back({one, recorded_manifest(one.text)});
+  }
+  return std::make_shared<const std::vector<ReadManifest>>(std::move(read));
 }
 
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring) {
-  const std::vector<RegisteredManifest> manifests = newest_manifests(store);
+  const ReadManifests read = wanted.manifests ? wanted.manifests : read_manifests(store);
+  const std::vector<ReadManifest>& manifests = *read;
   CollectedRuns collected;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
@@ -378,11 +416,10 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     std::set<std::string> experiments;
     for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
     const bool all_seeds = selection.seeds.empty() && selection.variants.empty();
-    for (const RegisteredManifest& manifest : manifests) {
+    for (const ReadManifest& manifest : manifests) {
       if (!experiments.contains(manifest.experiment)) continue;
-      const Manifest stated = recorded_manifest(manifest.text);
-      name_variants(stated.labels, manifest.experiment, collected);
-      if (all_seeds) add_planned(stated, collected);
+      name_variants(manifest.content.labels, manifest.experiment, collected);
+      if (all_seeds) add_planned(manifest, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
     for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);

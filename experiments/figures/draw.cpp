@@ -27,8 +27,8 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure was made of, those of earlier cycles from which it
-/// measured changes included; by step.
+/// The checkpoints of the run that the figure used, by step, including the earlier checkpoints from
+/// which it measured changes.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FrameRun& run) {
   std::set<std::string> own;
@@ -40,7 +40,7 @@ std::vector<CheckpointRecord> used_checkpoints(const Store& store, const Compute
   return records;
 }
 
-/// What the figure was made of.
+/// The runs of the figure and their states, as its record names them.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
@@ -62,18 +62,36 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
+/// Whose plots drew a figure that its manifest does not state, as in stores of earlier versions,
+/// whose manifests list figures by name; "" for a figure that the manifest states or C++ computes.
+std::string plots_of(const WantedFigure& wanted) {
+  const std::string& name = wanted.figure.name;
+  const auto manifest =
+      std::ranges::find(*wanted.manifests, wanted.experiment, &ReadManifest::experiment);
+  if (manifest == wanted.manifests->end() || find_named(computed_figures(), name) != nullptr ||
+      find_named(std::span<const Figure>(stated_figures(manifest->content)), name) != nullptr) {
+    return "";
+  }
+  const bool lists = std::ranges::count(manifest->figures, name) > 0;
+  return fmt::format("drawn by the plots of shearcell {}; the manifest {}",
+                     host_facts().at("build").at("version").get<std::string>(),
+                     lists ? "lists " + name + " only" : "does not name " + name);
+}
+
 /// The figure's record, without facts that depend on the time or the host.
-nlohmann::json lineage_of(const ComputedFigure& figure, nlohmann::json inputs) {
+nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots,
+                          nlohmann::json inputs) {
   nlohmann::json facts = {{"figure", figure.name},
                           {"scale", figure.scale},
                           {"analysis_version", analysis_version},
                           {"inputs", std::move(inputs)},
                           {"outputs", nlohmann::json::object()}};
   if (!figure.experiment.empty()) facts["experiment"] = figure.experiment;
+  if (!plots.empty()) facts["plots"] = plots;
   return facts;
 }
 
-/// Records the figure, unless its newest record says the same (host and build aside).
+/// Records the figure, unless its newest record differs in host and build only.
 void record(Store& store, const std::string& name, nlohmann::json facts) {
   for (const FigureRecord& known : store.figures()) {
     if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
@@ -95,7 +113,7 @@ std::string place_of(const ComputedFigure& figure) {
   return figure.experiment.empty() ? scale : figure.experiment + "/" + scale;
 }
 
-/// Gives the panels of a figure letters.
+/// Gives letters to the panels of a figure, if it has several.
 void lay_out(std::vector<Table>& tables, bool wide) {
   char letter = 'a';
   for (Table& table : tables) {
@@ -110,7 +128,7 @@ void lay_out(std::vector<Table>& tables, bool wide) {
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
-  // Points that are stated beside columns are published ones.
+  // If other series have columns, stated points are published values.
   const auto has_columns = [](const Series& one) { return one.thin || !one.columns.x.empty(); };
   const bool all_stated = std::ranges::none_of(table.chart.series, has_columns);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
@@ -119,8 +137,10 @@ bool has_no_value(const Table& table) {
   });
 }
 
-/// What the panels show, the number of runs, which runs were selected and what was left out.
-std::string caption(const ComputedFigure& figure, const RunSelection& selected) {
+/// What the panels show, the number of runs, which runs were selected and what was left out; "" if
+/// nothing is drawn.
+std::string caption_of(const ComputedFigure& figure, const RunSelection& selected) {
+  if (figure.tables.empty() || figure.tables.front().chart.series.empty()) return "";
   const std::map<std::string, std::size_t>& runs = figure.runs_by_variant;
   std::vector<std::string> variants, counts;
   std::set<std::size_t> distinct;
@@ -152,6 +172,7 @@ std::string caption(const ComputedFigure& figure, const RunSelection& selected) 
     text += fmt::format(" Left out: what needs {}.",
                         counted(lines->size(), fmt::format("{} checkpoint", what)));
   }
+  if (!figure.why_empty.empty()) text += " " + figure.why_empty;
   if (!figure.notes.empty()) text += fmt::format(" Notes: {}.", fmt::join(figure.notes, "; "));
   return text;
 }
@@ -165,7 +186,8 @@ std::string verdict_text(const ComputedFigure& figure) {
   return verdict.dump(1) + "\n";
 }
 
-/// The figure's title; if it is about other parameters than the runs differ in, it names those too.
+/// The title of the figure. If the runs differ only in parameters that the figure does not compare,
+/// the title names these parameters.
 std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
   const std::vector<std::string> varied = varied_keys(runs);
   const bool of_its_keys = std::ranges::any_of(
@@ -174,13 +196,13 @@ std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
-/// Sets ComputedFigure::primary and Verdict::primary as the newest manifest states at the scale, of
-/// a figure of all experiments as any of them does. A manifest names a claim by its id, by its id
-/// without the value of `for_each`, or, if it is older, by its statement.
-void mark_primary(const Store& store, ComputedFigure& figure) {
-  for (const RegisteredManifest& registered : newest_manifests(store)) {
-    if (!figure.experiment.empty() && registered.experiment != figure.experiment) continue;
-    for (const Scale& scale : scales_of(recorded_manifest(registered.text))) {
+/// Sets ComputedFigure::primary and Verdict::primary from `primary` in the experiment's manifest at
+/// this scale; for a figure of all experiments, from all manifests. A manifest names a claim by its
+/// id, or by its id without the value of `for_each`; older manifests name it by its statement.
+void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& figure) {
+  for (const ReadManifest& manifest : manifests) {
+    if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
+    for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
       std::ranges::copy(scale.primary, std::back_inserter(figure.primary));
     }
@@ -208,7 +230,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   measure_runs(store, runs, providers, measuring, made);
   std::ranges::for_each(runs, leave_out_unmeasured);
-  made.lineage = lineage_of(made, inputs_of(store, made, runs));
+  made.lineage = lineage_of(made, plots_of(wanted), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(
         figure.name, runs, figure.keys,
@@ -222,7 +244,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   static_cast<FigureResult&>(made) = figure.make(frame);
   for (Verdict& verdict : made.verdicts) {
-    // The runs that it compares may be among those that were not selected.
+    // The claim may compare runs that were not selected.
     if (verdict.estimate || options.runs.variants.empty()) continue;
     verdict.note =
         fmt::format("only runs with {} are selected{}{}", fmt::join(options.runs.variants, ", "),
@@ -232,12 +254,19 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     name_run_counts(table);
     if (has_no_value(table)) made.empty.push_back(table.name);
   }
+  if (made.empty.empty() && !(made.tables.empty() && made.verdicts.empty())) return;
+  made.why_empty = fmt::format(
+      "Nothing is drawn{}{}: no run has {}.", made.empty.empty() ? "" : " in ",
+      fmt::join(made.empty, ", "),
+      runs.empty() ? "a checkpoint of the cycles that it shows" : "the values that it shows");
 }
 
 }  // namespace
 
-ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
+ComputedFigure compute_figure(const Store& store, const WantedFigure& figure,
                               const FigureOptions& options) {
+  WantedFigure wanted = figure;
+  if (!wanted.manifests) wanted.manifests = read_manifests(store);
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   ComputedFigure made;
   made.name = wanted.figure.name;
@@ -246,7 +275,9 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   made.scale = collected.scale;
   made.notes = std::move(collected.notes);
   make_of_runs(store, wanted, options, std::move(collected), made);
-  mark_primary(store, made);
+  mark_primary(*wanted.manifests, made);
+  lay_out(made.tables, options.wide);
+  made.caption = caption_of(made, options.runs);
   return made;
 }
 
@@ -254,7 +285,6 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   ComputedFigure made = compute_figure(store, wanted, options);
   const std::string place = place_of(made);
   const std::filesystem::path folder = options.folder / place;
-  lay_out(made.tables, options.wide);
   if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
     throw UsageError(fmt::format("{}: cannot make this folder: {}. Name another with --out.",
                                  folder.string(), failed.message()));
@@ -267,11 +297,11 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     });
   };
   require(".verdict.json", "{\n \"claims\": [", "");
-  require(".verdict.csv", "claim", "");  // without a comma if no run has a value
+  require(".verdict.csv", "claim", "");  // the only column if no run has a value
   require(".caption.txt", "Figure " + made.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + made.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
-    if (text.empty()) {  // delete that of an older figure
+    if (text.empty()) {  // deletes the file of an older figure
       std::filesystem::remove(base + ending);
       return;
     }
@@ -289,8 +319,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
       made.undrawn.emplace_back(error.what());
     }
   }
-  const bool drawn = !made.tables.empty() && !made.tables.front().chart.series.empty();
-  write(".caption.txt", drawn ? caption(made, options.runs) + "\n" : "");
+  write(".caption.txt", made.caption.empty() ? "" : made.caption + "\n");
   const bool claims = !made.verdicts.empty();
   write(".verdict.json", claims ? verdict_text(made) : "");
   write(".verdict.csv", claims ? to_csv(entered_table(made.verdicts)) : "");

@@ -26,14 +26,16 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::string title;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::map<std::string, std::size_t> runs_by_variant;  ///< names, for people
+  std::map<std::string, std::size_t> runs_by_variant;  ///< by the name of the variant
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
   std::vector<std::string> notes;            ///< as CollectedRuns::notes
   std::vector<std::string> primary;          ///< claims that the manifest lists under `primary`
   std::vector<std::string> empty;            ///< names of tables without a value to draw
-  nlohmann::json lineage;                    ///< the figure's record; `outputs` of draw_figure()
-  std::vector<std::filesystem::path> files;  ///< of draw_figure(): CSV, SVG, PDF of each panel, ...
+  std::string why_empty;                     ///< "Nothing is drawn in S2b: ..."; "" if all is drawn
+  std::string caption;                       ///< as in NAME.caption.txt; "" if nothing is drawn
+  nlohmann::json lineage;                    ///< the figure's record; draw_figure() adds `outputs`
+  std::vector<std::filesystem::path> files;  ///< by draw_figure(): CSV, SVG, PDF of each panel, ...
   std::vector<std::string> undrawn;          ///< why drawings are missing, one line each
 };
 

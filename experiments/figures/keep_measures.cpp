@@ -18,16 +18,16 @@ namespace {
 
 constexpr std::size_t kAtOnce = 500;  // checkpoints whose results are in memory at a time
 
-/// Whether the provider needs a file that was pruned before. Such a measure was lost then, as where
-/// a pruned run was continued.
+/// Whether the provider needs the file of an earlier checkpoint that is already pruned, for example
+/// because a pruned run was continued. The measure was lost when that file was pruned.
 bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
                          std::uint64_t every, const Provider& provider) {
   const CheckpointRecord* earlier = sources.earlier(record, provider, every);
   return earlier != nullptr && earlier->state == CheckpointState::pruned;
 }
 
-/// Writes the cache to the disk. DerivedCache does not, because measures can be recomputed; after a
-/// prune they cannot.
+/// Syncs the cache to the disk. DerivedCache itself does not sync, because measures can usually be
+/// computed again; after a prune they cannot.
 void sync_cache(const Store& store) {
   const std::filesystem::path file = store.folder() / DerivedCache::kFile;
   for (const std::filesystem::path& path : {file, store.folder()}) {
@@ -73,7 +73,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
     if (stage.memberships.empty())
-      stage.memberships.emplace_back();  // no experiment of a damaged store has it
+      stage.memberships.emplace_back();  // in a damaged store: declared by no experiment
     for (const auto& [place, ask, newest] : stage.memberships) {
       FrameRun run{{place, ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
@@ -81,9 +81,9 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       }
       in_batch += run.checkpoints.size();
       batch.push_back(run);
-      for (const auto& [figure, experiment, also] : simulating) {
+      for (const auto& [figure, experiment, also, manifests] : simulating) {
         if (experiment != place.experiment) continue;
-        // Only of the cycles that figures take, since a simulation takes longer than an analysis.
+        // Only cycles that figures take are simulated: a simulation takes longer than an analysis.
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;

@@ -9,13 +9,14 @@
 
 namespace shearcell {
 
-/// Computes and caches the measures for which tables and figures may need the files of these
-/// checkpoints. These are all derived measures of all checkpoints of the runs, for each cadence
-/// that an experiment asks for: a later checkpoint may need an earlier one. Simulated measures are
-/// computed if a figure of a registered manifest needs them. Removes from `records` each checkpoint
-/// with a measure that could not be computed, unless the measure needs a file that was pruned
-/// before; the outcome says why. Removes all if measures cannot be cached. The cache is on disk
-/// when the function returns.
+/// Computes and caches the measures that tables and figures may ask for and that need the files of
+/// these checkpoints: all derived measures of all checkpoints of their runs, since a measure of a
+/// later checkpoint may need an earlier file, at each cadence that an experiment asks for.
+/// Simulated measures are computed if a figure of a registered manifest needs them.
+///
+/// Removes from `records` each checkpoint with a measure that could not be computed; the outcome
+/// says why. A checkpoint stays if the measure needs another file, which was pruned before. Removes
+/// all records if measures cannot be cached. The cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

@@ -49,7 +49,8 @@ Cycles cycles_of(const std::vector<CheckpointRecord>& checkpoints) {
   return ranges;
 }
 
-/// The checkpoints of these cycles. A rejected one counts where no other has its cycle.
+/// The checkpoints at these cycles. A rejected checkpoint is one of them only if no other
+/// checkpoint has its cycle.
 std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cycles) {
   std::map<double, CheckpointRecord> found;
   for (const CheckpointHistory& c : run.checkpoints) {
@@ -71,7 +72,7 @@ std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cyc
 /// Reads the states of an input and finds them in the log.
 void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   std::vector<CheckpointRecord> found;
-  if (entry.contains("checkpoints")) {  // of an earlier version
+  if (entry.contains("checkpoints")) {  // a record of an earlier version
     entry.at("checkpoints").get_to(input.checkpoints);
     for (const std::string& sha256 : input.checkpoints) {
       if (const CheckpointHistory* known = run.find(sha256)) found.push_back(known->record);
@@ -89,7 +90,7 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
 // The swept values of the run, in the place that the figure used.
 json swept_values_of(const Stage& stage, const FigureInput& input) {
   for (const auto& [place, ask, newest] : stage.memberships) {
-    // In figures of earlier programs the variant of an older version ends in that version.
+    // Earlier programs called a variant of an older manifest "VARIANT,manifest=VERSION".
     const bool same =
         input.variant == place.variant || input.variant.starts_with(place.variant + ",manifest=");
     if (place.manifest == input.manifest && same) return place.swept;
@@ -228,6 +229,7 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
   try {
     lineage.experiment = record.provenance.value("experiment", "");
     lineage.scale = record.provenance.value("scale", "");
+    lineage.plots = record.provenance.value("plots", "");
     for (const json& entry : record.provenance.at("inputs")) {
       FigureInput input = read_input(entry);
       add_run_lineage(store, input.run, lineage.runs);
@@ -286,6 +288,7 @@ json to_json(const FigureLineage& lineage) {
           {"recorded_at", lineage.record.recorded_at},
           {"scale", scale_name(lineage.scale)},
           {"analysis_version", member_of(lineage.record.provenance, "analysis_version")},
+          {"plots", lineage.plots.empty() ? json() : json(lineage.plots)},
           {"made", member_of(lineage.record.provenance, "made")},
           {"outputs", lineage.outputs},
           {"manifests", manifests},

@@ -27,7 +27,7 @@ std::string to_text(const Cycles& cycles);
 /// of states do not depend on the version of HDF5.
 struct States {
   Cycles cycles;           ///< of the states
-  std::string state_hash;  ///< of the last one
+  std::string state_hash;  ///< of the last state
   std::string sha256;      ///< of the text with one line for each state: its state_hash
 
   bool operator==(const States&) const = default;
@@ -46,7 +46,7 @@ struct FigureInput {
   std::vector<ManifestLine> lines;       ///< of that manifest
   nlohmann::json overrides;              ///< key -> {"run", "manifest"}; null without any
   States states;                         ///< as recorded
-  std::vector<std::string> checkpoints;  ///< SHA-256 of those in the figure, from the log
+  std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
   std::string fault;                     ///< how the log differs from `states`; "" if it does not
 };
 
@@ -54,13 +54,14 @@ struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
+  std::string plots;  ///< "drawn by the plots of ..." if its manifest states none of its plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< each once
   RunLineages runs;                            ///< of the inputs and of the stages before them
 };
 
-/// Values that the command line gave in place of the manifest's, as {"cycles": {"run": 8,
+/// Values that the command line gave instead of values of the manifest, as {"cycles": {"run": 8,
 /// "manifest": 5}}; null if there are none.
 nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
                             const Ask& ask);

@@ -98,7 +98,7 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
   return columns;
 }
 
-/// Whether and when a method observed the onset.
+/// The outcome of a method that finds the onset.
 Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
   return {{name, std::string("observed, never, before_start or unclear: outcome of ") + meaning},
           [find](const Row& row) -> TableCell {
@@ -164,7 +164,8 @@ std::vector<FrameRun> select(const Store& store, const RunSelection& selection,
   return runs;
 }
 
-/// Notes how many measures of checkpoints with a file need another file, which is gone.
+/// Adds a note on checkpoints whose own file exists, but with measures that need the file of an
+/// earlier checkpoint, which does not exist.
 void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
   for (const FrameRun& run : runs) {

@@ -22,13 +22,13 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 struct RunTable : MeasureOutcome {
   Table table;                      ///< a cell is empty if it is unknown or does not apply
   std::vector<std::string> notes;   ///< of newest_runs()
-  std::vector<FrameRun> histories;  ///< with RowPer::run: each row's whole cycles
+  std::vector<FrameRun> histories;  ///< with RowPer::run: each row's run at whole cycles
 };
 
-/// The table of the selected newest_runs(), in their order, then by cycle, with their
-/// checkpoints_for() up to end_for(). Onsets come from the checkpoints at whole cycles, as in
+/// The table of the selected newest_runs(): by run, then by cycle. The checkpoints of a run are its
+/// checkpoints_for() up to end_for(). Onsets are found in the checkpoints at whole cycles, as in
 /// figures. `simulated` names simulating providers whose measures are added. Throws NotFound as
-/// select_runs().
+/// select_runs() does.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated = {});
 
@@ -48,8 +48,8 @@ std::vector<TableColumn> table_columns();
 std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& record,
                                                         const Measures& measures);
 
-/// The rows of to_json(). With `notes` an object: `rows`, those rows; `notes` on runs that were
-/// left out; `damage` and `pruned`, the checkpoints that were not measured.
+/// The table as a JSON array of rows. With `notes`, an object of this array (`rows`), lines on runs
+/// that were left out (`notes`), and the checkpoints that were not measured (`damage`, `pruned`).
 std::string to_json(const RunTable& made, bool notes = false);
 
 /// Whether a file begins like the CSV or the JSON.

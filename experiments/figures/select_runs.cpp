@@ -30,7 +30,7 @@ void require_found(const char* what, const Filter& filter) {
                              did_you_mean(*missing, known)));
 }
 
-/// The same of all versions of a manifest.
+/// What identifies a run in all versions of a manifest.
 auto in_any_version(const Place& place) {
   return std::tie(place.experiment, place.scale, place.variant, place.seed);
 }
@@ -65,7 +65,7 @@ bool in_order(const Run& a, const Run& b) {
   return key(a.place) < key(b.place);
 }
 
-/// Says where an edited manifest asks for fewer cycles than an older version made.
+/// Adds a note on each experiment whose edited manifest asks for fewer cycles than runs have.
 void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& notes) {
   struct Shortened {
     std::size_t runs = 0;
@@ -100,7 +100,7 @@ Place first_place(const Stage& stage) {
 
 namespace {
 
-/// The experiments, each that has no runs (`of`) replaced by those whose runs it compares.
+/// Replaces each experiment without runs of its own (`of`) by the experiments that it compares.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
@@ -131,7 +131,7 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
     const bool packing = stage.kind == name_of(StageKind::prepare);
     if (packing && !selection.packings) continue;
     for (const auto& [place, ask, newest] : places_of(stage)) {
-      // Not by &&: each has to see every value.
+      // Without &&, because each filter must see every value.
       bool passes = experiment.passes(place.experiment);
       passes &= scale.passes(scale_name(place.scale));
       passes &= variant.passes(place.variant, names ? names->of(stage, place) : "");
@@ -141,8 +141,8 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
       if (!passes) continue;
       selected.push_back({.place = place, .ask = ask, .stage = stage, .newest = newest});
       if (packing || !newest) continue;
-      // The same manifest may have meant another run, with another start or to another version of
-      // the program.
+      // A manifest may have declared two runs for one seed: its file of grains has changed, or the
+      // version of the program.
       const Seed same = {experiment_scale(selected.back()), place.variant, place.seed};
       const std::size_t first = seeds.try_emplace(same, selected.size() - 1).first->second;
       if (first == selected.size() - 1) continue;

@@ -51,12 +51,12 @@ std::byte byte_of(const GrainField& field, double value) {
 constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
 
 struct ChosenRun : Run {
-  std::vector<CheckpointRecord> checkpoints = {};  // fit() reduces them to those to show
+  std::vector<CheckpointRecord> checkpoints = {};  // fit() keeps those that the page shows
   std::size_t bytes = 0;                           // of one checkpoint in the page
   std::size_t wall_grains = 0;
 };
 
-/// Keeps `count` of them, evenly spaced.
+/// Keeps `count` of the values, evenly spaced.
 template <class Value>
 void thin_out(std::vector<Value>& values, std::size_t count) {
   std::vector<Value> kept;
@@ -64,7 +64,7 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
   values = std::move(kept);
 }
 
-/// The last run of each variant, of at most `limit` variants that are evenly chosen.
+/// The last run of each variant. If there are more than `limit` variants, they are chosen evenly.
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
@@ -108,7 +108,8 @@ bool has_more_digits(const Measure& measure) {
          measure.name == "crystallite";
 }
 
-/// Sets the sizes of each run from its newest readable checkpoint; removes runs without one.
+/// Sets the sizes of each run from its newest readable checkpoint. Removes runs that have no
+/// readable checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   const auto all = all_measures(MeasureKind::grains);
   const auto fields = static_cast<std::size_t>(
@@ -165,7 +166,8 @@ json facts_of(const PackingMeasures& measures, double theta) {
   json facts = json::array();
   if (measures.interior_grains > 0) {
     facts.push_back(to_json(formula(fmt::format("$ϕ$ = {:.4f}", measures.phi))));
-    facts.push_back(to_json(fmt::format("{:.1f} % crystalline", measures.crystalline_percent)));
+    facts.push_back(to_json(
+        fmt::format("{:.1f} % of the interior grains crystalline", measures.crystalline_percent)));
     facts.push_back(to_json(fmt::format("largest crystallite {}", measures.largest_crystallite)));
   }
   if (theta != 0) facts.push_back(to_json(fmt::format("tilt {:.4f} rad", theta)));
@@ -226,6 +228,7 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
           {"cycle", record.cycle},
           {"sha256", record.sha256},
           {"facts", facts_of(analysis.measures, checkpoint.theta)},
+          {"crystalline", rounded(analysis.measures.crystalline_percent, 4)},
           {"cell",
            {{"width", checkpoint.cell.width},
             {"depth", checkpoint.cell.depth},

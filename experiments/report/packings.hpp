@@ -18,7 +18,7 @@
 namespace shearcell {
 
 struct PackingChoice {
-  std::vector<std::string> runs;  ///< ids of the runs to show; empty: the last of each variant
+  std::vector<std::string> runs;        ///< ids; empty: the last run of each variant
   std::size_t runs_per_experiment = 6;  ///< largest number of runs if `runs` is empty
   std::size_t frames = 40;              ///< largest number of checkpoints of a run
   std::size_t budget = 9'000'000;       ///< bytes of all packings in the page
@@ -41,8 +41,8 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers, const ReadProgress& report);
 
-/// `count` evenly spaced indices of 0 .. size - 1, including the first and the last; for 1, the
-/// last.
+/// `count` evenly spaced indices of 0 .. size - 1, including the first and the last index; one
+/// index is the last.
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 
 /// `bytes` holds arrays of little-endian 16-bit words, or of bytes, for N grains and M wall grains:

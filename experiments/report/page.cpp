@@ -126,20 +126,24 @@ std::string draw(const Table& table) {
 }
 
 /// `id`: in the page, "drag.S2a".
-json panel_json(const Table& table, const std::string& id, const WantedFigure& figure,
+json panel_json(const Table& table, const std::string& id, const ComputedFigure& figure,
                 Content& content) {
   const bool interactive = content.report.interactive;
   const bool chart = interactive && !table.chart.series.empty();
   if (chart) content.charts[id] = chart_json(table);
+  if (chart && !figure.why_empty.empty()) content.charts[id]["empty"] = figure.why_empty;
   std::string drawing, trouble;
   try {
     if (!interactive && table.text.rows.empty()) drawing = draw(table);
   } catch (const AnalysisError& error) {
     trouble = error.what();
-    content.report.undrawn.insert(fmt::format("figure {}: {}", figure.path(), trouble));
+    content.report.undrawn.insert(fmt::format("figure {}{}{}: {}", figure.experiment,
+                                              figure.experiment.empty() ? "" : "/", figure.name,
+                                              trouble));
   }
   return {{"id", id},
           {"name", table.name},
+          {"letter", table.chart.letter},
           {"chart", chart},
           {"drawing", base64(std::as_bytes(std::span(drawing)))},
           {"table", text_table(table.text)},
@@ -198,6 +202,7 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
   }
   const std::string command = "shearcell figures " + figure.name;
   return {{"scale", scale_name(lineage.scale)},
+          {"plots", lineage.plots},
           {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", figure.runs,
                                  figure.checkpoints, text_at(figure.lineage, "analysis_version"))},
           {"makers", makers},
@@ -211,7 +216,7 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
           {"inputs", inputs}};
 }
 
-/// The figure as JSON. Also adds what it lacks, its notes and its manifests to `content`.
+/// The figure as JSON. Adds its manifests, its notes and what was left out to `content`.
 json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Content& content) {
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
@@ -221,27 +226,30 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
   }
   json panels = json::array(), claims = json::array(), warnings = json::array();
   for (const Table& table : figure.tables) {
-    panels.push_back(panel_json(table, prefix + table.name, wanted, content));
+    panels.push_back(panel_json(table, prefix + table.name, figure, content));
   }
   for (const Verdict& verdict : figure.verdicts) {
     claims.push_back({{"ruling", ruling_json(verdict.ruling)},
                       {"claim", verdict.claim},
-                      {"numbers", fmt::format("{}: {}{}{}", verdict.quantity, numbers_of(verdict),
-                                              verdict.note.empty() ? "" : ". ", verdict.note)}});
+                      {"result", result_of(verdict)}});
   }
   for (const auto* list : {&figure.damage, &figure.pruned}) {
     for (const std::string& line : *list) warnings.push_back("Left out: " + line);
   }
-  for (const std::string& line : figure.notes) warnings.push_back(line);
+  if (figure.caption.empty()) {
+    if (!figure.why_empty.empty()) warnings.push_back(figure.why_empty);
+    std::ranges::copy(figure.notes, std::back_inserter(warnings));
+  }
   content.report += figure;
   content.report.notes.insert(figure.notes.begin(), figure.notes.end());
   return {{"id", prefix + wanted.figure.name},
           {"name", figure.name},
           {"heading",
-           fmt::format("{} {}{}{}{}", panels.empty() ? "Claim" : "Figure", figure.name,
-                       figure.title.empty() ? "" : ". ", figure.title,
+           fmt::format("{} {}{}{}{}", panels.empty() && !claims.empty() ? "Claim" : "Figure",
+                       figure.name, figure.title.empty() ? "" : ". ", figure.title,
                        figure.scale.empty() ? "" : fmt::format(" ({} scale)", figure.scale))},
           {"panels", panels},
+          {"caption", figure.caption},
           {"claims", claims},
           {"warnings", warnings},
           {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.store, figure))}};
@@ -297,7 +305,8 @@ struct Count {
   std::size_t number;
 };
 
-/// A box of the workflow: what it is about, and how many are in each state.
+/// A box of the workflow: its title, and the number of stages, checkpoints or figures in each
+/// state.
 json step(const char* title, std::initializer_list<Count> counts) {
   json list = json::array();
   for (const Count& one : counts) {
@@ -320,7 +329,7 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
                       {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
-/// The way from the packings to the figures, with the states of each step.
+/// The boxes of the workflow, from packings to figures.
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
   std::size_t left = 0;  // checkpoints of unfinished runs if nothing ends them early
@@ -347,36 +356,35 @@ json workflow(const Content& content, const Experiment& experiment) {
           figures};
 }
 
-/// A column of the table of runs.
-struct RunColumn {
-  std::size_t at = 0;  ///< in RunTable
-  std::string heading;
-  bool numeric = true;
-};
-
-/// The columns that are shown at first: what distinguishes the runs, then their state and results.
-std::vector<RunColumn> columns_of(const Experiment& experiment) {
+/// The columns that the page shows at first: what distinguishes the runs, their state, their
+/// results. `at` is the index of a column in the experiment's table.
+json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
-  const std::size_t seed = table.place("seed"), cycle = table.place("cycle");
-  std::vector<RunColumn> shown = {{table.place("run"), "run", false}};
-  const auto differs = [&](std::size_t at) {
-    return std::ranges::any_of(table.rows,
-                               [&](const auto& row) { return row[at] != table.rows.front()[at]; });
+  json shown = json::array();
+  const auto add = [&](std::size_t at, const std::string& heading, bool numeric) {
+    const auto& [key, meaning] = table.columns.at(at);
+    shown.push_back({{"at", at},
+                     {"key", key},
+                     {"meaning", meaning},
+                     {"heading", heading},
+                     {"numeric", numeric}});
   };
-  if (differs(table.place("scale"))) shown.push_back({table.place("scale"), "scale", false});
+  const std::size_t seed = table.place("seed"), cycle = table.place("cycle");
+  const std::size_t scale = table.place("scale");
+  add(table.place("run"), "run", false);
+  const bool differ = std::ranges::any_of(
+      table.rows, [&](const TableRow& row) { return row[scale] != table.rows.front()[scale]; });
+  if (differ) add(scale, "scale", false);
   // Swept parameters stand between the seed and the cycle; the grains are among them.
   const bool labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
-  if (labelled || cycle - seed == 2) {
-    shown.push_back({table.place("variant"), "variant", false});
-  }
+  if (labelled || cycle - seed == 2) add(table.place("variant"), "variant", false);
   for (std::size_t at = seed + 1; at < cycle; ++at) {
     const Field* field = find_field(table.columns[at].name);
     if (field == nullptr || field->name == "grains") continue;
     std::string name(field->symbol.empty() ? field->name : field->symbol);
     std::ranges::replace(name, '_', ' ');
     const bool unit = !field->symbol.empty() && field->unit != "1" && !field->unit.empty();
-    shown.push_back(
-        {at, unit ? fmt::format("{} [{}]", name, field->unit) : name, !field->unit.empty()});
+    add(at, unit ? fmt::format("{} [{}]", name, field->unit) : name, !field->unit.empty());
   }
   for (const auto& [key, heading] : std::initializer_list<std::pair<const char*, const char*>>{
            {"seed", "seed"},
@@ -391,7 +399,7 @@ std::vector<RunColumn> columns_of(const Experiment& experiment) {
            {"onset_size_phi", "onset ϕ"},
            {"wall_time_s", "time [s]"},
            {"particle_steps_per_s", "steps/s"}}) {
-    shown.push_back({table.place(key), heading, key != std::string_view("state")});
+    add(table.place(key), heading, key != std::string_view("state"));
   }
   return shown;
 }
@@ -419,22 +427,13 @@ json cell_json(const Packings& packings, const TableColumn& column, const TableC
 json run_rows(const Packings& packings, const Experiment& experiment) {
   const Table& table = experiment.table.table;
   if (table.rows.empty()) return false;
-  json columns = json::array(), rows = json::array();
-  const std::vector<RunColumn> shown = columns_of(experiment);
-  for (const RunColumn& column : shown) {
-    const TableColumn& source = table.columns.at(column.at);
-    columns.push_back({{"key", source.name},
-                       {"meaning", source.meaning},
-                       {"heading", column.heading},
-                       {"numeric", column.numeric}});
-  }
+  const json columns = columns_of(experiment);
+  json rows = json::array();
   for (const TableRow& row : table.rows) {
     json cells = json::array();
-    for (std::size_t c = 0; c < shown.size(); ++c) {
-      json& cell = cells.emplace_back(
-          cell_json(packings, table.columns.at(shown[c].at), row.at(shown[c].at)));
-      cell["heading"] = shown[c].heading;
-      cell["numeric"] = shown[c].numeric;
+    for (const json& column : columns) {
+      const std::size_t at = column.at("at");
+      cells.emplace_back(column).update(cell_json(packings, table.columns[at], row[at]));
     }
     rows.push_back({{"number", rows.size()}, {"cells", std::move(cells)}});
   }
@@ -528,7 +527,7 @@ json script_data(const Content& content) {
           {"experiments", std::move(experiments)}};
 }
 
-/// The experiments chosen, or all, in the order in which they were first registered, each with its
+/// The chosen experiments (default: all) in the order of their first registration, each with its
 /// newest manifest.
 std::vector<Experiment> experiments_of(const Store& store, const RunSelection& chosen) {
   Filter names(chosen.experiments), scales(chosen.scales);
@@ -536,15 +535,15 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   for (RegisteredManifest& manifest : newest_manifests(store)) {
     if (names.passes(manifest.experiment)) found.push_back({std::move(manifest)});
   }
-  const std::vector<Stage> runs = store.stages();
+  const std::vector<Stage> stages = store.stages();
   for (Experiment& experiment : found) {
     const auto is_member = [&](const Membership& m) {
       return m.place.experiment == experiment.manifest.experiment &&
              scales.passes(scale_name(m.place.scale));
     };
-    for (const Stage& stage : runs) {
-      if (std::ranges::any_of(stage.memberships, is_member)) experiment.runs.push_back(stage);
-    }
+    std::ranges::copy_if(stages, std::back_inserter(experiment.runs), [&](const Stage& stage) {
+      return std::ranges::any_of(stage.memberships, is_member);
+    });
   }
   std::erase_if(found, [&](const Experiment& experiment) {
     return !chosen.scales.empty() && experiment.runs.empty();
@@ -571,55 +570,54 @@ void note_other_scales(const Experiment& experiment, const std::string& shown,
 }
 
 void add_figures(Content& content) {
-  const WantedFigures wanted = wanted_figures(content.store, {}, content.options.runs.experiments);
-  std::set<std::string>& notes = content.report.notes;
-  notes.insert(wanted.unknown.begin(), wanted.unknown.end());
-  const FigureOptions how{content.options, {}, content.options.runs};
+  const ReportOptions& options = content.options;
+  WantedFigures wanted = wanted_figures(content.store, {}, options.runs.experiments);
+  Report& report = content.report;
+  report.problems.insert(wanted.unknown.begin(), wanted.unknown.end());
+  const std::string others = leave_out_unselected(content.store, options.runs, wanted.figures);
+  if (!others.empty()) report.notes.insert(others);
   for (const WantedFigure& figure : wanted.figures) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    const auto leave_out = [&](const std::exception& why) {
-      notes.insert("figure " + figure.path() + ": " + why.what());
-      if (at_home) home->unmade.push_back(figure.figure.name);
-    };
+    std::set<std::string>* said = nullptr;  // where the reason goes
+    std::string why;
     try {
-      const ComputedFigure made = compute_figure(content.store, figure, how);
+      const ComputedFigure made =
+          compute_figure(content.store, figure, {options, {}, options.runs});
       (at_home ? home->figures : content.across).push_back(figure_json(figure, made, content));
       if (at_home) std::ranges::copy(made.verdicts, std::back_inserter(home->verdicts));
       const bool is_first = at_home && home->figures.size() == 1;
-      if (is_first && how.runs.scales.empty()) note_other_scales(*home, made.scale, notes);
-      ++content.report.figures;
+      if (is_first && options.runs.scales.empty()) {
+        note_other_scales(*home, made.scale, report.notes);
+      }
+      ++report.figures;
+      continue;
     } catch (const StoreDamaged& damage) {
-      content.report.damage.insert(damage.what());
-      leave_out(damage);
+      said = &report.damage, why = damage.what();
     } catch (const UsageError& problem) {
-      leave_out(problem);
+      said = &report.problems, why = problem.what();
     } catch (const AnalysisError& problem) {
-      leave_out(problem);
+      said = &report.problems, why = problem.what();
     }
+    said->insert("figure " + figure.path() + ": " + why);
+    if (at_home) home->unmade.push_back(figure.figure.name);
   }
 }
 
+/// Adds the stages, manifests and results of each experiment's runs. An experiment without results
+/// is named in Report::notes.
 void add_runs(Content& content) {
-  const Store& store = content.store;
-  for (const Experiment& experiment : content.experiments) {
-    if (auto manifest = find_manifest(store, experiment.manifest.sha256)) {
-      content.manifests.try_emplace(experiment.manifest.sha256, std::move(*manifest));
-    }
-    for (const Stage& stage : experiment.runs) add_run_lineage(store, stage.id, content.runs);
-  }
-}
-
-/// Adds the results of each experiment's runs. An experiment without them is named in
-/// Report::notes.
-void add_run_tables(Content& content) {
-  const ReportOptions& options = content.options;
   for (Experiment& experiment : content.experiments) {
-    RunSelection selection = options.runs;
-    selection.experiments = {experiment.manifest.experiment};
+    const RegisteredManifest& manifest = experiment.manifest;
+    content.manifests.try_emplace(manifest.sha256, manifest);
+    for (const Stage& stage : experiment.runs) {
+      add_run_lineage(content.store, stage.id, content.runs);
+    }
+    RunSelection selection = content.options.runs;
+    selection.experiments = {manifest.experiment};
     try {
-      experiment.table = run_table(content.store, selection, RowPer::run, options);
+      experiment.table = run_table(content.store, selection, RowPer::run, content.options);
       // Another program may have declared runs since they were listed.
       for (const FrameRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
@@ -627,8 +625,8 @@ void add_run_tables(Content& content) {
     } catch (const StoreDamaged& damage) {
       content.report.damage.insert(damage.what());
     } catch (const NotFound& none_selected) {
-      content.report.notes.insert(fmt::format(
-          "table of runs of {}: {}", experiment.manifest.experiment, none_selected.what()));
+      content.report.notes.insert(
+          fmt::format("table of runs of {}: {}", manifest.experiment, none_selected.what()));
     }
   }
 }
@@ -699,7 +697,6 @@ Report make_report(const Store& store, const ReportOptions& options) {
   }
   add_figures(content);
   add_runs(content);
-  add_run_tables(content);
   if (report.interactive) {
     content.packings = collect_packings(store, names, options.runs, options.packings,
                                         options.workers, options.encoded);

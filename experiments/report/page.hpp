@@ -23,16 +23,17 @@ struct ReportOptions : MeasureOptions {
 /// Whether this build holds the front end. Building that needs Node.
 bool has_front_end();
 
-/// What was left out of its figures, tables and packings is in MeasureOutcome.
+/// A page. MeasureOutcome has what was left out of its figures, tables and packings.
 struct Report : MeasureOutcome {
   /// The whole page: markup, style, data and, if it is interactive, the front end. Texts from a
   /// store or a file are escaped.
   std::string html;
   bool interactive = false;
-  std::size_t experiments = 0, figures = 0, stages = 0;  ///< that it shows
-  std::size_t packings = 0, checkpoints = 0;             ///< runs in 3D, and their checkpoints
-  std::set<std::string> undrawn;  ///< which drawings failed and why, one line each
-  std::set<std::string> notes;    ///< about runs, figures and tables, one line each
+  std::size_t experiments = 0, figures = 0, stages = 0;  ///< in the page
+  std::size_t packings = 0, checkpoints = 0;  ///< runs shown in 3D, and their checkpoints
+  std::set<std::string> undrawn;              ///< which drawings failed and why, one line each
+  std::set<std::string> problems;  ///< figures for which `figures` ends with code 2, one line each
+  std::set<std::string> notes;     ///< about runs, figures and tables, one line each
 };
 
 /// The same store and options give the same bytes with the same program (drawings also need the

@@ -180,5 +180,16 @@ TEST_F(CommandLineLineage, WritesAReportAndChangesNothingElse) {
   expect(4, {"report", "--out", "out/report.html"}, {"left out: "});
 }
 
+TEST_F(CommandLineLineage, AReportEndsWithTheCodeOfTheFiguresThatItLeavesOut) {
+  std::string averaged = renamed(tiny_manifest("  cycles: 1\n", kBothFluids), "averaged");
+  averaged.replace(averaged.find("[S2]"), 4, "[S7]");
+  expect(0, {"run", write("averaged.yaml", averaged), "-q"});
+  expect(2, {"figures", "--out", "out"}, {"S7"});
+  expect(2, {"report", "--out", "out/report.html"}, {"figure averaged/S7: "});
+  EXPECT_EQ(
+      json({"report", "--experiment", "tiny", "--out", "out/tiny.html", "--json"})["problems"],
+      nlohmann::json::array());
+}
+
 }  // namespace
 }  // namespace shearcell::test

@@ -468,8 +468,51 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
     known.rows = {{1.0, 2.0}};
     return FigureResult{{none, unknown, known}, {}};
   };
-  EXPECT_EQ(compute_figure(store_, made_up, {}).empty,
-            (std::vector<std::string>{"none", "unknown"}));
+  const ComputedFigure figure = compute_figure(store_, made_up, {});
+  EXPECT_EQ(figure.empty, (std::vector<std::string>{"none", "unknown"}));
+  EXPECT_EQ(figure.why_empty,
+            "Nothing is drawn in none, unknown: no run has the values that it shows.");
+  EXPECT_TRUE(has(figure.caption, figure.why_empty));
+}
+
+TEST_F(DrawFigure, SaysWhyAFigureOfLaterCyclesIsEmpty) {
+  compute(
+      store_,
+      tiny_manifest("", "plots: [{name: late, y: phi, x: cycle, cycles: [7, 9], show: traces}]\n"));
+  const ComputedFigure late = draw("out", "late");
+  EXPECT_EQ(late.why_empty,
+            "Nothing is drawn: no run has a checkpoint of the cycles that it shows.");
+  EXPECT_TRUE(has(late.notes.at(0), "left out: 1 run without a checkpoint in cycles 7 to 9"));
+}
+
+// A store of an earlier version lists figures and states no plots.
+TEST_F(DrawFigure, SaysWhosePlotsDrewAFigureThatTheManifestOnlyLists) {
+  compute(store_, tiny_manifest("", "plots: [{name: own, y: phi, x: cycle}]\n"));
+  draw("out", "S2");
+  draw("out", "own");
+  const auto plots = [&](const FigureRecord& record) {
+    return figure_lineage(store_, record).plots;
+  };
+  const std::vector<FigureRecord> records = figure_records(store_);
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_EQ(plots(records[0]), "drawn by the plots of shearcell 0.1.0; the manifest lists S2 only");
+  EXPECT_EQ(plots(records[1]), "");
+  EXPECT_EQ(to_json(figure_lineage(store_, records[0])).at("plots"), plots(records[0]));
+  EXPECT_TRUE(has(contents("out").at("S2.lineage.json"), plots(records[0])));
+}
+
+// Another program may register a newer version while figures are drawn.
+TEST_F(DrawFigure, TakesAllFiguresOfACommandFromOneReadingOfTheManifests) {
+  compute(store_, tiny_manifest("", "seeds: 2\nplots: [{name: own, y: phi, x: cycle}]\n"));
+  const std::vector<WantedFigure> wanted = wanted_figures(store_).figures;
+  ASSERT_EQ(wanted.size(), 3U) << "S2, own and table1";
+  const Manifest longer = parse_manifest(tiny_manifest("", "seeds: 5\n"), "tiny.yaml");
+  store_.register_manifest(longer.text, "tiny.yaml",
+                           {{"experiment", "tiny"}, {"question", ""}, {"figures", {"S2"}}});
+  EXPECT_EQ(collect_runs(store_, wanted[0], {}).seeds.size(), 2U);
+  EXPECT_EQ(collect_runs(store_, wanted[1], {}).seeds.size(), 2U);
+  EXPECT_EQ(wanted[0].manifests, wanted[1].manifests);
+  EXPECT_EQ(wanted[0].manifests->front().planned.size(), 1U) << "of its only scale, once";
 }
 
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {

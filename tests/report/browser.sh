@@ -19,4 +19,9 @@ CHROMIUM=${CHROMIUM:-$(command -v chromium || true)}
 [ -d "$front_end/node_modules/playwright-core" ] || skip "npm did not install playwright-core"
 export CHROMIUM
 
-node tests/report/browser.mjs "$front_end" "$folder/report.html" "$folder/screenshots" "$@"
+code=0
+node tests/report/browser.mjs "$front_end" "$folder/report.html" "$folder/screenshots" "$@" || code=1
+if [ $# -eq 0 ]; then
+  node tests/report/browser.mjs "$front_end" "$folder/many.html" "$folder/screenshots" || code=1
+fi
+exit $code

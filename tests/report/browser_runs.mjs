@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of the tables of runs, of two variants side by side, and of the workflow.
 import {join} from "node:path";
-import {chartsOfVariants} from "../../experiments/report/web/src/charts.js";
+import {chartsOfVariants, variantLooks} from "../../experiments/report/web/src/charts.js";
+import {readFilter} from "../../experiments/report/web/src/filter.js";
 
 // The first table with more than one run, as the page shows it.
 async function openTable(page) {
@@ -207,9 +208,54 @@ export function runChecks({open, expect, shots}) {
     async styles() {
       const runs = Array.from({length: 20}, (_, k) => ({variant: "still", seed: k + 1, cycle: [0], phi: [0.6],
         crystalline_percent: [0]}));
-      const {series} = chartsOfVariants([{runs}, {runs}])[0].chart;
+      const {series} = chartsOfVariants([{runs, colour: "#0072b2"}, {runs, colour: "#d55e00"}])[0].chart;
       const looks = new Set(series.map(({colour, point, dashed}) => `${colour} ${point} ${dashed}`));
       expect(looks.size === 40, `styles: ${looks.size} of 40 curves`);
+      const few = runs.slice(0, 6);
+      const alike = chartsOfVariants([{runs: few, colour: "#000000"}, {runs: few, colour: "#000000"}])[0].chart.series;
+      expect(new Set(alike.map(({point, dashed}) => `${point} ${dashed}`)).size === 12, "styles: one colour, equal markers");
+    },
+
+    // A variant has the colour of its curve, however the curve states its values; others get colours that are free.
+    async variants() {
+      const columns = [{key: "walls"}, {key: "pressure_Pa"}];
+      const rows = [["rough", 700], ["smooth", 700], ["smooth", 954], [null, 1e3]];
+      const runs = rows.map(([walls, pressure]) => ({variant: `${walls} ${pressure}`}));
+      const charts = [{series: [{of: "all", colour: "#111111"}, {of: "walls=rough", colour: "#000000"},
+        {of: "pressure_Pa=954.0;walls=smooth", colour: "#0072b2"}, {colour: "#222222"}]}];
+      const lookOf = variantLooks({columns, rows, runs}, charts);
+      const colours = runs.map((run) => lookOf(run).colour);
+      expect(colours[0] === "#000000" && colours[2] === "#0072b2", `variants: ${colours}`);
+      expect(new Set(colours).size === 4, `variants: ${colours}`);
+    },
+
+    // Each line: a filter, the rows that pass, and what the page says of it.
+    async filters() {
+      const columns = [
+        {key: "seed", symbol: "", values: [1, 2, 3]}, {key: "phi", symbol: "ϕ", values: [0.61, 0.64321, null]},
+        {key: "walls", symbol: "", values: ["rough", "smooth", "rough"]},
+        {key: "variant", symbol: "", values: ["low P", "P=954 Pa, walls=smooth", "x"]}
+      ];
+      const words = ["aa low p rough", "bb smooth", "cc rough"];
+      const keys = /Keys: seed, phi, walls, variant\./;
+      for (const [text, rows, problem] of [
+        ["", "0,1,2"], [",", "0,1,2"], ["walls!=rough", "1"], ["walls≠rough", "1"], ["seed=1,3", "0,2"], ["seed=1, 3", "0,2"],
+        ["seed!=1,3", "1"], ["walls=rough,phi>0.6", "0"], ["walls = rough, phi > 0.6", "0"], ["walls=rough phi>0.6", "0"],
+        ["phi=0.6432", "1"], ["PHI>=0.62", "1"], ["ϕ≥0.62", "1"], ["seed==2", "1"], ["seed<>2", "0,2"], ['variant="low P"', "0"],
+        ['variant="P=954 Pa, walls=smooth"', "1"], ["aa,bb", "0,1"], ["phi!=0.61", "1,2"],
+        ["phii>0.6", "0,1,2", /There is no key 'phii'\. Did you mean phi\?/], ["phii>0.6 seed=1", "0", keys],
+        ["wals=rough", "0,1,2", /Did you mean walls\?/], ["zzzzzz=1", "0,1,2", keys],
+        ["phi>abc", "0,1,2", /phi is a number, and 'abc' is none/], ["phi=", "0,1,2", /lacks a value/],
+        ["walls<rough", "0,1,2", /walls is a text: compare it with = or !=/], ["phi>0.6,0.7", "0,1,2", /takes one number/],
+        ["seed=99", "", /No run has seed = 99\. It is 1, 2, 3\./], ["seed=1,99", "0", /No run has seed = 99/],
+        ["nothing", "", /No run has the text 'nothing'/], ["nothing", "", keys], ["!=", "", keys], ['seed="1', "0"]
+      ]) {
+        const {passes, problems} = readFilter(text, columns, words);
+        const found = [0, 1, 2].filter(passes).join();
+        expect(found === rows, `filters: '${text}' passes ${found}, not ${rows}`);
+        const said = problems.join(" ");
+        expect(problem ? problem.test(said) : said === "", `filters: '${text}' says '${said}'`);
+      }
     },
 
     async workflow() {

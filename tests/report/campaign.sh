@@ -1,8 +1,9 @@
 #!/bin/sh
-# Runs two cycles of every manifest at scale smoke, and one whose texts are hostile, and writes two reports:
+# Runs two cycles of every manifest at scale smoke, one manifest whose texts are hostile, and one with 105 runs, and
+# writes three reports:
 #   sh tests/report/campaign.sh PROGRAM FOLDER
-# report.html has the experiments that differ in what a page shows; browser.sh opens it for each of its checks. all.html
-# has all experiments. Both stay in FOLDER, with the store and the log.
+# report.html has the experiments that differ in what a page shows, many.html the 105 runs; browser.sh opens both.
+# all.html has all experiments. The reports stay in FOLDER, with the stores and the log.
 set -eu
 program=$1 folder=$2
 cd "$(dirname "$0")/../.."
@@ -13,7 +14,7 @@ run() {
   "$program" run "$@" --scale smoke --store "$folder/store" >/dev/null 2>>"$folder/run.log"
 }
 
-# Texts that would be markup if they were let.
+# Texts that would be markup if they were not escaped.
 hostile="$folder/<img src=x onerror=spoiled=true>.yaml"
 cat >"$hostile" <<'MANIFEST'
 # </pre></script><script>spoiled = true</script><!-- <script>
@@ -33,6 +34,9 @@ shift 2  # the arguments of this script
 run "$@" --cycles 2
 run "$hostile"
 "$program" report --scale smoke --store "$folder/store" --out "$folder/report.html"
+
+"$program" run tests/report/many.yaml --store "$folder/many" >/dev/null 2>>"$folder/run.log"
+"$program" report --store "$folder/many" --out "$folder/many.html" 2>>"$folder/run.log"
 
 run experiments/*.yaml --cycles 2
 "$program" report --scale smoke --store "$folder/store" --out "$folder/all.html"

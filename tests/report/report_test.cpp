@@ -9,7 +9,9 @@
 #include <set>
 
 #include "analysis/measures.hpp"
+#include "experiments/figures/draw.hpp"
 #include "experiments/figures/run_table.hpp"
+#include "experiments/report/html.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "tests/experiments/temporary_store.hpp"
@@ -91,6 +93,63 @@ TEST_F(ReportOfRuns, HoldsQuestionVerdictRunsLineageAndNumbers) {
   }
 }
 
+TEST_F(ReportOfRuns, HasTheCaptionOfEachFigure) {
+  const ComputedFigure drawn =
+      compute_figure(store_, wanted_figures(store_, {"S2"}).figures.at(0), {});
+  EXPECT_TRUE(has(drawn.caption, "Figure S2. ")) << drawn.caption;
+  EXPECT_TRUE(has(drawn.caption, "Experiment tiny, scale base.")) << drawn.caption;
+  for (const std::string& html : {make(), make(drawings())}) {
+    EXPECT_TRUE(has(html, "<p class=\"caption\">" + escape_html(drawn.caption) + "</p>"));
+    EXPECT_EQ(count(html, "<figcaption>(a) S2a"), 1U) << "the caption names panels by letters";
+  }
+}
+
+TEST_F(ReportOf, SaysWhyAFigureOrAPlotIsEmpty) {
+  compute(store_,
+          tiny_manifest("",
+                        "plots: [{name: late, y: phi, x: cycle, cycles: [7, 9], show: traces},\n"
+                        "        {name: zero, y: crystalline_percent, x: cycle, log: y}]\n"));
+  const std::string html = make();
+  EXPECT_EQ(count(html, "Nothing is drawn: no run has a checkpoint of the cycles that it shows."),
+            1U);
+  const std::string why = "Nothing is drawn in zero: no run has the values that it shows.";
+  EXPECT_TRUE(has(html, why));
+  if (!has_front_end()) return;
+  EXPECT_EQ(data_of(html)["charts"]["tiny.zero"]["empty"], why);
+}
+
+TEST_F(ReportOfRuns, SaysWhosePlotsDrawAListedFigure) {
+  EXPECT_EQ(count(make(), "the manifest lists S2 only</dd>"), 1U);
+}
+
+// `figures` ends with code 2 for these, so the report must not end with 0.
+TEST_F(ReportOfRuns, ReportsFiguresThatCannotBeMade) {
+  EXPECT_TRUE(report().problems.empty());
+  compute(store_,
+          "experiment: averaged\nquestion: q\nfigures: [S7]\nbase:\n  grains: 300\n"
+          "  period_s: 1\n  steps_per_cycle: 10000\n  settle_time_step_s: 1.0e-4\n"
+          "  cycles: 2\n" +
+              kBothFluids);
+  const Report made = report();
+  ASSERT_EQ(made.problems.size(), 1U);
+  EXPECT_TRUE(made.problems.begin()->starts_with("figure averaged/S7: ")) << *made.problems.begin();
+  EXPECT_THROW(compute_figure(store_, wanted_figures(store_, {"S7"}).figures.at(0), {}),
+               UsageError);
+}
+
+// Neither `figures` nor the report fails for a figure whose experiment has no selected run.
+TEST_F(ReportOf, IsCompleteWithoutFiguresThatHaveNoRunYet) {
+  compute(store_, tiny_manifest("", "scales: {short: {}, long: {cycles: 3}}\n"),
+          {.scale = "short"});
+  compute(store_, renamed(tiny_manifest("", "scales: {short: {}, long: {cycles: 3}}\n"), "other"),
+          {.scale = "long"});
+  ReportOptions options;
+  options.runs.scales = {"long"};
+  const Report made = report(options);
+  EXPECT_TRUE(made.problems.empty()) << *made.problems.begin();
+  EXPECT_TRUE(made.notes.contains("left out: experiments without a selected run: tiny"));
+}
+
 TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   if (!has_front_end()) GTEST_SKIP() << "built without Node: there is no front end";
   const nlohmann::json data = data_of(make());
@@ -99,6 +158,7 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   const auto& series = data.at("charts").at("tiny.S2a").at("series");
   ASSERT_EQ(series.size(), 2U);
   EXPECT_EQ(series[0].at("points").size(), 3U) << "cycles 0, 1 and 2";
+  EXPECT_EQ(series[0].at("of"), "fluid=still") << "by which the page gives a variant one colour";
   ASSERT_EQ(data.at("packings").size(), 2U);
   const auto& run = data.at("packings")[0];
   const auto grains = run.at("grains").get<std::size_t>();
@@ -107,6 +167,8 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 13 * grains + 2) / 3 * 4);
   const auto& frame = run.at("frames")[0];
   EXPECT_EQ(frame.at("fields").size(), 6U);
+  EXPECT_TRUE(has(frame.at("facts").dump(), "% of the interior grains crystalline"));
+  EXPECT_TRUE(frame.at("crystalline").is_number());
   EXPECT_EQ(frame.at("profiles").at("phi").size(), frame.at("profiles").at("height").size());
   ASSERT_EQ(data.at("experiments").size(), 1U);
   std::set<std::string> variants;

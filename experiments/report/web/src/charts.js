@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chart descriptions of runs: {id, kind, scale, variant, seed, cycle: [...], phi: [...], ...}, with an
-// array over the checkpoints for each measure (traces_of in experiments/report/page.cpp).
+// Charts of runs, in the form of analysis/chart.hpp. A run is {id, kind, scale, variant, seed, cycle: [...],
+// phi: [...], ...}, with an array over the checkpoints for each measure (traces_of in experiments/report/page.cpp).
 import {italic, plain} from "./dom.js";
 
 const labels = {
@@ -9,16 +9,42 @@ const labels = {
   cycle: {label: [...plain("shear cycle "), ...italic("n")], whole: true}
 };
 const colours = [
-  "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#6b4c2a"
+  "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7a5195", "#6b4c2a"
 ];
 const points = [7, 5, 9, 11, 13, 6, 4, 8, 10, 12];
 const grey = {colour: "#8f98a3", point: 0, dashed: false};
 
-// Of one colour there are twenty styles: ten markers with a solid line, then with a dashed one.
-const styleOf = (colour, point) => ({
-  colour: colours[colour % colours.length], point: points[point % points.length],
-  dashed: Math.floor(point / points.length) % 2 === 1
+// The k-th style of a colour. There are twenty: ten markers with a solid line, then with a dashed line.
+const styleOf = (colour, k) => ({
+  colour, point: points[k % points.length], dashed: Math.floor(k / points.length) % 2 === 1
 });
+
+// The values of a curve: {walls: "rough", pressure_Pa: "954"} of "walls=rough;pressure_Pa=954".
+const valuesOf = (text) => Object.fromEntries(text.split(";").map((pair) => pair.trim().split("="))
+  .filter(([key, value]) => key && value !== undefined));
+
+// Gives each run {colour, k}: the colour of its variant in the figures of the experiment, so that a variant has one
+// colour on the whole page. A variant without a curve gets a colour that no other variant has, as long as there is
+// one. k counts the variants of one colour before this variant.
+export function variantLooks({columns, rows, runs}, charts) {
+  const curves = charts.flatMap(({series}) => series).filter(({of}) => of)
+    .map(({of, colour}) => ({values: Object.entries(valuesOf(of)), colour}))
+    .filter(({values}) => values.length > 0).sort((a, b) => b.values.length - a.values.length);
+  const valueOf = (row, key) => row[columns.findIndex((one) => one.key === key)] ?? null;
+  const same = (value, text) => value !== null && (String(value) === text || (text !== "" && value === Number(text)));
+  const stated = (k) => curves.find(({values}) => values.every(([key, text]) => same(valueOf(rows[k], key), text)))?.colour;
+  const looks = new Map(runs.map((run, k) => [run.variant, {colour: stated(k), k: 0}]));
+  const used = new Set([...looks.values()].map(({colour}) => colour));
+  const free = colours.filter((colour) => !used.has(colour));
+  [...looks.values()].filter(({colour}) => !colour)
+    .forEach((look, k) => (look.colour = (free.length > 0 ? free : colours)[k % (free.length || colours.length)]));
+  const count = new Map();
+  for (const look of looks.values()) {
+    look.k = count.get(look.colour) ?? 0;
+    count.set(look.colour, look.k + 1);
+  }
+  return ({variant}) => looks.get(variant);
+}
 
 // The checkpoints of a stiffening are counted, and have no cycles.
 const axisOf = (key, runs) => ({
@@ -43,24 +69,31 @@ const overCycles = (listFor) => ["phi", "crystalline_percent"].map((key) => ({
     listFor().map((one) => ({...one, points: overCheckpoints(one.run, "cycle", key), line: true})))
 }));
 
-// One run, and behind it the others of its variant.
-export const chartsOfRun = (run, others) => overCycles(() => [
+// One run in the colour of its variant, and behind it the other runs of the variant.
+export const chartsOfRun = (run, others, colour) => overCycles(() => [
   ...others.map((one, k) => ({run: one, style: grey, title: k === 0 ? "other seeds" : ""})),
-  {run, style: styleOf(0, 0), title: `seed ${run.seed}`}
+  {run, style: styleOf(colour, 0), title: `seed ${run.seed}`}
 ]);
 
-// Every seed of one or two variants: a colour for each variant, a marker for each seed.
-export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(({runs}, v) =>
-  runs.map((run, k) => ({run, style: styleOf(v, k), title: `${["first", "second"][v]}, seed ${run.seed}`}))));
+// Every seed of one or two variants, each with its colour; a marker for each seed. Where both variants have one
+// colour, the markers of the second one are those that the first one leaves.
+export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(({runs, colour}, v) => {
+  const first = v > 0 && colour === variants[0].colour ? variants[0].runs.length : 0;
+  return runs.map((run, k) =>
+    ({run, style: styleOf(colour, first + k), title: `${["first", "second"][v]}, seed ${run.seed}`}));
+}));
 
-// One measure against another: over the checkpoints of each run where they have both, else at the ends
-// of the runs. `rows`: {run, value(key)}. A colour for each variant, another marker from the ninth on.
-export function chartOfMeasures(rows, x, y) {
+// One measure against another. If the runs have both at each checkpoint: a curve for each run; else a point for the
+// end of each run. `rows`: {run, value(key)}. Each variant has its colour, and a marker of its own among the variants
+// of that colour.
+export function chartOfMeasures(rows, x, y, lookOf) {
   const line = rows.every(({run}) => !run.cycle || (run[x] && run[y]));
-  const variants = [...Map.groupBy(rows, ({run}) => run.variant)];
-  return chartOf(x, y, variants.flatMap(([variant, own], v) =>
-    own.map(({run, value}, k) => ({
-      run, line, title: k === 0 ? variant : "", style: styleOf(v, Math.floor(v / colours.length)),
-      points: line ? overCheckpoints(run, x, y) : [[value(x), value(y)]]
-    }))));
+  const titled = new Set();
+  return chartOf(x, y, rows.map(({run, value}) => {
+    const {colour, k} = lookOf(run);
+    const title = titled.has(run.variant) ? "" : run.variant;
+    titled.add(run.variant);
+    const points = line ? overCheckpoints(run, x, y) : [[value(x), value(y)]];
+    return {run, line, title, style: styleOf(colour, k), points};
+  }));
 }

@@ -5,13 +5,14 @@ import {addOptions, element, whenNear} from "./dom.js";
 import {addPlots} from "./plot.js";
 import {Viewer} from "./viewer.js";
 
-// Runs that differ in their seed alone.
-function variantsOf(experiments) {
+// The variants of all experiments, each with its runs, which differ in their seed alone, and its colour.
+function variantsOf(experiments, looks) {
   return experiments.flatMap(({experiment, runs: all}) => {
     const scales = new Set(all.map((run) => run.scale));
     const nameOf = ({variant, scale}) => scales.size > 1 ? `${variant} (${scale})` : variant;
     const variants = Map.groupBy(all.filter(({cycle}) => cycle), nameOf);
-    return [...variants].map(([name, runs]) => ({experiment, name, runs}));
+    return [...variants].map(([name, runs]) =>
+      ({experiment, name, runs, colour: looks.get(experiment)(runs[0]).colour}));
   });
 }
 
@@ -21,12 +22,13 @@ function factsOf({experiment, name, runs}) {
     if (last.length === 0) return "–";
     return (last.reduce((sum, value) => sum + value, 0) / last.length).toFixed(digits);
   };
-  return `${experiment}, ${name}: ${runs.length} ${runs.length === 1 ? "run" : "runs"}, mean of the last ` +
-    `ϕ ${mean("phi", 4)}, mean of the last percentage ${mean("crystalline_percent", 1)} %`;
+  return `${experiment}, ${name}: ${runs.length} ${runs.length === 1 ? "run" : "runs"}; at their ends on average ` +
+    `ϕ = ${mean("phi", 4)} and ${mean("crystalline_percent", 1)} % of the interior grains crystalline`;
 }
 
-export function addComparison(host, experiments, packings) {
-  const variants = variantsOf(experiments);
+// `looks`: by experiment, what gives the colour of a run's variant (variantLooks in charts.js).
+export function addComparison(host, experiments, packings, looks) {
+  const variants = variantsOf(experiments, looks);
   const panels = element("div", {className: "panels"});
   const [note, view] = [element("p", {className: "small"}), element("div")];
   let viewer = null;

@@ -20,11 +20,11 @@ export const sub = (text) => [[text, "sub"]];
 export const written = (label) =>
   label.map(([text, style]) => ["i", "sub", "sup"].includes(style) ? element(style, {}, text) : text);
 
-// Least and greatest value. (Math.min(...values) fails for some 100,000 values.)
+// The least and the greatest value. (Math.min(...values) fails for some 100,000 values.)
 export const extentOf = (values) =>
   values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 
-// Fills a <select>: an option for each item, valued by its place, in groups.
+// Fills a <select> with an option for each item, in groups. The value of an option is the index of its item.
 export function addOptions(select, items, groupOf, textOf) {
   for (const [label, members] of Map.groupBy(items, groupOf)) {
     const options = members.map((item) => element("option", {value: String(items.indexOf(item))}, textOf(item)));
@@ -48,8 +48,8 @@ export function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-// The choice is kept if the browser allows it for files; else it lasts until the page is closed. What has
-// colours of its own listens to "themechange" of the window.
+// Keeps the reader's choice if the browser allows it for files, else until the page is closed. Parts with colours of
+// their own listen to the event "themechange" of the window.
 export function addThemeSwitch(select) {
   const key = "shearcell-theme";
   const apply = () => {
@@ -73,7 +73,7 @@ export function addThemeSwitch(select) {
   });
 }
 
-// Of an element, as red, green and blue from 0 to 255.
+// The colours of an element, each as red, green and blue from 0 to 255.
 export function coloursOf(probe) {
   const channels = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
   const style = getComputedStyle(probe);

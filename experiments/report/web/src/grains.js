@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes what experiments/report/packings.cpp packed: 16-bit positions and measures of each grain,
-// little-endian, one array after the other. Chooses the colours of grains: structures by the
-// colour-blind safe palette of Okabe and Ito, quantities by viridis.
+// Decodes the frames of experiments/report/packings.cpp and chooses the colours of grains. Structures have
+// colours of Okabe and Ito, which readers with any colour vision can tell apart; quantities have those of viridis.
 import {italic, plain, sub} from "./dom.js";
 
 export const structureNames = ["disordered", "FCC", "HCP"];
@@ -30,7 +29,7 @@ export function decodeFrame(frame, grains, wallGrains) {
   const [phi, q6] = [0, 1].map((k) => Float32Array.from(measure(k), (word) => word / 65535));
   const crystallite = measure(2);  // 0 for none
   const part = (k) => bytes.subarray(6 * all + (6 + k) * grains, 6 * all + (7 + k) * grains);
-  // A byte a grain: a class, or 254 times its share of the range; 255 for unknown.
+  // A byte for each grain: a class, or 254 times its share of the range; 255 if it is unknown.
   const fields = Object.fromEntries(frame.fields.map((field, k) => [field.key, {...field, bytes: part(k + 1)}]));
   const flags = part(0);
   return {
@@ -54,7 +53,7 @@ export function viridis(fraction) {
 }
 
 // How this mode shows grains: `paint` gives the colour of a grain. Its key is [{colour, text}] in
-// `entries`, or a `bar` with {label, low, high}.
+// `entries`, with a `note` on what they count, or a `bar` with {label, low, high}.
 export function lookOf(grains, mode) {
   if (mode === "crystallite") return ofCrystallites(grains.crystallite);
   if (mode === "phi") return ofQuantity(labels.phi, (i) => (grains.phi[i] - 0.55) / 0.19, "0.55", "0.74");
@@ -66,7 +65,7 @@ export function lookOf(grains, mode) {
   const share = (i) => field.bytes[i] === unknown ? null : field.bytes[i] / 254;
   const look = ofQuantity(plain(field.label), share, end(field.low), `${end(field.high)} ${field.unit}`.trim());
   if (field.bytes.some((byte) => byte !== unknown)) return look;
-  return {paint: look.paint, entries: [{colour: classColours[0], text: "no checkpoint a cycle before"}]};
+  return {paint: look.paint, entries: [{colour: classColours[0], text: "unknown: no checkpoint one cycle earlier"}]};
 }
 
 const ofQuantity = (label, share, low, high) => ({
@@ -79,13 +78,14 @@ function ofCrystallites(crystallite) {
   const entries = [...sizes].slice(0, 4).map(([label, count]) =>
     ({colour: colour.get(label), text: count === 1 ? "1 grain" : `${count} grains`}));
   entries.push({colour: classColours[0], text: entries.length > 0 ? "in none" : "no crystallite"});
-  return {paint: (i) => colour.get(crystallite[i]) ?? classColours[0], entries};
+  return {paint: (i) => colour.get(crystallite[i]) ?? classColours[0], entries, note: "of interior grains"};
 }
 
+// The key counts all grains; the percentage crystalline counts interior grains only.
 function ofClasses(values, names) {
   const counts = names.map(() => 0);
   for (const value of values) ++counts[value];
   const order = [...names.keys()].slice(1).concat(0);
   const entries = order.map((s) => ({colour: classColours[s], text: `${names[s]} ${counts[s]}`}));
-  return {paint: (i) => classColours[values[i]], entries};
+  return {paint: (i) => classColours[values[i]], entries, note: `of all ${values.length} grains`};
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adds plots, packings, comparisons and downloads to the page; everything else works without scripts.
+// Adds plots, packings, comparisons and downloads to the page. All other parts of the page work without scripts.
+import {variantLooks} from "./charts.js";
 import {addComparison} from "./compare.js";
 import {addThemeSwitch, save, whenNear} from "./dom.js";
 import {Plot} from "./plot.js";
 import {RunTable} from "./runs.js";
-import {Viewer} from "./viewer.js";
+import {showPacking, Viewer} from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("report-data").textContent);
 
@@ -35,19 +36,33 @@ function addViewer() {
   }
 }
 
+// Shows the most crystalline final state at the top of the page.
+function addOpening() {
+  if (data.packings.length === 0) return;
+  const host = document.getElementById("opening");
+  const end = ({frames}) => frames.at(-1).crystalline;
+  const best = data.packings.reduce((one, other) => end(other) > end(one) ? other : one);
+  host.hidden = false;
+  showPacking(host.querySelector(".packing"), best);
+  host.querySelector("[data-part=name]").textContent = `${best.experiment}: ${best.label}`;
+}
+
+const looks = new Map(data.experiments.map((one) => [one.experiment, variantLooks(one, Object.entries(data.charts)
+  .filter(([id]) => id.startsWith(`${one.experiment}.`)).map(([, chart]) => chart))]));
 const theme = document.getElementById("theme");
 theme.parentElement.hidden = false;
 addThemeSwitch(theme);
+addOpening();
 addPlots();
 addViewer();
 for (const host of document.querySelectorAll("[data-runs]")) {
-  new RunTable(host, data.experiments.find(({experiment}) => experiment === host.dataset.runs));
+  new RunTable(host, data.experiments.find(({experiment}) => experiment === host.dataset.runs), looks.get(host.dataset.runs));
 }
 if (data.experiments.some(({runs}) => runs.some((run) => run.cycle))) {
   const section = document.getElementById("compare");
   section.hidden = false;
   whenNear(section, () =>
-    addComparison(section.querySelector(".comparison"), data.experiments, data.packings));
+    addComparison(section.querySelector(".comparison"), data.experiments, data.packings, looks));
 }
 for (const button of document.querySelectorAll("[data-csv]")) {
   button.hidden = false;
@@ -64,3 +79,6 @@ function openTarget() {
 }
 window.addEventListener("hashchange", openTarget);
 openTarget();
+
+// Until here, where JavaScript has run, the page says that plots need it.
+for (const sentence of document.querySelectorAll(".unscripted")) sentence.remove();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shows the chart descriptions of analysis/chart.hpp with Plotly.
 import Plotly from "plotly.js-basic-dist-min";
-import {coloursOf, element, extentOf} from "./dom.js";
+import {coloursOf, element, extentOf, plain, save} from "./dom.js";
 
 const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's 4 to 13
 const font = {family: '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif', size: 13};
@@ -23,8 +23,8 @@ function onDark(colour) {
   return `rgb(${channels.map((c) => Math.round(c + (235 - c) * mix)).join()})`;
 }
 
-// The series whose entry of the legend shows and hides this one: itself, the last one before it with
-// its colour, or else the first one after it.
+// The index of the series whose entry of the legend shows and hides this series: its own if it has a title, else
+// that of the last titled series of its colour before it, or of the first one after it.
 function ownerOf(series, index) {
   const fits = (one, at) => one.title.length > 0 && (at === index || one.colour === series[index].colour);
   const before = series.slice(0, index + 1).findLastIndex(fits);
@@ -114,8 +114,8 @@ function layoutOf(chart, width, color) {
     yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
     shapes: chart.lines.map(shape), uirevision: "kept",
     dragmode: window.matchMedia("(pointer: coarse)").matches ? false : "zoom",  // a finger scrolls the page
-    annotations: points.length > 0 ? [] : [{
-      text: "no data yet", xref: "paper", yref: "paper", x: 0.5, y: 0.5, showarrow: false
+    annotations: points.length > 0 && !chart.empty ? [] : [{
+      text: broken(plain(chart.empty ?? "no data yet"), lettersIn(width - left - right)), xref: "paper", yref: "paper", x: 0.5, y: 0.5, showarrow: false
     }]
   };
 }
@@ -147,13 +147,13 @@ export class Plot {
     this.width = this.fits();
     if (this.width < 50) return;
     const {background, ink} = coloursOf(document.body);
-    const save = {
+    const saving = {
       name: "Save as SVG", title: "Save as SVG", icon: Plotly.Icons.camera, click: () => this.saveSvg()
     };
     Plotly.react(this.canvas, tracesOf(this.chart, this.width, background[0] < 128),
       layoutOf(this.chart, this.width, `rgb(${ink.join()})`), {
         displaylogo: false, displayModeBar: true, doubleClick: "reset",
-        modeBarButtons: [["zoomIn2d", "zoomOut2d", "resetScale2d", save]]
+        modeBarButtons: [["zoomIn2d", "zoomOut2d", "resetScale2d", saving]]
       }).then(() => this.nameEntries());
   }
 
@@ -172,9 +172,14 @@ export class Plot {
     const {data, layout} = this.canvas;
     const onPaper = layoutOf(this.chart, this.width, "#1a1a1a");
     for (const axis of ["xaxis", "yaxis"]) onPaper[axis].range = layout[axis].range;
-    Plotly.downloadImage({
+    Plotly.toImage({
       data: tracesOf(this.chart, this.width, false).map((trace, k) => ({...trace, visible: data[k].visible})), layout: onPaper
-    }, {format: "svg", filename: this.name, width: onPaper.width, height: onPaper.height});
+    }, {format: "svg", width: onPaper.width, height: onPaper.height}).then((url) => {
+      // Plotly writes powers of ten on a logarithmic axis larger than other labels.
+      const text = decodeURIComponent(url.slice(url.indexOf(",") + 1));
+      const even = text.replaceAll(`font-size: ${1.25 * font.size}px`, `font-size: ${font.size}px`);
+      save(`${this.name}.svg`, new Blob([even], {type: "image/svg+xml"}));
+    });
   }
 
   key(event) {

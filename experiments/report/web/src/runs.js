@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes an experiment's table of runs sortable and filterable, folds it by variant, adds columns, shows a
-// run's trace below its row, and plots one measure against another.
+// An experiment's table of runs: sorts and filters it, folds it by variant, adds columns, shows the trace of a
+// run below its row, and plots one measure against another.
 import {chartOfMeasures, chartsOfRun} from "./charts.js";
 import {element} from "./dom.js";
+import {readFilter} from "./filter.js";
 import {addPlots, Plot} from "./plot.js";
 
 const foldedFrom = 20;  // rows
-
-// A word of the filter: "phi>0.64", "A=0.06", "fluid=still", or a text that the row has somewhere.
-const comparison = /^([a-z0-9_]+)(<=|>=|=|<|>)(.+)$/i;
-const compare = {
-  "<": (a, b) => a < b, ">": (a, b) => a > b, "<=": (a, b) => a <= b, ">=": (a, b) => a >= b,
-  "=": (a, b) => a === b || (typeof a === "number" && Number(a.toPrecision(4)) === b)
-};
 
 const shortText = (value) => value === null ? "–"
   : Number.isFinite(value) ? String(Number(value.toPrecision(4))) : String(value);
@@ -29,8 +23,10 @@ const opener = (label, action) => {
 };
 
 export class RunTable {
-  constructor(host, {columns, rows, runs}) {
+  // `lookOf` gives the colour and the marker of a run's variant.
+  constructor(host, {columns, rows, runs}, lookOf) {
     this.columns = columns;
+    this.lookOf = lookOf;
     this.table = host.querySelector("table");
     this.heads = this.table.tHead.rows[0];
     this.runs = runs;
@@ -68,9 +64,10 @@ export class RunTable {
   addControls(host) {
     const variants = new Set(this.runs.map((run) => run.variant)).size;
     this.input = element("input", {
-      type: "search", placeholder: "fluid=still phi>0.63",
-      title: `Words that a row has, or conditions on ${this.columns.map(({key}) => key).join(", ")}`
+      type: "search", placeholder: "seed=1,2 phi>0.63 state!=failed",
+      title: `Texts of a row, or conditions on ${this.columns.map(({key}) => key).join(", ")}`
     });
+    this.problem = element("p", {className: "warning", role: "status", hidden: true});
     this.fold = element("input", {
       type: "checkbox", checked: this.rows.length > foldedFrom && variants < this.rows.length
     });
@@ -78,7 +75,7 @@ export class RunTable {
     for (const part of [this.input, this.fold]) part.addEventListener("input", () => this.arrange());
     host.prepend(element("div", {className: "filter"}, element("label", {}, "Filter ", this.input),
       element("label", {hidden: variants === this.rows.length}, this.fold, " fold by variant"), this.count,
-      this.columnChoice(), this.plotChoice()));
+      this.columnChoice(), this.plotChoice(), this.problem));
   }
 
   known() {
@@ -132,15 +129,18 @@ export class RunTable {
 
   drawMeasures() {
     if (!this.plotPart.open) return;
-    const chart = chartOfMeasures(this.shown, this.x.value, this.y.value);
+    const chart = chartOfMeasures(this.shown, this.x.value, this.y.value, this.lookOf);
     if (this.plot) this.plot.show(chart);
     else this.plot = new Plot(this.plotHost, chart, "measures");
   }
 
   // Shows the rows that fit the filter, in order, below a line for each variant if they are folded.
   arrange() {
-    const words = this.input.value.trim().split(/\s+/).filter(Boolean);
-    this.shown = this.sorted(this.rows.filter((row) => words.every((word) => this.fits(row, word))));
+    const columns = this.columns.map(({key, symbol}, k) => ({key, symbol, values: this.rows.map(({values}) => values[k])}));
+    const {passes, problems} = readFilter(this.input.value, columns, this.rows.map(({words}) => words));
+    this.problem.textContent = problems.join(" ");
+    this.problem.hidden = problems.length === 0;
+    this.shown = this.sorted(this.rows.filter((_, k) => passes(k)));
     this.count.textContent = `${this.shown.length} of ${this.rows.length} runs`;
     const variants = Map.groupBy(this.shown, ({run}) => run.variant);
     const bodies = this.fold.checked
@@ -164,17 +164,7 @@ export class RunTable {
     });
   }
 
-  fits(row, word) {
-    const [, name, sign, wanted] = word.match(comparison) ?? [];
-    const column = this.columns.find(({key, symbol}) => name && (key === name || symbol === name));
-    if (!column) return row.words.includes(word.toLowerCase());
-    const value = row.value(column.key);
-    if (value === null) return false;
-    return Number.isFinite(value) && Number.isFinite(Number(wanted)) ? compare[sign](value, Number(wanted))
-      : compare[sign](String(value).toLowerCase(), wanted.toLowerCase());
-  }
-
-  // What the runs of a variant have in common, and the means of their numbers.
+  // The line of a variant: the values that its runs have in common, and the means of their numbers.
   variantLine(name, rows) {
     const label = `${name} (${rows.length} ${rows.length === 1 ? "run" : "runs"})`;
     const button = opener(label, () => {
@@ -183,8 +173,10 @@ export class RunTable {
       return this.open.has(name);
     });
     button.setAttribute("aria-expanded", String(this.open.has(name)));
+    const named = [...this.heads.cells].some((head) => head.dataset.key === "variant" && !head.hidden);
     const cells = [...this.heads.cells].map((head, k) => {
-      if (k === 0) return element("td", {}, button, label);
+      // Where a column names the variant, the first cell does not repeat the name.
+      if (k === 0) return element("td", {className: named ? "brief" : ""}, button, named ? label.slice(name.length + 1) : label);
       const values = rows.map((row) => row.value(head.dataset.key)).filter((value) => value !== null);
       const same = values.every((value) => value === values[0]);
       const mean = head.dataset.key !== "seed" && values.every(Number.isFinite);
@@ -208,7 +200,7 @@ export class RunTable {
       row.body.append(row.trace);  // plots need their width
       const {run} = row;
       addPlots(panels, chartsOfRun(run, this.runs.filter((one) =>
-        one !== run && one.scale === run.scale && one.variant === run.variant)));
+        one !== run && one.scale === run.scale && one.variant === run.variant), this.lookOf(run).colour));
       row.trace.addEventListener("keydown", (event) => {
         if (event.key !== "Escape" || event.target.closest(".canvas:focus")) return;
         button.click();

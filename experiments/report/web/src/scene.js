@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The view of one packing: spheres, the tilted cell, a camera without perspective. It is drawn only
-// when something changes.
+// The view of one packing: spheres, the tilted cell, a camera without perspective. The picture is drawn only when
+// something changes.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, Color, EdgesGeometry, GLSL3, InstancedBufferAttribute,
   InstancedBufferGeometry, LineBasicMaterial, LineSegments, Matrix4, Mesh, OrthographicCamera, Raycaster,
@@ -94,7 +94,7 @@ export class PackingScene {
     if (!keepView) this.resetView();
   }
 
-  // x, y, z and radius of each sphere, and three bytes of its colour. One of radius 0 is not seen.
+  // x, y, z and radius of each sphere, and three bytes of its colour. A sphere of radius 0 is invisible.
   setSpheres(spheres, colours) {
     const geometry = new InstancedBufferGeometry();
     const corners = new Float32Array([-1, -1, 1, -1, 1, 1, -1, -1, 1, 1, -1, 1]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The packing viewer: one packing or two side by side, with one set of controls for both. The template
-// elements viewer-parts and pane-parts (page.html) have its parts, found by `data-part`.
+// The viewer of packings: one packing, or two side by side with one set of controls. The template elements
+// viewer-parts and pane-parts (page.html) hold its parts, which are found by `data-part`.
 import {addOptions, coloursOf, element, extentOf, plain, save, written} from "./dom.js";
 import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
 import {Plot} from "./plot.js";
@@ -79,7 +79,7 @@ class Pane {
     this.showProfile(choices.profile, choices.profileName);
   }
 
-  showKey({entries, bar}) {
+  showKey({entries, note, bar}) {
     const css = (colour) => `rgb(${colour.join()})`;
     const coloured = (className, background) => element("i", {className, style: `background: ${background}`});
     if (bar) {
@@ -89,7 +89,7 @@ class Pane {
       return;
     }
     this.part("key").replaceChildren(...entries.map(({colour, text}) =>
-      element("span", {}, coloured("dot", css(colour)), text)));
+      element("span", {}, coloured("dot", css(colour)), text)), element("span", {}, note));
   }
 
   // A measure of layers against their height, with the same range for all checkpoints of the run.
@@ -145,6 +145,24 @@ class Pane {
   }
 }
 
+// Shows the last checkpoint of a packing, without controls. If the browser has no WebGL 2, nothing is shown.
+export function showPacking(host, packing) {
+  const last = packing.frames.at(-1);
+  try {
+    const pane = new Pane(host, () => {});
+    const colour = () => pane.scene.setColours(coloursOf(pane.part("stage")));
+    window.addEventListener("themechange", colour);
+    colour();
+    pane.show(packing);
+    // Small disordered grains leave the view free on the crystallites, if there are any.
+    pane.showCycle(last.cycle, {
+      colour: "class", profile: "none", disordered: last.crystalline > 5 ? 0.17 : 0.5, walls: true, box: true, axis: "none"
+    });
+  } catch {
+    host.hidden = true;
+  }
+}
+
 export class Viewer {
   constructor(host, packings, count) {
     this.packings = packings;
@@ -173,7 +191,7 @@ export class Viewer {
     for (const name of looks) on(name, "input", () => this.apply());
     on("reset", "click", () => this.shown().forEach((pane) => pane.scene.resetView()));
     on("save", "click", () => this.shown().forEach((pane) => {
-      pane.scene.drawNow();  // what was drawn is lost once the browser has shown it
+      pane.scene.drawNow();  // the browser keeps no picture that it has shown
       pane.canvas.toBlob((blob) => save(`${pane.packing.id.slice(0, 8)}.png`, blob));
     }));
     const recolour = () => this.panes.forEach((pane) => pane.scene.setColours(coloursOf(pane.part("stage"))));
@@ -186,7 +204,7 @@ export class Viewer {
     return this.panes.filter((pane) => !pane.host.hidden);
   }
 
-  // One packing for each pane; a pane without one is not shown.
+  // Shows one packing in each pane. A pane without a packing is hidden.
   showRuns(packings) {
     this.play(false);
     this.panes.forEach((pane, k) => {
@@ -235,7 +253,7 @@ export class Viewer {
     this.part("cut-text").textContent = place === null ? "" : `${choices.axis} = ${place.toFixed(1)} d`;
   }
 
-  // The other pane is seen from the same side.
+  // Shows the other pane from the same side.
   follow(from) {
     for (const pane of this.shown()) if (pane !== from && pane.stored) pane.scene.lookAs(from.scene);
   }
