@@ -100,13 +100,13 @@ std::string number_remedy(const Field& field, const std::string& text) {
   if (parse_real(plain)) {
     return fmt::format("Write {}: a number has a decimal point and no separators.", plain);
   }
-  if (parse_real(plain.substr(0, plain.find_last_of("0123456789") + 1))) {
-    return fmt::format("Write the number alone{}.",
-                       has_unit(field) ? ", in " + std::string(field.unit) : "");
-  }
   if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
     const double value = evaluator_of(text)({});
     if (field.range.contains(value)) return fmt::format("Write the result, {:.12g}.", value);
+  }
+  if (parse_real(plain.substr(0, plain.find_last_of("0123456789") + 1))) {
+    return fmt::format("Write the number alone{}.",
+                       has_unit(field) ? ", in " + std::string(field.unit) : "");
   }
   return takes(field);
 }
@@ -302,7 +302,7 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
     const std::optional<double> real = parse_real(text);
     if (real && !field.range.contains(*real)) {
       const double radians = *real * std::numbers::pi / 180;
-      const bool degrees = field.unit == "rad" && field.range.contains(radians);
+      const bool degrees = field.unit == "rad" && *real >= 1 && field.range.contains(radians);
       return ValueProblem{
           "is out of range",
           takes(field) +

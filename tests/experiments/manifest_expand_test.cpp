@@ -110,7 +110,7 @@ TEST(Expand, ARangeIsTheListOfItsValues) {
            {"pressure_Pa: {from: 300, to: 4800, count: 5, spacing: log}",
             "pressure_Pa: [300, 600, 1200, 2400, 4800]"},
            {"pressure_Pa: {from: 300, to: 3000, count: 5, spacing: log}",
-            "pressure_Pa: [300, 533.483823031, 948.683298051, 1687.02397456, 3000]"},
+            "pressure_Pa: [300, 533.483823012, 948.683298051, 1687.02397557, 3000]"},
            {"grains: {from: 500, to: 8000, count: 4, spacing: log}",
             "grains: [500, 1260, 3175, 8000]"},
            {"drag_kg_per_s: {from: 0, to: 1.28e-3, count: 2}", "drag_kg_per_s: [0, 1.28e-3]"}}) {
