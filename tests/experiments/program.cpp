@@ -140,13 +140,13 @@ void ProgramTest::campaign(const std::string& manifest, const Arguments& options
 }
 
 std::vector<std::string> ProgramTest::commands() {
-  const std::string help = expect(0, {"--help"}, {"Subcommands:\n"}).out;
-  std::istringstream lines(help.substr(help.find("Subcommands:\n")));
+  const std::string help = expect(0, {"--help"}, {"\nCompute:\n", "\nExamples:\n"}).out;
+  std::istringstream lines(help.substr(help.find("\nCompute:\n") + 1));
   std::vector<std::string> found;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line) && line.starts_with("  ")) {
-    if (line[2] != ' ') found.push_back(line.substr(2, line.find(' ', 2) - 2));
+  for (std::string line; std::getline(lines, line) && line != "Examples:";) {
+    if (line.starts_with("  ") && line[2] != ' ') {
+      found.push_back(line.substr(2, line.find(' ', 2) - 2));
+    }
   }
   EXPECT_GE(found.size(), 20U);
   return found;

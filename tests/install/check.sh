@@ -17,7 +17,7 @@ for file in bin/shearcell share/shearcell/experiments/drag.yaml \
 done
 # A manual page for the program and for each command.
 if command -v help2man > /dev/null; then
-  for page in shearcell $("$folder/prefix/bin/shearcell" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/shearcell-\1/p'); do
+  for page in shearcell $("$folder/prefix/bin/shearcell" --help | sed -n '/^Compute:/,/^Examples:/s/^  \([a-z]\+\)  .*/shearcell-\1/p'); do
     [ -s "$folder/prefix/share/man/man1/$page.1" ] || { echo "not installed: the manual page $page"; exit 1; }
     if command -v groff > /dev/null; then
       [ -z "$(groff -man -Tutf8 -ww -W break -z "$folder/prefix/share/man/man1/$page.1" 2>&1)" ] || { echo "faults in the manual page $page"; exit 1; }
