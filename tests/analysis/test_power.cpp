@@ -284,7 +284,7 @@ TEST(CannotBeDecided, TheClaimsOfFigureCWithTenThousandRuns) {
     const std::vector<GrowthBySize>& packings = counts.begin()->second;
     const auto [low, high] = GrowthCurve(packings).repeated_critical_size(8);
     std::uint32_t decided = 0;
-    constexpr std::uint32_t campaigns = 20;
+    constexpr std::uint32_t campaigns = 10;
     Interval interval;
     for (std::uint32_t campaign = 0; campaign < campaigns; ++campaign) {
       const Estimate ours = size_of_many(packings, campaign);
@@ -305,7 +305,7 @@ TEST(CannotBeDecided, TheClaimsOfFigureCWithTenThousandRuns) {
   ASSERT_EQ(counts.size(), 2U);
   const std::vector<GrowthBySize>& packings = counts.rbegin()->second;
   std::uint32_t decided = 0;
-  constexpr std::uint32_t campaigns = 60;
+  constexpr std::uint32_t campaigns = 40;
   for (std::uint32_t campaign = 0; campaign < campaigns; ++campaign) {
     const Estimate growth =
         ratio(size_of_many(packings, 2 * campaign), size_of_many(packings, 2 * campaign + 1));
