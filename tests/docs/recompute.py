@@ -351,25 +351,45 @@ def check_predictions(results, faults):
 
 
 def nucleation(rows, level):
-    """The exponent of rate = c(amplitude, phi) n^a, and its interval; runs of one packing count as independent."""
+    """The exponent of rate = c(amplitude, phi) n^a, and its interval. If runs share packings, the drop of ln L that the
+    interval allows is multiplied by the variance of the score between packings over its variance between runs."""
     amplitudes = {}
     for row in rows:
         cycles, grains = float(row["cycles"]), float(row["grain_cycles"])
         u = (float(row["phi"]) - 0.646) / 0.002
         amplitudes.setdefault(row["amplitude_rad"], []).append(
-            (math.log(cycles), math.log(grains / cycles), int(row["onsets"]), 1, u, u * u))
+            (math.log(cycles), math.log(grains / cycles), int(row["onsets"]), 1, u, u * u, row["packing"]))
 
     def logarithm(exponent):
         total = 0
         for shares in amplitudes.values():
-            cycles, size, events, *terms = np.array(shares).T
+            cycles, size, events, *terms = np.array([share[:-1] for share in shares]).T
             if events.sum() == 0:
                 continue
             terms = np.array(terms).T
             total += most_likely_rate(events, cycles + exponent * size, terms)[1]
         return total
 
-    return likelihood_interval(logarithm, -30, 30, NormalDist().inv_cdf((1 + level) / 2) ** 2 / 2)
+    def factor(exponent):
+        scores, information = {}, 0
+        for shares in amplitudes.values():
+            cycles, size, events, *terms = np.array([share[:-1] for share in shares]).T
+            if events.sum() == 0:
+                continue
+            terms = np.array(terms).T
+            c, _ = most_likely_rate(events, cycles + exponent * size, terms)
+            expected = np.exp(cycles + exponent * size + terms @ c)
+            curvature = (terms.T * expected) @ terms + np.diag([0, 1 / 9, 4])
+            off = size - terms @ np.linalg.solve(curvature, terms.T @ (expected * size))
+            information += (expected * off * size).sum()
+            for share, score in zip(shares, (events - expected) * off):
+                scores[share[-1]] = scores.get(share[-1], 0) + score
+        return max(1, sum(score**2 for score in scores.values()) / information)
+
+    drop = NormalDist().inv_cdf((1 + level) / 2) ** 2 / 2
+    if len({row["packing"] for row in rows}) < len({(row["group"], row["seed"]) for row in rows}):
+        drop *= factor(highest(logarithm, -30, 30)[0])
+    return likelihood_interval(logarithm, -30, 30, drop)
 
 
 def expected(claim, rows):
