@@ -216,16 +216,22 @@ def spread_between(rows, level):
     return root(between - noise), 0, root((between - f * noise) * (k - 1) / chi)
 
 
-def pooled_difference(rows, level):
-    """The difference of the means of two sides within strata, weighted by n m / (n + m); Welch's degrees of freedom."""
-    weights = total = variance = fourth = 0
+def pooled_strata(rows):
+    """The rows of both sides of each stratum in which both sides have a mean."""
     strata = {}
     for row in rows:
         strata.setdefault(row["stratum"], {"1": [], "2": []})[row["side"]].append(row)
-    for sides in strata.values():
-        groups = [list(by_packing(side).values()) for side in sides.values()]
-        if min(map(len, groups)) < 3 or any(sum(above == 0 for _, above in group) < 2 for group in groups):
-            continue
+    for sides in map(lambda stratum: list(stratum.values()), strata.values()):
+        groups = [list(by_packing(side).values()) for side in sides]
+        if min(map(len, groups)) >= 3 and all(sum(above == 0 for _, above in group) >= 2 for group in groups):
+            yield sides
+
+
+def pooled_difference(rows, level):
+    """The difference of the means of two sides within strata, weighted by n m / (n + m); Welch's degrees of freedom."""
+    weights = total = variance = fourth = 0
+    for sides in pooled_strata(rows):
+        groups = [list(by_packing(side).values()) for side in sides]
         weight = len(groups[0]) * len(groups[1]) / (len(groups[0]) + len(groups[1]))
         weights += weight
         for group, sign in zip(groups, (1, -1)):
@@ -474,7 +480,8 @@ def main():
             if not away <= allowed:
                 found, stated = ("{:.6g}, {:.6g} to {:.6g}".format(*three) for three in (numbers, published))
                 faults.append(f"{path}: {claim['claim']}: {found}, published {stated}")
-            if sum(bool(row.get("above")) for row in rows) != claim.get("censored", 0):
+            used = [row for sides in pooled_strata(rows) for side in sides for row in side] if rows[0].get("stratum") else rows
+            if sum(bool(row.get("above")) for row in used) != claim.get("censored", 0):
                 faults.append(f"{path}: {claim['claim']}: censored rows and their published number differ")
             if ruling(claim, published[1:], len({row["seed"] for row in rows})) != claim["verdict"]:
                 faults.append(f"{path}: {claim['claim']}: {claim['verdict']} does not follow from the interval")
