@@ -185,10 +185,6 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
 /// Nothing for an optional claim without runs.
 std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
   ClaimSides sides = sides_of(claim, frame.runs);
-  const ClaimSides planned = sides_of(claim, frame.pending);
-  for (std::size_t k = 0; k < 2; ++k) {
-    if (sides.runs[k].empty() && !planned.runs[k].empty()) sides.names[k] = planned.names[k];
-  }
   if (claim.optional && sides.lacks_one) return {};
   const ClaimSides planned = sides_of(claim, frame.pending);
   for (std::size_t k = 0; k < 2; ++k) {  // a side without runs has the name of the planned ones

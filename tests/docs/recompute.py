@@ -216,16 +216,22 @@ def spread_between(rows, level):
     return root(between - noise), 0, root((between - f * noise) * (k - 1) / chi)
 
 
-def pooled_difference(rows, level):
-    """The difference of the means of two sides within strata, weighted by n m / (n + m); Welch's degrees of freedom."""
-    weights = total = variance = fourth = 0
+def pooled_strata(rows):
+    """The rows of both sides of each stratum in which both sides have a mean."""
     strata = {}
     for row in rows:
         strata.setdefault(row["stratum"], {"1": [], "2": []})[row["side"]].append(row)
-    for sides in strata.values():
-        groups = [list(by_packing(side).values()) for side in sides.values()]
-        if min(map(len, groups)) < 3 or any(sum(above == 0 for _, above in group) < 2 for group in groups):
-            continue
+    for sides in map(lambda stratum: list(stratum.values()), strata.values()):
+        groups = [list(by_packing(side).values()) for side in sides]
+        if min(map(len, groups)) >= 3 and all(sum(above == 0 for _, above in group) >= 2 for group in groups):
+            yield sides
+
+
+def pooled_difference(rows, level):
+    """The difference of the means of two sides within strata, weighted by n m / (n + m); Welch's degrees of freedom."""
+    weights = total = variance = fourth = 0
+    for sides in pooled_strata(rows):
+        groups = [list(by_packing(side).values()) for side in sides]
         weight = len(groups[0]) * len(groups[1]) / (len(groups[0]) + len(groups[1]))
         weights += weight
         for group, sign in zip(groups, (1, -1)):
@@ -351,25 +357,45 @@ def check_predictions(results, faults):
 
 
 def nucleation(rows, level):
-    """The exponent of rate = c(amplitude, phi) n^a, and its interval; runs of one packing count as independent."""
+    """The exponent of rate = c(amplitude, phi) n^a, and its interval. If runs share packings, the drop of ln L that the
+    interval allows is multiplied by the variance of the score between packings over its variance between runs."""
     amplitudes = {}
     for row in rows:
         cycles, grains = float(row["cycles"]), float(row["grain_cycles"])
         u = (float(row["phi"]) - 0.646) / 0.002
         amplitudes.setdefault(row["amplitude_rad"], []).append(
-            (math.log(cycles), math.log(grains / cycles), int(row["onsets"]), 1, u, u * u))
+            (math.log(cycles), math.log(grains / cycles), int(row["onsets"]), 1, u, u * u, row["packing"]))
 
     def logarithm(exponent):
         total = 0
         for shares in amplitudes.values():
-            cycles, size, events, *terms = np.array(shares).T
+            cycles, size, events, *terms = np.array([share[:-1] for share in shares]).T
             if events.sum() == 0:
                 continue
             terms = np.array(terms).T
             total += most_likely_rate(events, cycles + exponent * size, terms)[1]
         return total
 
-    return likelihood_interval(logarithm, -30, 30, NormalDist().inv_cdf((1 + level) / 2) ** 2 / 2)
+    def factor(exponent):
+        scores, information = {}, 0
+        for shares in amplitudes.values():
+            cycles, size, events, *terms = np.array([share[:-1] for share in shares]).T
+            if events.sum() == 0:
+                continue
+            terms = np.array(terms).T
+            c, _ = most_likely_rate(events, cycles + exponent * size, terms)
+            expected = np.exp(cycles + exponent * size + terms @ c)
+            curvature = (terms.T * expected) @ terms + np.diag([0, 1 / 9, 4])
+            off = size - terms @ np.linalg.solve(curvature, terms.T @ (expected * size))
+            information += (expected * off * size).sum()
+            for share, score in zip(shares, (events - expected) * off):
+                scores[share[-1]] = scores.get(share[-1], 0) + score
+        return max(1, sum(score**2 for score in scores.values()) / information)
+
+    drop = NormalDist().inv_cdf((1 + level) / 2) ** 2 / 2
+    if len({row["packing"] for row in rows}) < len({(row["group"], row["seed"]) for row in rows}):
+        drop *= factor(highest(logarithm, -30, 30)[0])
+    return likelihood_interval(logarithm, -30, 30, drop)
 
 
 def expected(claim, rows):
@@ -454,7 +480,8 @@ def main():
             if not away <= allowed:
                 found, stated = ("{:.6g}, {:.6g} to {:.6g}".format(*three) for three in (numbers, published))
                 faults.append(f"{path}: {claim['claim']}: {found}, published {stated}")
-            if sum(bool(row.get("above")) for row in rows) != claim.get("censored", 0):
+            used = [row for sides in pooled_strata(rows) for side in sides for row in side] if rows[0].get("stratum") else rows
+            if sum(bool(row.get("above")) for row in used) != claim.get("censored", 0):
                 faults.append(f"{path}: {claim['claim']}: censored rows and their published number differ")
             if ruling(claim, published[1:], len({row["seed"] for row in rows})) != claim["verdict"]:
                 faults.append(f"{path}: {claim['claim']}: {claim['verdict']} does not follow from the interval")

@@ -56,7 +56,10 @@ TEST_F(Failure, OfAPackingStopsOnlyItsShear) {
     EXPECT_GT(numbers.at("step").get<std::uint64_t>(), 0U);
   }
   EXPECT_EQ(std::ranges::count_if(store_.stages(),
-                                  [&](const Stage& one) { return waits_for_failed(store_, one); }),
+                                  [&](const Stage& one) {
+                                    return one.state != StageState::failed &&
+                                           has_failed(store_, one);
+                                  }),
             2)
       << "the two shears cannot start";
   // A second attempt fails in the same way.

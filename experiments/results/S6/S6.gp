@@ -10,7 +10,7 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'S6.svg'
 set label '(a)' at screen 0.015, screen 0.96 left front
-set key maxcols 1 width -5
+set key maxcols 1 width -7
 set xlabel 'shear cycle  {/:Italic n}'
 set ylabel 'volume fraction  {/:Italic ϕ}'
 set ytics 0.002
@@ -6001,7 +6001,7 @@ plot keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 5 ps 0.4 title '{/:Ita
      keyentry with lines lc rgb '#000000' lw 0.6 notitle, \
      keyentry with lines lc rgb '#000000' lw 0.6 notitle, \
      keyentry with points lc rgb '#000000' lw 1.2 pt 7 ps 0.4 title 'onset', \
-     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      $series3 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#000000' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \

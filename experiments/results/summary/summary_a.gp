@@ -38,7 +38,7 @@ $series1 << EOD
 EOD
 plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 9 ps 0.4 title 'largest crystallite is critical', \
      keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 13 ps 0.4 title 'steepest growth', \
-     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#009e73' lw 0.7 notitle, \
      $series1 every 1 using 1:2 with linespoints lc rgb '#009e73' lw 1.2 pt 13 ps 0.4 notitle, \
      $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \

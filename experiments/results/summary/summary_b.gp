@@ -1,4 +1,4 @@
-set terminal svg size 325,230 enhanced font 'Helvetica,10.67' background '#ffffff'
+set terminal svg size 325,245 enhanced font 'Helvetica,10.67' background '#ffffff'
 set encoding utf8
 set datafile separator ','
 set border 15 lw 0.8
@@ -10,7 +10,7 @@ set autoscale noextend
 set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'summary_b.svg'
 set label '(b)' at screen 0.015, screen 0.96 left front
-set key maxcols 2 width -3
+set key maxcols 1 width -7
 set xlabel 'grains {/:Italic N}'
 set ylabel 'onset {/:Italic ϕ}'
 set xtics 2000
@@ -28,7 +28,7 @@ $series0 << EOD
 18200,0.645158536,,0.000430394366
 EOD
 plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 9 runs', \
-     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement', \
+     keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
      $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
 set output
