@@ -44,8 +44,8 @@ struct ClaimSpec {
   /// compared with a published number.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// In units of the measure; for waiting times, of log2 of their ratio. 0: the published number is
-  /// a bound.
+  /// In units of the measure. For waiting times it limits log2 of their ratio. If it is 0, the
+  /// published number is a bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
   /// What the claim says, for people; "": from its keys. "{KEY}" is the value of `for_each`.

@@ -111,8 +111,9 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
   struct Outcome {
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of such sizes
-    std::int32_t most = 0;                           // grains in the crystallite `end`
+    std::int32_t larger = 0, same = 0,
+                 smaller = 0;  // grains in larger, equal and smaller crystallites
+    std::int32_t most = 0;     // grains in the crystallite `end`
     std::size_t end = 0;
   };
   std::vector<Outcome> fates(now.size.size());
@@ -139,7 +140,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     GrowthCount& count = counts[size];
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
-    } else if (2 * (size - larger - same) > size) {  // in smaller ones or in none
+    } else if (2 * (size - larger - same) >
+               size) {  // most grains are in smaller crystallites or in none
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

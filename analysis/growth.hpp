@@ -81,8 +81,8 @@ class GrowthCurve {
   /// selections.
   std::optional<Estimate> critical_size() const;
   /// The size that maximizes the excess of growing over shrinking crystallites of this size and
-  /// above. There delta_rho crosses zero if it is not smoothed but may only rise with size (M. Ayer
-  /// et al., Ann. Math. Stat. 26, 641 (1955)). A check of critical_size() with a larger error.
+  /// above. There the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer et
+  /// al., Ann. Math. Stat. 26, 641 (1955)). A check of critical_size() with a larger error.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -102,7 +102,8 @@ struct MeasureInput {
   /// The packing of the checkpoint; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
   const Checkpoint* checkpoint = nullptr;
-  /// The checkpoint of the same run Provider::cycles_back earlier; null if the run has none.
+  /// Returns the checkpoint of this run that is `Provider::cycles_back` cycles earlier; null if the
+  /// run has none.
   std::function<const Checkpoint*()> earlier = {};
   const CheckpointRecord* record = nullptr;
   const RunFacts* run = nullptr;

@@ -26,8 +26,8 @@ void require_own_files(const Table& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
 /// again). Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.
-/// gnuplot draws into memory, so that several programs may write to one folder and no cut file is
-/// left there.
+/// gnuplot draws into memory, so that several programs may write to one folder and no truncated
+/// file is left there.
 ///
 /// Throws AnalysisError if gnuplot is missing (naming the package to install), fails (with its
 /// message) or writes a part of the drawing; the script stays, and drawings of other data are

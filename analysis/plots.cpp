@@ -266,7 +266,7 @@ std::string plain_field(std::string variant) {
 
 /// Runs that share a curve.
 struct Group {
-  json key;             ///< what they have in common, of the keys that distinguish curves
+  json key;             ///< the keys that distinguish curves, with the values of these runs
   std::string variant;  ///< the same as text
   std::vector<const Selected*> runs = {};
 };

@@ -54,8 +54,8 @@ struct MarkSpec {
 
 struct PlotSpec {
   std::string name;
-  /// A measure (measures.hpp): a number, a curve, or of a run; or an expression of numbers and
-  /// parameters, or of measures of a run and parameters.
+  /// A measure of a checkpoint (a number or a curve) or of a run. Or an expression: of numbers of a
+  /// checkpoint and parameters, or of measures of a run and parameters.
   std::string y;
   /// Selects runs by has_parameters(), and by "cycle" checkpoints.
   nlohmann::json where = nlohmann::json::object();

@@ -50,8 +50,8 @@ class Looks {
  public:
   explicit Looks(const Frame& frame);
 
-  /// The look of a curve: of one variant by all its swept values, else by `key`, the values that
-  /// its runs have in common.
+  /// The look of a curve. If all its runs are of one variant, its swept values decide the look;
+  /// otherwise `key` does, the values that the runs have in common.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

@@ -84,8 +84,10 @@ std::string order_of_waits(const Verdict& verdict) {
   const std::string level = fmt::format("{:.3g} %", 100 * verdict.level);
   if (std::isfinite(low) && std::isfinite(high)) {
     const bool one_side = (low < 0) == (high < 0);
+    const auto [near, far] =
+        std::minmax(low, high, [](double a, double b) { return std::abs(a) < std::abs(b); });
     return fmt::format("the first is {} ({} interval: {} to {})", times(*verdict.estimate), level,
-                       one_side ? factor(low) : times(low), times(high));
+                       one_side ? factor(near) : times(low), times(one_side ? far : high));
   }
   const double end = std::isfinite(low) ? low : high;
   if (!std::isfinite(end)) return fmt::format("no bound on the order of the two ({})", level);

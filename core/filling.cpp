@@ -86,7 +86,7 @@ double cell_width(const Geometry& geometry) {
   };
   double low = layers;
   double high = std::cbrt(volume) + 1.0 + layers;
-  while (too_small(high)) high *= 2;  // a cell lower than it is wide
+  while (too_small(high)) high *= 2;  // a flat cell is wider than the first bound
   for (int i = 0; i < 200 && low < high; ++i) {
     const double width = 0.5 * (low + high);
     (too_small(width) ? low : high) = width;

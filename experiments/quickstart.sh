@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-sh .ci/setup
+sh .ci/setup report
 cmake --preset release -DSHEARCELL_TESTS=OFF
 cmake --build --preset release --target shearcell
 

@@ -149,8 +149,8 @@ struct RunMerge {
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
   }
 
-  /// A copy of `last_claim` when the copied events changed the state of the run; appending it again
-  /// restores the store's own state.
+  /// A copy of `last_claim` if the copied events changed the state of the run. Appending the copy
+  /// gives the run the state again that it had in this store.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
@@ -217,7 +217,7 @@ bool merged_before(const EventLog& log, const Head& head) {
       });
 }
 
-/// Manifests, and files of grains: a stream holds one text.
+/// Whether the stream holds one text: a manifest or a file of grains.
 bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }

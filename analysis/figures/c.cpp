@@ -35,7 +35,8 @@ constexpr std::int64_t cycles_compared = 5;
 /// "Usually 6 to 10" simulations gave each of the supplement's critical sizes.
 constexpr std::size_t published_runs = 8;
 
-/// The counts of each packing in which some crystallite could be followed over so many cycles.
+/// The counts of each packing with at least one crystallite that could be followed over `cycles`
+/// cycles.
 std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   std::vector<GrowthBySize> all;
   for (const auto& [packing, members] : by_packing(runs)) {

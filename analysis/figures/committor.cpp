@@ -45,7 +45,7 @@ struct Fates {
   }
 };
 
-/// Fates by each of cycles_without.
+/// The fates under each rule, one entry for each element of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
 /// A crystallite of a state with the fates of the state's clones. Size 0: a control, which is a
@@ -332,9 +332,9 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
                                      high.amplitude, low.amplitude),
                  .claimed = Relation::higher,
                  .id = "committor.growth"},
-                "ratio of the sizes of which half grow, less 1", growth, growth ? growth->runs : 0,
-                note_on(low, before) + "; " + note_on(high, after), fates_of({&low, &high}),
-                Counted::runs_per_variant);
+                "ratio of the critical sizes (half of the crystallites grow), minus 1", growth,
+                growth ? growth->runs : 0, note_on(low, before) + "; " + note_on(high, after),
+                fates_of({&low, &high}), Counted::runs_per_variant);
 }
 
 }  // namespace

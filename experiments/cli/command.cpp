@@ -83,8 +83,9 @@ bool is_stdout(const std::string& out) {
 bool is_stream(const std::string& out) {
   std::error_code missing;
   const std::filesystem::file_type type = std::filesystem::status(out, missing).type();
-  return is_stdout(out) || type == std::filesystem::file_type::character ||
-         type == std::filesystem::file_type::fifo;
+  // A pipe of the shell, as `>(gzip)`. Opening another one would wait for its reader.
+  const bool pipe = type == std::filesystem::file_type::fifo && out.starts_with("/dev/fd/");
+  return is_stdout(out) || pipe || type == std::filesystem::file_type::character;
 }
 
 void write_result(const std::string& out, const std::string& text) {

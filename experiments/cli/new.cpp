@@ -2,6 +2,7 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
@@ -105,14 +106,24 @@ scales:
 )";
 }
 
-/// Writes a file that must not exist.
-void write_new(const std::filesystem::path& file, const std::string& text) try {
-  std::error_code ignored;  // NewFile says what is wrong
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  NewFile(file).add(text);
-} catch (const std::system_error& error) {
-  if (error.code() != std::errc::file_exists) throw;
-  throw UsageError(file.string() + ": the file exists already. Choose another name, or remove it.");
+/// Links a complete temporary file, so the file is complete and replaces no other.
+void write_new(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path whole =
+      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
+  std::error_code failed, ignored;
+  try {
+    write_output(whole, text);
+    std::filesystem::create_hard_link(whole, file, failed);
+    std::filesystem::remove(whole, ignored);
+    // The file exists, which NewFile refuses, or the file system has no hard links.
+    if (failed) NewFile(file).add(text);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::file_exists) {
+      throw std::system_error(error.code(), file.string() + ": cannot write");
+    }
+    throw UsageError(file.string() +
+                     ": the file exists already. Choose another name, or remove it.");
+  }
 }
 
 void make(const std::string& name, Context&) {

@@ -185,7 +185,7 @@ struct VariantCheck {
     const bool loose_stated = find("fill_packing_fraction") != nullptr;
     report(
         loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
-        "the grains are placed at random more densely than they are to settle",
+        "the random initial packing is denser than the settled packing is to be",
         loose_stated
             ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
             : format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
@@ -427,7 +427,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// A scale, with one planned run of each variant, as figures take them.
+/// A scale, with one planned run of each variant in the form that figures expect.
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;

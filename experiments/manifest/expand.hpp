@@ -49,7 +49,7 @@ struct Plan {
 /// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// One run of each variant as figures take it, without seed and checkpoints.
+/// One run of each variant in the form that figures expect, without seed and checkpoints.
 std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
                                    std::span<const Variant> variants);
 

@@ -36,7 +36,7 @@ constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
 /// The meaning of a column's name. A quantity is read from the columns whose meaning has the lowest
 /// rank.
 struct Meaning {
-  string_view names;        ///< in small letters; if count is 1, the k-th means `first` + k
+  string_view names;        ///< in lower case; if count is 1, name k is the quantity `first` + k
   int first = kQuantities;  ///< first quantity of the column; kQuantities: not known
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
@@ -387,7 +387,7 @@ class PackingReader {
     const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
       refuse_line(line_, "Lattice or Origin is not complete",
-                  "They take 9 and 3 numbers: the edges of the box and its corner.");
+                  "Lattice needs 9 numbers, the edges of the box; Origin needs 3, its corner.");
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
@@ -586,7 +586,8 @@ class PackingReader {
     if (other && *other != unit) {
       refuse_line(
           in, fmt::format("states lengths in {}", name_of(unit)),
-          unit_ ? fmt::format("The file also states {}: write all in one.", name_of(*other))
+          unit_ ? fmt::format("The file also gives lengths in {}: write all lengths in one unit.",
+                              name_of(*other))
                 : fmt::format("The manifest says `unit: {}`: remove that key.", name_of(*other)));
     }
     unit_ = unit;

@@ -319,13 +319,14 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.estimator, {.name = "estimator",
                           .doc = "what is estimated; by default the other keys imply it",
                           .names = estimators});
-  visit(claim.against,
-        {.name = "against",
-         .doc =
-             "for `estimator: slope`: the column on the other axis, at each run's first checkpoint; "
-             "for `spread_ratio`: the other number",
-         .names = can_be_compared,
-         .terms = terms});
+  visit(
+      claim.against,
+      {.name = "against",
+       .doc =
+           "for `estimator: slope`: the column on the other axis, at each run's first checkpoint; "
+           "for `spread_ratio`: the other number",
+       .names = can_be_compared,
+       .terms = terms});
   visit(claim.where,
         {.name = "where",
          .doc = "selects runs of all sides: values, lists of values, or ranges `{min: 5200}`",
@@ -1430,8 +1431,8 @@ struct Reader {
   }
 
   // Reports names of plots, claims, figures or panels that occur twice, and names of figures or
-  // panels of the supplement. This manifest may state a figure of the supplement itself, unless it
-  // lists that figure in `figures` (`listed`).
+  // panels of the supplement. A manifest may state parts of a supplement's figure, unless its
+  // `figures` (`listed`) name that figure.
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // each with its figure

@@ -37,8 +37,9 @@ class MeasureSources {
   DerivedKey key(const CheckpointRecord& record, const Provider& provider,
                  std::uint64_t every) const;
 
-  /// Whether a cached object is what the log says since the checkpoint's file was pruned; nothing
-  /// if the log does not name the object. True if the log has no digests of the checkpoint.
+  /// Whether a cached object has the digest that the log recorded when the checkpoint's file was
+  /// pruned; nothing if the log does not name the object. True if the log has no digests of the
+  /// checkpoint.
   std::optional<bool> is_as_pruned(const CheckpointRecord& record,
                                    const DerivedObject& object) const;
 

@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // A longer end is unknown until it has been asked for.
+      // Where an ask for more cycles than the stage was asked for ends is not known yet.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -166,7 +166,8 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
   look.checkpoints = asked.to_come;
   if (engine == EngineKind::shearcell) look.missing = std::move(asked.missing);
   double steps = std::max(0.0, length - now);
-  // The last checkpoint before a step that has a file; nothing to begin with the stage.
+  // The last checkpoint before `step` whose file exists; null if the stage must be computed from
+  // its beginning.
   const auto recorded_before = [&](std::uint64_t step) {
     const CheckpointRecord* last = nullptr;
     for (const CheckpointRecord& record : checkpoints) {

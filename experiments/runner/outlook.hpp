@@ -90,8 +90,8 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
 // --- Of the stages of a store or a plan ---
 
-/// outlook() for all recorded asks, without measuring: only ends by `until` that are recorded are
-/// known. Outlook::unreadable says why an ask cannot be read.
+/// Like outlook() for all recorded asks, but measures nothing: that `until` ended a run is known
+/// only if the end is recorded. Outlook::unreadable says why an ask cannot be read.
 Outlook look_at(const Store& store, const Stage& stage);
 
 /// A stage of plans, with what the store has recorded of it.

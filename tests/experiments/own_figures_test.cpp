@@ -257,7 +257,8 @@ claims:
   for (const char* part :
        {"set xlabel 'driving frequency {/:Italic f} [Hz]'",
         "lc rgb '#cc79a7' lw 1.2 pt 6 ps 0.4 title '{/:Italic A}_{min}'",
-        "title 'a large amplitude'", "title 'random close packing'", "first 0.636 to graph 1"}) {
+        "title 'a large amplitude'", "title 'random close packing 0.637 ± 0.001'",
+        "first 0.636 to graph 1"}) {
     EXPECT_TRUE(has(script, part)) << script;
   }
   const std::string& caption = files.at("drive.caption.txt");

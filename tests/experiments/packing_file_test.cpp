@@ -134,9 +134,8 @@ const std::vector<BadPacking> kBad = {
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: the box is -9 long in y. Its edges are positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: Lattice or Origin is not complete. They take 9 and 3 numbers: the edges of the "
-     "box "
-     "and its corner."},
+     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the "
+     "box; Origin needs 3, its corner."},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
      "a.xyz:2:1: the box is 2 d deep in z. At least 3 d: is the unit of its lengths right?"},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),

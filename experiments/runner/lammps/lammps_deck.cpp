@@ -169,7 +169,8 @@ pair_coeff * * ${{law}})",
         "\n# Grains and the moving wall by velocity Verlet; wall grains follow their walls.");
     add(text_, "fix step free nve/sphere\nvariable zero equal 0");
     const double top = pose_.top * d_, shear = pose_.tan_theta;
-    // If the top wall rises, the points of the tilted sides move against it.
+    // The sides tilt about the top, so where the top rises, points on a side move in x by
+    // -v_rising tan(theta).
     const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
     if ((has(WallSide::left) || has(WallSide::right)) && shears_) {
       add(text_, "variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
