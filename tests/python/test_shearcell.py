@@ -657,7 +657,7 @@ class Package(unittest.TestCase):
 
     def test_errors_say_what_is_wrong(self):
         run = self.store.runs()[0]
-        with self.assertRaisesRegex(KeyError, "it has those of cycles"):
+        with self.assertRaisesRegex(KeyError, "the nearest checkpoints are at cycles"):
             run.checkpoint(17)
         with self.assertRaisesRegex(KeyError, "0 runs begin with"):
             self.store.run("not a run")

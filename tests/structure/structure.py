@@ -24,7 +24,8 @@ for folder in ("bench", "cluster", "export"):
 BELOW["experiments/cli"] = ["experiments/bench", "experiments/cluster", "experiments/export", "experiments/report",
                             *BELOW["experiments/report"]]
 TOP = ("core", "protocols", "provenance", "analysis", "experiments", "tests")
-GENERATED = {"experiments/manifest/shipped_texts.hpp", "experiments/runner/build_facts.hpp"}  # by CMake
+GENERATED = {"experiments/manifest/shipped_texts.hpp", "experiments/manifest/tried_names.hpp",
+             "experiments/runner/build_facts.hpp"}  # by CMake
 
 
 def group(path):
