@@ -217,7 +217,8 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
   EXPECT_EQ(points.points[0].y_error, 0.001);
   EXPECT_EQ(points.points[1].y_error, std::nullopt);
   const std::string script = gnuplot_script(table);
-  for (const char* entry : {"title 'Jin 0.05 ± 0.01'", "title 'Smith'", "0.03,,0.001", "first 0.04"}) {
+  for (const char* entry :
+       {"title 'Jin 0.05 ± 0.01'", "title 'Smith'", "0.03,,0.001", "first 0.04"}) {
     EXPECT_TRUE(has(script, entry)) << script;
   }
   const std::vector<Table> tables = {table};

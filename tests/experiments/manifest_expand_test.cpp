@@ -102,18 +102,17 @@ Strings ids(const std::string& rest) {
 }
 
 TEST(Expand, ARangeIsTheListOfItsValues) {
-  for (const auto& [range, list] : {
-           std::pair{"amplitude_rad: {from: 0.01, to: 0.1, count: 10}",
-                     "amplitude_rad: [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1]"},
-           {"period_s: {to: 2.1, from: 2.7, count: 3, spacing: linear}",
-            "period_s: [2.7, 2.4, 2.1]"},
-           {"pressure_Pa: {from: 300, to: 4800, count: 5, spacing: log}",
-            "pressure_Pa: [300, 600, 1200, 2400, 4800]"},
-           {"pressure_Pa: {from: 300, to: 3000, count: 5, spacing: log}",
-            "pressure_Pa: [300, 533.483823012, 948.683298051, 1687.02397557, 3000]"},
-           {"grains: {from: 500, to: 8000, count: 4, spacing: log}",
-            "grains: [500, 1260, 3175, 8000]"},
-           {"drag_kg_per_s: {from: 0, to: 1.28e-3, count: 2}", "drag_kg_per_s: [0, 1.28e-3]"}}) {
+  for (const auto& [range, list] :
+       {std::pair{"amplitude_rad: {from: 0.01, to: 0.1, count: 10}",
+                  "amplitude_rad: [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1]"},
+        {"period_s: {to: 2.1, from: 2.7, count: 3, spacing: linear}", "period_s: [2.7, 2.4, 2.1]"},
+        {"pressure_Pa: {from: 300, to: 4800, count: 5, spacing: log}",
+         "pressure_Pa: [300, 600, 1200, 2400, 4800]"},
+        {"pressure_Pa: {from: 300, to: 3000, count: 5, spacing: log}",
+         "pressure_Pa: [300, 533.483823012, 948.683298051, 1687.02397557, 3000]"},
+        {"grains: {from: 500, to: 8000, count: 4, spacing: log}",
+         "grains: [500, 1260, 3175, 8000]"},
+        {"drag_kg_per_s: {from: 0, to: 1.28e-3, count: 2}", "drag_kg_per_s: [0, 1.28e-3]"}}) {
     for (const char* kind : {"grid", "zip"}) {
       const auto sweep = [&](const char* values) {
         return ids(fmt::format("sweep: {{{}: {{{}}}}}\n", kind, values));
