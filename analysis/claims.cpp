@@ -158,7 +158,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   const std::size_t shown = ended > 0 ? ended : seeds.size();
   if (verdict.ruling == Ruling::undecided && shown != taken) {
     verdict = of_first(shown);
-    if (stated.cannot_be_decided.empty()) verdict.ruling = Ruling::undecided;
+    withhold(verdict);
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();

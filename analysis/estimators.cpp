@@ -99,7 +99,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   }
   Verdict verdict =
       decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
-  if (equal_sides) verdict.ruling = Ruling::undecided;
+  if (equal_sides) withhold(verdict);
   verdict.censored = values.censored;
   return verdict;
 }

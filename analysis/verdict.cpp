@@ -157,6 +157,10 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+void withhold(Verdict& verdict) {
+  if (verdict.ruling != Ruling::undecidable) verdict.ruling = Ruling::undecided;
+}
+
 Table entered_table(std::span<const Verdict> verdicts) {
   Table table{.name = "entered", .columns = {"claim"}};
   for (const Verdict& verdict : verdicts) {

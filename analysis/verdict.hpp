@@ -90,6 +90,9 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// "1 agrees, 1 refuted"; "" without claims.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
+/// Makes the ruling undecided, unless the claim cannot be decided.
+void withhold(Verdict& verdict);
+
 /// The rows of all verdicts in one table, which has the columns of all verdicts. The first column
 /// is the claim.
 Table entered_table(std::span<const Verdict> verdicts);

@@ -124,11 +124,11 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 }
 
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
-  add_each(command, "--variant", variants,
-           "Only runs with this swept value, such as fluid=cell, or this label, as `status` has "
-           "it. Several "
-           "values of one key are alternatives; values of different keys must all match",
-           "KEY=V");
+  add_each(
+      command, "--variant", variants,
+      "Only runs with this swept value, such as fluid=cell, or this label, as `status` has it. "
+      "Several values of one key are alternatives; values of different keys must all match",
+      "KEY=V");
 }
 
 /// Adds the seeds of "6,8" or "6-9". Throws CLI::ValidationError.

@@ -91,8 +91,8 @@ void add_table(CLI::App& app, Context& context) {
       "field\nis unknown or does not apply):\n" +
           columns_text +
           "Simulated columns need their option. Columns from critical_size on need --per run, "
-          "whose "
-          "measures are\ntaken at the newest checkpoint. A run of several experiments has rows for "
+          "whose measures are\ntaken at the newest checkpoint. A run of several experiments has "
+          "rows for "
           "each, up to the\ncycles that the experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"

@@ -263,6 +263,14 @@ void share_needs(std::vector<WantedFigure>& figures) {
   }
 }
 
+ReadManifests read_manifests(const Store& store) {
+  std::vector<ReadManifest> read;
+  for (const RegisteredManifest& one : newest_manifests(store)) {
+    read.push_back({one, recorded_manifest(one.text)});
+  }
+  return std::make_shared<const std::vector<ReadManifest>>(std::move(read));
+}
+
 }  // namespace
 
 std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes) {
@@ -372,19 +380,11 @@ std::string leave_out_unselected(const Store& store, const RunSelection& runs,
   return "left out: experiments without a selected run: " + some_of(others);
 }
 
-ReadManifests read_manifests(const Store& store) {
-  std::vector<ReadManifest> read;
-  for (const RegisteredManifest& one : newest_manifests(store)) {
-    read.push_back({one, recorded_manifest(one.text)});
-  }
-  return std::make_shared<const std::vector<ReadManifest>>(std::move(read));
-}
-
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring) {
-  const ReadManifests read = wanted.manifests ? wanted.manifests : read_manifests(store);
-  const std::vector<ReadManifest>& manifests = *read;
   CollectedRuns collected;
+  collected.manifests = wanted.manifests ? wanted.manifests : read_manifests(store);
+  const std::vector<ReadManifest>& manifests = *collected.manifests;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // experiments

@@ -30,7 +30,6 @@ struct ReadManifest : RegisteredManifest {
   mutable std::map<std::string, PlannedRuns> planned = {};  ///< by scale; filled on demand
 };
 using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
-ReadManifests read_manifests(const Store& store);
 
 /// A figure of one experiment, or of all experiments ("").
 struct WantedFigure {
@@ -39,7 +38,7 @@ struct WantedFigure {
   /// Derived measures that other figures of the experiment need: MeasureOptions::also.
   std::vector<std::string> also = {};
   /// The manifests of the store, shared by the figures of one command, so that each manifest is
-  /// read and its variants are expanded once. Null: compute_figure() reads them.
+  /// read and its variants are expanded once. Null: collect_runs() reads them.
   ReadManifests manifests = {};
 
   /// "drag/S2", for messages.
@@ -81,7 +80,8 @@ void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
-  std::string scale;  ///< one figure never mixes scales
+  ReadManifests manifests;  ///< WantedFigure::manifests, read if that is null
+  std::string scale;        ///< one figure never mixes scales
   /// Lines on runs that were left out or are not finished, and on checkpoints that were never made.
   std::vector<std::string> notes;
 };

@@ -64,11 +64,10 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
 
 /// Whose plots drew a figure that its manifest does not state, as in stores of earlier versions,
 /// whose manifests list figures by name; "" for a figure that the manifest states or C++ computes.
-std::string plots_of(const WantedFigure& wanted) {
+std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
-  const auto manifest =
-      std::ranges::find(*wanted.manifests, wanted.experiment, &ReadManifest::experiment);
-  if (manifest == wanted.manifests->end() || find_named(computed_figures(), name) != nullptr ||
+  const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
+  if (manifest == manifests.end() || find_named(computed_figures(), name) != nullptr ||
       find_named(std::span<const Figure>(stated_figures(manifest->content)), name) != nullptr) {
     return "";
   }
@@ -217,7 +216,7 @@ void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& fi
 
 /// Makes the figure of these runs.
 void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOptions& options,
-                  Frame frame, ComputedFigure& made) {
+                  CollectedRuns frame, ComputedFigure& made) {
   const Figure& figure = wanted.figure;
   std::vector<FrameRun>& runs = frame.runs;
   MeasureOptions measuring = options;
@@ -230,7 +229,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   measure_runs(store, runs, providers, measuring, made);
   std::ranges::for_each(runs, leave_out_unmeasured);
-  made.lineage = lineage_of(made, plots_of(wanted), inputs_of(store, made, runs));
+  made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(
         figure.name, runs, figure.keys,
@@ -263,10 +262,8 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
 
 }  // namespace
 
-ComputedFigure compute_figure(const Store& store, const WantedFigure& figure,
+ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options) {
-  WantedFigure wanted = figure;
-  if (!wanted.manifests) wanted.manifests = read_manifests(store);
   CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
   ComputedFigure made;
   made.name = wanted.figure.name;
@@ -274,8 +271,9 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& figure,
   made.experiment = wanted.experiment;
   made.scale = collected.scale;
   made.notes = std::move(collected.notes);
+  const ReadManifests manifests = collected.manifests;
   make_of_runs(store, wanted, options, std::move(collected), made);
-  mark_primary(*wanted.manifests, made);
+  mark_primary(*manifests, made);
   lay_out(made.tables, options.wide);
   made.caption = caption_of(made, options.runs);
   return made;

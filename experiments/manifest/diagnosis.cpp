@@ -260,8 +260,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
-    std::vector<json> variants;
-    for (const Variant& variant : variants_of(scale)) variants.push_back(variant.swept);
+    const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
     // Names with their labels (or null), by what a reader sees.
     std::map<string, std::pair<string, const VariantLabel*>> named;

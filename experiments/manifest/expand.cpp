@@ -131,9 +131,7 @@ void take_declared_lengths(const Place& place, std::span<const Stage> known,
 
 std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
                                    std::span<const Variant> variants) {
-  std::vector<nlohmann::json> swept;
-  for (const Variant& variant : variants) swept.push_back(variant.swept);
-  const auto names = variant_names(swept, manifest.labels);
+  const auto names = variant_names(swept_in(variants), manifest.labels);
   Membership common{{.experiment = manifest.experiment, .scale = scale.name}};
   common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   std::vector<FrameRun> runs;
@@ -186,9 +184,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
            fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
   }
-  std::vector<nlohmann::json> all_swept;
-  for (const Variant& variant : variants) all_swept.push_back(variant.swept);
-  const auto all_names = variant_names(all_swept, manifest.labels);
+  const auto all_names = variant_names(swept_in(variants), manifest.labels);
   std::vector<Variant> chosen;
   for (const Variant& variant : variants) {
     if (!wanted.passes(variant.name, all_names.at(variant.swept))) continue;

@@ -230,6 +230,12 @@ bool selects(const VariantLabel& label, const json& variant) {
   });
 }
 
+std::vector<json> swept_in(std::span<const Variant> variants) {
+  std::vector<json> swept;
+  for (const Variant& variant : variants) swept.push_back(variant.swept);
+  return swept;
+}
+
 std::map<json, std::string> variant_names(const std::vector<json>& variants,
                                           std::span<const VariantLabel> labels) {
   std::vector<std::string> all = swept_keys(variants);

@@ -63,6 +63,9 @@ class Filter {
 /// Whether the label applies to the variant, an object of swept keys and values.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
 
+/// Variant::swept of each variant.
+std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
+
 /// Returns display names of variants, which are objects of swept keys and values and may be
 /// repeated. (Ids and CSV files use Variant::name.) A label replaces the keys that it states;
 /// labels with more keys come first. The keys that still distinguish the variants follow: "fluid at

@@ -293,6 +293,11 @@ TEST(CannotBeDecided, IsTheVerdictWithItsReasonWhateverTheNumbers) {
   EXPECT_EQ(verdict.ruling, Ruling::undecidable) << "before its look, too";
   claim.cannot_be_decided.clear();
   EXPECT_EQ(claim_figure(claim).make(frame).verdicts.at(0).ruling, Ruling::undecided);
+  const Claim stated{.text = "own", .margin = 0.1, .cannot_be_decided = "a reason"};
+  const Runs runs = group(4, 0);
+  EXPECT_EQ(compare(stated, early_phi(), pointers(runs), pointers(runs)).ruling,
+            Ruling::undecidable)
+      << "also if both sides are equal";
 }
 
 TEST(Claims, NameASideWithoutRunsAsItsPlannedRuns) {
