@@ -128,7 +128,14 @@ void Database::require_journal_can_be_played_back(int code) const {
   }
 }
 
+void Database::require_readable(std::string_view doing) const {
+  if (errno != EIO) return;
+  throw MachineError(fmt::format("{}: cannot {}: {}; check the disk and run again", name_, doing,
+                                 std::generic_category().message(EIO)));
+}
+
 void Database::fail(int code, std::string_view doing) const {
+  require_readable(doing);
   if ((code & 0xff) == SQLITE_NOMEM || code == SQLITE_IOERR_NOMEM) {
     if (const auto no_memory = std::get_new_handler()) no_memory();
     throw std::bad_alloc();
@@ -237,6 +244,7 @@ void Statement::bind(int parameter, std::span<const std::byte> blob) {
 }
 
 bool Statement::step() {
+  errno = 0;
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) database_->fail(code, "read or write");

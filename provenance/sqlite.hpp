@@ -59,6 +59,9 @@ class Database {
   /// Throws MachineError when the file was moved, replaced or deleted. Called before each
   /// transaction, which may play back a journal.
   void require_in_place() const;
+  /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite calls a database
+  /// damaged that it cannot read.
+  void require_readable(std::string_view doing) const;
   /// Throws the exception for an SQLite result code.
   [[noreturn]] void fail(int code, std::string_view doing) const;
 

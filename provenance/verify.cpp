@@ -230,6 +230,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     const sqlite::ReadTransaction snapshot(database_);
     sqlite::Statement integrity(database_, "PRAGMA integrity_check(1)");
     if (integrity.step() && integrity.text(0) != "ok") {
+      database_.require_readable("read");
       add_error(report, database_.name(),
                 fmt::format("SQLite finds the database damaged: {}; restore it from a backup",
                             integrity.text(0)));

@@ -426,11 +426,13 @@ const chosen = basename(report) === "many.html" ? manyChecks(tools) : checks;
 for (const [name, check] of Object.entries(chosen)) {
   if (wanted.length > 0 ? !wanted.includes(name) : name === "quick") continue;
   console.log(name);
+  const began = performance.now();
   try {
     await check();
   } catch (error) {
     expect(false, `${name}: ${error.message.split("\n").slice(0, 3).join(" ")}`);
   }
+  console.log(`  ${((performance.now() - began) / 1000).toFixed(1)} s`);
   for (const context of browser.contexts()) await context.close();
 }
 await browser.close();
