@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cell that holds the grains. It has four walls and is periodic in z. The side walls tilt, and
-// the bottom or the top wall moves up and down.
+// The cell around the grains: two tilting side walls, a fixed and a moving wall, periodic in z.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +22,7 @@ inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", 
 /// A sphere of diameter d fixed to a rough wall.
 struct WallGrain {
   WallSide side;
-  /// Centre [d] in the untilted cell, with the bottom and top planes at `Cell::bottom` and
-  /// `Cell::top`.
+  /// Centre [d] in the untilted cell with the planes at Cell::bottom and Cell::top.
   Eigen::Vector3d position;
 };
 
@@ -67,7 +65,7 @@ inline WallSide moving_side(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
 }
 
-/// Sign of y from the moving wall into the cell: 1 for a bottom wall, -1 for a top wall.
+/// 1 if y increases from the moving wall into the cell (bottom wall), -1 if y decreases (top wall).
 inline double inwards(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? 1 : -1;
 }

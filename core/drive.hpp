@@ -15,8 +15,7 @@ struct Tilt {
   double rate = 0;   ///< dtheta / d(omega t) [rad]; the caller multiplies by omega
 };
 
-/// Tilt at time step `step` of the stage. theta is exactly zero at the end of each cycle and during
-/// pauses.
+/// Tilt at `step` of the stage. theta is exactly 0 at the end of each cycle and during pauses.
 Tilt tilt(const Drive& drive, std::uint64_t step);
 
 /// Number of steps in one cycle, including the pause.

@@ -14,9 +14,8 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// Volume per wall area that a rough wall takes from the cell [d]. The wall has 0.66 grains per d^2.
-// For recesses of 0 to d/4, a wall grain fills on average 0.17 d^3 of the cell. The rest of the
-// volume is the gaps between the wall grains.
+// Volume per wall area that a rough wall takes from the cell [d]: 0.66 grains per d^2, which fill
+// 0.17 d^3 of the cell each (mean for recesses of 0 to d/4), and the gaps between these grains.
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
@@ -53,8 +52,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
-  // The number of attempts diverges near the jamming limit of 0.547. A wall with fewer grains than
-  // the target is still rough.
+  // The number of attempts diverges near jamming (0.547). A wall with fewer grains is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);

@@ -26,8 +26,7 @@ struct Geometry {
   WallTexture walls = WallTexture::rough;
   double wall_grain_area_fraction = 0.52;  ///< target area fraction of discs on a rough wall
   double wall_grain_recess = 0.25;         ///< largest distance of centres behind the plane [d]
-  std::uint32_t wall_grain_draw =
-      0;  ///< different values give different wall grains for the same seed
+  std::uint32_t wall_grain_draw = 0;       ///< each value gives different wall grains
   MovingWall moving = MovingWall::bottom;
 };
 
@@ -49,9 +48,8 @@ double wall_grain_count(const Geometry& geometry);
 /// outwards), or if there are more than 10^4 + 1000 N wall grains (each may need 6000 attempts).
 bool too_large(const Geometry& geometry);
 
-/// Makes the cell with the height fill_height(). Wall grains are placed by random sequential
-/// addition.
-/// Throws GeometryError.
+/// Makes a cell of height fill_height() with wall grains from random sequential addition. Throws
+/// GeometryError.
 Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll = {});
 
 /// Places grains at rest at random positions where they touch no other grain and no wall. Throws

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over neighbours, which take nearly all of the computing time. They work on plain
-// arrays.
+// The loops over neighbours, which take nearly all of the computing time, as functions on arrays.
 //
 // Each loop has a scalar reference implementation (scalar_kernel.cpp) and a SIMD version
 // (simd_kernel.cpp, simd_lists.cpp). Both give the same bits. Three rules make this possible:
@@ -43,17 +42,15 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
 
-/// Flags of a block of grains. The kernel skips a wall or the periodic boundary in z ("seam") if no
-/// grain of the block is near it. kNearSeam: some neighbour's nearest image lies across the
-/// boundary.
+/// Flags of a block of grains. kNearSeam: the nearest image of some neighbour lies across the
+/// periodic boundary in z. The kernel skips the code for walls and boundary if no grain needs it.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
 /// Neighbour lists as row offsets (4 * index, in doubles). A block is one vector of grains, and a
-/// slot is one neighbour of each grain of a block. The neighbour in slot k of the grain in lane l
-/// of block b is list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The
-/// first moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold
-/// padding_offset().
+/// slot is one neighbour of each of them. Slot k of lane l of block b is
+/// list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The first
+/// moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold padding_offset().
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
   const std::uint32_t* begin = nullptr;  ///< one entry per block, as in the arrays below
@@ -63,8 +60,8 @@ struct NeighbourRows {
 };
 
 /// One time step of the leapfrog, followed by a check of the margins. The new velocity is
-/// velocity_factor * v + contact_kick * (contact sum) + gravity_step + fluid_step * (y -
-/// fluid_rest_height). D stands for 1 + b dt / 2m.
+/// velocity_factor * v + contact_kick * (contact sum) + gravity_step +
+/// fluid_step * (y - fluid_rest_height). D stands for 1 + b dt / 2m.
 struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
@@ -80,8 +77,7 @@ struct StepTask {
   double frame_height = 0;  ///< height at which the moving frame is at rest [d]
   double tan_theta = 0;     ///< tan(theta) at the end of the step
   double margin_loss = 0;   ///< part of each margin lost to shear and rounding [d]
-  /// The kernel prefetches rows at this distance from a block (CellOrder::ahead()). 0 disables the
-  /// prefetch.
+  /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.
   std::size_t ahead = 0;
   double* next_rows = nullptr;   ///< output: positions at the next step
   double* velocity[3] = {};      ///< [d/s] half a step before `rows`, updated to half a step after
@@ -93,8 +89,7 @@ struct StepTask {
   double time_step = 0;          ///< dt [s]
 };
 
-/// Sites (grains and wall grains) sorted by grid cell. Entry k of an array belongs to the k-th
-/// site.
+/// Sites (grains and wall grains), sorted by grid cell. Most arrays have one entry per site.
 struct CellGrid {
   Grid cells;
   const std::uint32_t* begin = nullptr;  ///< first site of each cell; last entry: number of sites

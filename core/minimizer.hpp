@@ -12,10 +12,9 @@
 namespace shearcell {
 
 struct MinimizeSettings {
-  /// Tolerance of |net force| / (P d^2) on each grain and of |net force| / (P A_w) on the moving
-  /// wall.
+  /// Limit of |net force| / (P d^2) on grains and of |net force| / (P A_w) on the moving wall.
   double force_tolerance = 1e-4;
-  std::uint64_t most_evaluations = 1'000'000;  ///< the minimization fails after this number
+  std::uint64_t most_evaluations = 1'000'000;  ///< limit on the number of force evaluations
 };
 
 /// Moves the grains and the moving wall to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97,

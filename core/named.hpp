@@ -19,9 +19,8 @@ namespace shearcell {
 
 namespace named_detail {
 
-/// Whether the enumeration has an enumerator with the value V. If it has, the compiler prints the
-/// enumerator, as in `V = shearcell::Fluid::cell`. Otherwise it prints a number, as in `V =
-/// (shearcell::Fluid)2`.
+/// Whether V is an enumerator. The compiler prints an enumerator as `V = shearcell::Fluid::cell`,
+/// and any other value as `V = (shearcell::Fluid)2`.
 template <auto V>
 constexpr bool is_enumerator() {
   const std::string_view text = __PRETTY_FUNCTION__;
@@ -36,8 +35,7 @@ constexpr auto names_in_order(Names... names) {
   constexpr std::size_t size = sizeof...(Names);
   static_assert(named_detail::is_enumerator<static_cast<Enum>(size - 1)>(),
                 "there are more names than enumerators");
-  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(),
-                "an enumerator has no name");
+  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(), "a value has no name");
   return std::array<std::string_view, size>{names...};
 }
 

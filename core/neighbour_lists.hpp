@@ -50,8 +50,7 @@ class Reference {
   double moved(const double* rows, std::size_t grain, const WallPose& pose) const;
   /// Upper bound of moved() [d] for all wall grains and wall planes.
   double wall_moved(const WallPose& pose) const;
-  /// Part of each margin [d] that is lost to the shear since set() and to the rounding of
-  /// positions.
+  /// Part of each margin [d] lost to the shear since set() and to the rounding of positions.
   double margin_loss(double tan_theta) const;
 
   /// Height [d] at which the moving frame is at rest.
@@ -88,8 +87,7 @@ class NeighbourLists {
   /// `excess` is the return value of Kernels::step.
   bool inner_valid(double excess, const WallPose& pose) const;
 
-  /// Sets the margins of grains and wall grains for new outer lists. No margin exceeds
-  /// widest_margin().
+  /// Sets all margins for new outer lists. No margin exceeds widest_margin().
   void set_outer_margins(const Snapshot& now);
   /// Builds the outer lists and the inner lists. `order` must hold the sites with the margins from
   /// set_outer_margins(). `id` holds the permanent ids of the grains in memory order.

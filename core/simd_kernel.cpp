@@ -20,10 +20,9 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Number of neighbours of a lane whose factors are computed side by side. Within one series, each
-// operation waits for the previous operation. Four neighbours fit in 32 registers if the
-// coefficients are loaded for each use. With 16 registers, one neighbour at a time is faster
-// (README.md).
+// Number of neighbours of a lane whose factors are computed side by side, because each operation of
+// a series waits for the previous operation. Four neighbours fit in 32 registers if the
+// coefficients are loaded for each use. With 16 registers, one neighbour is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // Computes contact_factor(s) of kCount numbers s <= kSeriesEnd.
@@ -84,8 +83,8 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   }
 }
 
-// Adds (1/r - 1) dr of all neighbours that touch. The k-th neighbour of lane l is list[k * kLanes +
-// l].
+// Adds (1/r - 1) dr of all neighbours that touch. The k-th neighbour of lane l is
+// list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,

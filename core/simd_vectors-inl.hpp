@@ -18,8 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
 // Targets without a fused multiply-add would give different bits, so they use the scalar kernel.
-// SVE is not used, because vectors whose size is unknown at compile time cannot be members of a
-// struct.
+// SVE is not used, because a struct cannot hold vectors whose size is unknown at compile time.
 #define SHEARCELL_HAS_SIMD \
   (HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON)
 #if SHEARCELL_HAS_SIMD

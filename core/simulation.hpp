@@ -58,8 +58,7 @@ class Simulation {
 
   /// Advances by `steps` time steps. The watchdog runs at step 0, at every 1024th step and, without
   /// the time-step check, at the end of each cycle. It runs at no other step, because a failure
-  /// must not depend on where the run was recorded or continued. Throws NumericalFailure
-  /// (watchdog.hpp).
+  /// must not depend on where the run was recorded or continued. Throws NumericalFailure.
   void advance(const Drive& drive, std::uint64_t steps);
 
   /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.

@@ -12,8 +12,7 @@ struct SineCosine {
 };
 
 /// Sine and cosine of `angle` [rad] for |angle| <= pi/2, from Taylor series with explicit fused
-/// multiply-adds. The error is about one unit in the last place. For other angles the result is
-/// NaN.
+/// multiply-adds. The error is about one unit in the last place. Other angles give NaN.
 SineCosine sine_cosine(double angle);
 
 /// Sine and cosine of 2 pi step / period. The result is exact at multiples of a quarter turn.

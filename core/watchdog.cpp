@@ -23,8 +23,8 @@ std::string message(const std::string& quantity, double value, double limit, std
   return text.str();
 }
 
-// Calls visit(offset, separation, moving) for every neighbour of grain g. `offset` is the row of
-// the neighbour; `moving` says whether the neighbour belongs to the moving wall.
+// Calls visit(offset, separation, moving) for every neighbour of grain g, with the neighbour's row
+// offset. `moving` says whether the neighbour belongs to the moving wall.
 template <class Visit>
 void for_each_neighbour(const WatchTask& task, std::size_t g, Visit&& visit) {
   const double* own = task.rows + 4 * g;
@@ -134,7 +134,7 @@ void check_time_step(const WatchTask& task) {
       "the time step [s]", task.time_step,
       2 * task.limits.time_step / std::sqrt(fastest.bound * task.scene.stiffness), fastest.grain,
       task.step,
-      "It may be too large for the vibrations of the contacts. Use a smaller time step (more "
+      "Contacts may vibrate too fast for this time step. Use a smaller time step (more "
       "steps_per_cycle; while settling, a smaller settle_time_step_s)" +
           std::string(fastest.grain < 0 ? ", or a heavier wall (wall_mass_grains_per_d2)" : ""));
 }

@@ -9,17 +9,15 @@
 
 namespace shearcell {
 
-/// Schedule of checkpoints. Each period of `every_cycles` cycles ends with a checkpoint, and the
-/// first cycle of the period has checkpoints at `steps`. The last checkpoint is at the end of
-/// `last_cycle`.
+/// Each period of `every_cycles` cycles ends with a checkpoint, and the first cycle of each period
+/// has checkpoints at `steps`. The last checkpoint is at the end of `last_cycle`.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
   std::vector<std::uint64_t> steps = {};  ///< steps of the cycle, ascending; see steps_at()
   std::uint64_t last_cycle = 0;           ///< 0: the schedule does not end
 };
 
-/// First step after `step` at which any cadence has a checkpoint; 2^64 - 1 if there is no such
-/// step.
+/// First step after `step` with a checkpoint of any cadence; 2^64 - 1 if there is no such step.
 std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
                               std::uint64_t step);
 

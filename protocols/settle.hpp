@@ -7,8 +7,7 @@
 
 namespace shearcell {
 
-/// Largest number of time steps of a stage. A double represents all whole numbers up to this
-/// number.
+/// Largest number of time steps of a stage. A double holds all whole numbers up to this number.
 inline constexpr double kMostSteps = 1e15;
 
 /// Interval of the checks whether a packing has settled [s].
@@ -29,8 +28,8 @@ struct SettleParameters {
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has pressed the grains together. With gravity
-/// from the start, the grains would form a heap. A heap of nearly the weight P A_w (0.95 P A_w at N
-/// = 18200) jams between rough side walls before it reaches the top.
+/// from the start, the grains would form a heap. A heap of nearly the weight P A_w (0.95 P A_w at
+/// N = 18200) jams between rough side walls before it reaches the top.
 ///
 /// Under gravity, the packing is checked every 0.1 s. It has settled when three numbers are below
 /// their tolerances: the force imbalance of the moving wall, the drag force B_w y' on this wall
@@ -41,7 +40,7 @@ double pressing_time(const Scene& scene, double height, double per_area);
 /// wall and of a side wall may catch a grain between them and push it out with the whole load.
 class Settle {
  public:
-  /// `scene` is the scene at the end of settling, with gravity.
+  /// `scene` is the scene after gravity is switched on.
   Settle(const SettleParameters& parameters, const Scene& scene);
   /// See Protocol::advance.
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;

@@ -53,8 +53,7 @@ HWY_AFTER_NAMESPACE();
 namespace shearcell::bench {
 
 double multiplications(std::size_t lanes, double slots) {
-  // Per slot: 3 for the squared distance, 7 for the series, 3 for the sums. Per block: 6 for the
-  // velocity, 3 for the position, 5 for the margin.
+  // Operations per slot: distance 3, series 7, sums 3; per block: velocity 6, position 3, margin 5.
   return (13 * slots + 14) / static_cast<double>(lanes);
 }
 

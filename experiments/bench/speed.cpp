@@ -16,9 +16,8 @@
 namespace shearcell::bench {
 namespace {
 
-// The engine has no clock, so its kernels are timed from outside. timed_kernels() wraps each
-// function of a kernel in a function that adds up the times. Only one simulation with one thread
-// can be timed.
+// The engine has no clock, so timed_kernels() wraps the functions of a kernel and adds up the
+// times. Only one simulation with one thread can be timed at once.
 struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;

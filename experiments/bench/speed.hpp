@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures the speed of the engine in a sheared cell, and the share of each part of the
-// computation.
+// Measures the speed of the engine in a sheared cell, and the share of each part of the work.
 #pragma once
 
 #include <cstddef>
@@ -33,9 +32,8 @@ struct SpeedResult {
   std::string simd = {};
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Fractions of the computing time. Walls are the wall planes and the moving wall's grains.
-  /// Grains of other walls belong to the forces. The rest is moving wall, drive, sorting and
-  /// watchdog.
+  /// Fractions of the time. Walls are the wall planes and the moving wall's grains. Other wall
+  /// grains belong to the forces. The rest is moving wall, drive, sorting and watchdog.
   double force_share = 0, integration_share = 0, wall_share = 0;
   double search_share = 0, prune_share = 0;  ///< search of outer lists, pruning of inner lists
   double steps_per_search = 0, steps_per_prune = 0;
