@@ -32,7 +32,7 @@ class CellOrder {
   /// Approximate index distance from a site to its last neighbour in the sorted order, a multiple
   /// of 8. It is 0 for a cell that fits in the cache of a core.
   std::size_t ahead() const { return ahead_; }
-  /// The sorted order: entry k is the index of the k-th site in the `sites` given to build().
+  /// Index of each sorted site in the unsorted list of sites that build() received.
   const std::vector<std::int32_t>& site() const { return site_; }
   std::size_t bytes() const;
 

@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// The cell does not suit its grains. The message says which parameter to change.
+/// Thrown if a cell is too small or too large for its grains. The message says what to change.
 class GeometryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -30,8 +30,9 @@ struct Geometry {
   MovingWall moving = MovingWall::bottom;
 };
 
-/// Width and depth L [d] of a cell of height height_over_width * L that holds the grains at
-/// nominal_packing_fraction. Each rough wall takes a layer 0.175 d thick from the free volume.
+/// Width L [d] of a cell that holds the grains at nominal_packing_fraction. The depth is also L,
+/// and the height is height_over_width * L. Each rough wall takes a layer of 0.175 d from the
+/// volume.
 double cell_width(const Geometry& geometry);
 
 /// Callback, called about once per millisecond while grains are placed. It may throw to stop.

@@ -74,8 +74,8 @@ double Reference::wall_moved(const WallPose& pose) const {
 
 double Reference::margin_loss(double tan_theta) const {
   // The smallest singular value of a simple shear by e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A
-  // distance of 1 plus two margins shrinks by at most this factor. Each of the two grains loses
-  // half of the difference.
+  // distance of 1 plus two margins shrinks by at most this factor. Each of the two grains accounts
+  // for half of the loss.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 

@@ -21,8 +21,8 @@ namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
 // Number of neighbours of a lane whose factors are computed side by side, because each operation of
-// a series waits for the previous operation. Four neighbours fit in 32 registers if the
-// coefficients are loaded for each use. With 16 registers, one neighbour is faster (README.md).
+// a series waits for the previous operation. Four neighbours fit in 32 registers if coefficients
+// are loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // Computes contact_factor(s) of kCount numbers s <= kSeriesEnd.
@@ -167,7 +167,7 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
 }
 
 // Loads the positions and margins of a block. Only neighbours in the next row of cells are not in
-// the cache yet. They lie about `ahead` rows further in memory and are prefetched.
+// the cache yet. These neighbours lie about `ahead` rows further in memory and are prefetched.
 HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {

@@ -26,8 +26,8 @@ using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
 // Stores the lanes of `values` that `mask` selects one after another, and returns the number of
-// these lanes. A whole vector is written, and the rest of it is undefined. The values are integers
-// because for doubles, Compress of Highway 1.0 copies a table of 16 kB on every call.
+// these lanes. A whole vector is written, and the rest of it is undefined. Doubles are not used
+// because Compress of Highway 1.0 copies a table of 16 kB per call for doubles.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -37,8 +37,8 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
 }
 
 // Writes the offsets of the ids to `outer` in ascending id. The rank of an id is the number of
-// smaller ids. Two vectors hold nearly every list. They are always compared, so that the branches
-// are predicted. `ids` must have room for two vectors after its end.
+// smaller ids. Two vectors hold nearly every list. Both vectors are always compared, so that the
+// branches are predicted. `ids` must have room for two vectors after its end.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -85,7 +85,7 @@ class Surroundings {
     }
   }
 
-  // Writes the ids of the sites near the site at `place` to `found`. Returns the number of ids.
+  // Writes the ids of all sites near a given site to `found`. Returns the number of these ids.
   std::size_t find_near(const SearchTask& t, std::size_t place,
                         std::int32_t* HWY_RESTRICT found) const {
     const V depth = hn::Set(kD, t.depth);

@@ -141,8 +141,8 @@ double Simulation::over_blocks(const StepTask& task) {
   });
 }
 
-// Runs the kernel with constants that make it write the contact sums into sum_ and move no grain.
-// Returns false if the lists were not valid.
+// Calls the kernel with constants for which it moves no grain and writes the contact sums into
+// sum_. Returns false if the lists were not valid.
 bool Simulation::sum_contacts() {
   set_contacts(pose_.tan_theta);
   StepTask task = task_;
@@ -221,7 +221,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // Without lists, no step has changed the state since it was loaded.
+  // Without lists, no step was computed, and the state is the one that was loaded.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 

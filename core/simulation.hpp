@@ -47,7 +47,7 @@ struct Forces {
   double on_wall = 0;         ///< upward force on the moving wall from load and contacts
 };
 
-/// Largest value to which a run may set its overlap limit [d].
+/// Upper bound of the overlap limit of a run [d].
 inline constexpr double kLargestOverlapLimit = 0.5;
 
 class Simulation {

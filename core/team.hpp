@@ -45,7 +45,8 @@ class Team {
     wait_for_workers();
   }
 
-  /// Calls work(first, last) in the same way as run(). Returns the largest result of all calls.
+  /// Divides [0, count) among the threads, which call work(first, last). Returns the largest
+  /// result.
   template <class Work>
   double largest(std::size_t count, Work&& work) {
     run(count, [&](std::size_t thread, std::size_t first, std::size_t last) {

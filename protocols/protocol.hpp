@@ -13,7 +13,7 @@ namespace shearcell {
 struct StageProgress {
   double cycle = 0;             ///< cycles done; 0 for a stage without cycles
   bool checkpoint_due = false;  ///< this state must be recorded
-  bool finished = false;        ///< the stage is complete; its last state must be recorded too
+  bool finished = false;        ///< the stage is complete, and this state must be recorded
 };
 
 /// What happens during one stage. A protocol has parameters but no state. The next action depends

@@ -10,7 +10,7 @@ namespace shearcell {
 /// Largest number of time steps of a stage. A double holds all whole numbers up to this number.
 inline constexpr double kMostSteps = 1e15;
 
-/// Interval of the checks whether a packing has settled [s].
+/// Time between two checks of a settling packing [s].
 inline constexpr double kSettleCheckInterval = 0.1;
 
 struct SettleParameters {
@@ -45,8 +45,8 @@ class Settle {
   /// See Protocol::advance.
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;
 
-  /// pressing_time() in steps, rounded up to a multiple of the check interval. It is at most the
-  /// time limit, and 0 without pressure.
+  /// Number of time steps in pressing_time(), rounded up to a multiple of the check interval. It is
+  /// at most the time limit, and 0 without pressure.
   std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
   /// Number of steps before gravity is switched on: compaction_steps(), or 0 for a scene without
