@@ -37,7 +37,7 @@ inline double one_minus_square(double dx, double dy, double dz) {
   return std::fma(-dz, dz, std::fma(-dy, dy, std::fma(-dx, dx, 1.0)));
 }
 
-/// Reduces a difference in z [d] to that of the nearest periodic image.
+/// Returns the difference in z [d] to the nearest periodic image, from any difference `dz` [d].
 inline double nearest_image(double dz, double depth, double per_depth) {
   return std::fma(-std::nearbyint(dz * per_depth), depth, dz);
 }

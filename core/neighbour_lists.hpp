@@ -67,7 +67,7 @@ class Reference {
 
 /// State of the cell when lists are built or pruned.
 struct Snapshot {
-  double* rows = nullptr;  ///< rows as in kernel.hpp; the margins are written by the lists
+  double* rows = nullptr;  ///< rows as in kernel.hpp; NeighbourLists writes the margins
   const double* velocity[3] = {};
   std::size_t grains = 0;
   WallPose pose;

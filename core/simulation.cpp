@@ -221,7 +221,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // Without lists, no step was computed, and the state is the one that was loaded.
+  // Without lists, no step was computed, so the loaded state has not changed.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 

@@ -43,7 +43,7 @@ struct ListCounts {
 
 /// Net forces [m d/s^2] on the grains and the moving wall.
 struct Forces {
-  Eigen::Matrix3Xd on_grain;  ///< from contacts and gravity, in the order of permanent ids
+  Eigen::Matrix3Xd on_grain;  ///< force from contacts and gravity, by permanent id
   double on_wall = 0;         ///< upward force on the moving wall from load and contacts
 };
 

@@ -14,8 +14,8 @@
 
 namespace shearcell {
 
-/// Planes and wall grains in a pose. The permanent ids of wall grains count the grains of the
-/// moving wall first. Apart from this, the ids follow the order of Cell::wall_grains.
+/// Planes and wall grains in a pose. Permanent ids begin with the grains of the moving wall. The
+/// other wall grains follow in the order of Cell::wall_grains.
 class Walls {
  public:
   explicit Walls(const Cell& cell);

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// A quantity exceeds its limit. what() gives both numbers and says what to change.
+/// Thrown if a quantity exceeds its limit. what() gives both numbers and says what to change.
 class NumericalFailure : public std::runtime_error {
  public:
   NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,

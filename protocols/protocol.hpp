@@ -16,8 +16,8 @@ struct StageProgress {
   bool finished = false;        ///< the stage is complete, and this state must be recorded
 };
 
-/// What happens during one stage. A protocol has parameters but no state. The next action depends
-/// only on the state of the simulation, so a stage continues from any checkpoint bit for bit.
+/// Defines one stage. A protocol has parameters but no state. The next action depends only on the
+/// state of the simulation, so a stage continues from any checkpoint bit for bit.
 struct Protocol {
   Drive drive = {};             ///< motion of the walls
   std::uint64_t last_step = 0;  ///< last step of the stage; 0 if the end depends on the state

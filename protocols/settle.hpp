@@ -16,7 +16,7 @@ inline constexpr double kSettleCheckInterval = 0.1;
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain, divided by P d^3
-  double time_limit = 60;           ///< [s]; a packing that settles more slowly is an error
+  double time_limit = 60;           ///< largest settling time [s]; a longer time is an error
   double overlap_limit =
       WatchdogLimits{}.overlap;  ///< overlap limit after the wall has pressed the grains [d]
 };
@@ -57,8 +57,8 @@ class Settle {
   std::uint64_t next_check(std::uint64_t step) const;
 
  private:
-  /// Returns true if this step is a check and the packing has settled. Throws NumericalFailure at
-  /// the first check after the time limit.
+  /// Returns true if the simulation is at a check and the packing has settled. Throws
+  /// NumericalFailure at the first check after the time limit.
   bool finished(const Simulation& simulation) const;
   bool settled(const Simulation& simulation) const;
 

@@ -106,7 +106,7 @@ Packing prepare(std::size_t grains) {
   parameters.grains = (grains + parts - 1) / parts;
   Packing made = pressed_packing(parameters, 1);
   Simulation simulation = simulate(made);
-  simulation.advance({}, 2000);  // presses with gravity, too
+  simulation.advance({}, 2000);  // advances the packing under gravity
   made.state = simulation.state();
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
