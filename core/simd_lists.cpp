@@ -25,9 +25,9 @@ namespace HWY_NAMESPACE {
 using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
-// Stores the lanes of `values` that `mask` selects one after another, and returns the number of
-// these lanes. A whole vector is written, and the rest of it is undefined. Doubles are not used
-// because Compress of Highway 1.0 copies a table of 16 kB per call for doubles.
+// Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
+// whole vector is written, and the rest of it is undefined. Doubles are not used because Compress
+// of Highway 1.0 copies a table of 16 kB per call for doubles.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
