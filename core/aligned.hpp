@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors whose storage starts at a cache line, so that rows of four doubles never cross one.
+// Vectors aligned to cache lines, so that a row of four doubles never lies in two cache lines.
 #pragma once
 
 #include <cstddef>

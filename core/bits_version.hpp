@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The version of the bits that the engine computes.
+// Version number of the engine's results, bit for bit.
 #pragma once
 
 #include <cstdint>
 
 namespace shearcell {
 
-/// Two programs with the same version compute the same bits of a state from the same initial state.
-/// Raise it with every change of bits, and add a line to the golden states (tests/core/golden.hpp).
-///   1: all programs whose events did not record this number (event layouts 1 and 2)
+/// Programs with the same version compute the same states, bit for bit, from the same initial
+/// state. Raise this number when a change alters any bit, and add a line to tests/core/golden.hpp.
+///   1: all programs whose events do not record this number (event layouts 1 and 2)
 ///   2: the force loop also sums the wall forces
 inline constexpr std::uint64_t bits_version = 2;
 

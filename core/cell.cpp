@@ -30,7 +30,7 @@ Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose,
     case WallSide::right:
       p.x() += (p.y() - pose.top) * pose.tan_theta;
       break;
-    case WallSide::bottom:  // moves as one body with the plane's height
+    case WallSide::bottom:  // the grains of this wall move as one rigid body
       p.x() += (pose.bottom - pose.top) * pose.tan_theta;
       p.y() += pose.bottom - cell.bottom;
       break;
@@ -59,7 +59,7 @@ Eigen::Matrix3Xd wall_grain_velocities(const Cell& cell, const WallPose& pose, d
   for (const auto& [side, p] : cell.wall_grains) {
     const double y = side == WallSide::bottom ? pose.bottom : p.y();
     const double rise = side == WallSide::bottom ? bottom : 0;
-    // Adding 0 makes -0 a 0.
+    // Adding +0 turns -0 into +0.
     const double along = (y - pose.top) * shear_rate + (rise - top) * pose.tan_theta + 0.0;
     velocities.col(column++) =
         side == WallSide::top ? Eigen::Vector3d(0, top, 0) : Eigen::Vector3d(along, rise, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The box that holds the grains: four walls, two of which tilt, one of which moves; periodic in z.
+// The cell around the grains: two tilting side walls, a fixed and a moving wall, periodic in z.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,37 +22,37 @@ inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", 
 /// A sphere of diameter d fixed to a rough wall.
 struct WallGrain {
   WallSide side;
-  /// Centre [d] in the untilted cell, while the plane of its wall is at its height in `Cell`.
+  /// Centre [d] in the untilted cell with the planes at Cell::bottom and Cell::top.
   Eigen::Vector3d position;
 };
 
-/// The largest width or height of a cell [d]. Neighbour lists have positions in single precision,
-/// whose rounding must be below their margins.
+/// Largest width or height of a cell [d]. Neighbour lists store positions in single precision, and
+/// the rounding errors must stay below the margins of the lists.
 inline constexpr double kLongestCell = 1e5;
 
-/// The smallest depth [d]: in a shallower cell a grain could touch another one across both periodic
-/// boundaries.
+/// Smallest depth of a cell [d]. In a shallower cell, a grain could touch two periodic images of
+/// the same neighbour.
 inline constexpr double kShallowestCell = 3;
 
-/// The largest volume of a cell, divided by N + 100 [d^3]. This limits the memory of an analysis,
-/// which is proportional to the number of layers in the cell.
+/// Largest value of V / (N + 100) for a cell of volume V with N grains [d^3]. This limits the
+/// memory of the analysis, which grows with the number of layers in the cell.
 inline constexpr double kLoosestCell = 1e4;
 
-/// Geometry that does not change during a run. Lengths in grain diameters d.
+/// Geometry that does not change during a run. Lengths are in grain diameters d.
 ///
 /// x is the shear direction, y points up, z is the depth and periodic. In the untilted cell the
 /// side planes lie at x = 0 and x = width, the horizontal planes at y = bottom and y = top.
 struct Cell {
-  double width = 0;   ///< L, distance of the side planes [d]
+  double width = 0;   ///< L, distance between the side planes [d]
   double depth = 0;   ///< period in z [d]
-  double bottom = 0;  ///< height of the bottom plane before it moves [d]
-  double top = 0;     ///< height of the top plane before it moves [d]
+  double bottom = 0;  ///< initial height of the bottom plane [d]
+  double top = 0;     ///< initial height of the top plane [d]
   MovingWall moving = MovingWall::bottom;
-  std::vector<WallGrain> wall_grains = {};  ///< empty when the walls are smooth; order is permanent
+  std::vector<WallGrain> wall_grains = {};  ///< empty for smooth walls; the order never changes
 };
 
-/// The walls at one instant. The side walls tilt about the top wall, which is fixed in x: a wall
-/// point at height y is displaced by (y - top) tan(theta).
+/// Tilt and heights of the walls at one instant. The top wall is fixed in x. A wall point at height
+/// y is displaced in x by (y - top) tan(theta).
 struct WallPose {
   double tan_theta = 0;
   double cos_theta = 1;
@@ -65,32 +65,32 @@ inline WallSide moving_side(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
 }
 
-/// 1 if the cell lies above the moving wall, -1 if it lies below.
+/// 1 if y increases from the moving wall into the cell (bottom wall), -1 if y decreases (top wall).
 inline double inwards(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? 1 : -1;
 }
 
-/// A wall plane in the plane of shear: a point and the unit normal into the cell.
+/// A wall plane, given in x and y by a point [d] and the unit normal that points into the cell.
 struct WallPlane {
   double point[2] = {}, normal[2] = {};
 };
 
-/// Distance of a place from a plane [d], positive inside the cell.
+/// Distance of the point (x, y) from a plane [d], positive inside the cell.
 inline double distance_to(const WallPlane& plane, double x, double y) {
   return (x - plane.point[0]) * plane.normal[0] + (y - plane.point[1]) * plane.normal[1];
 }
 
-/// The planes in a pose, indexed by WallSide.
+/// The four wall planes in a pose, indexed by WallSide.
 std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose);
 
-/// The pose at a tilt angle [rad] and a height of the moving plane [d]. It has the same bits on
-/// every machine.
+/// The pose at tilt angle `theta` [rad] with the moving wall at `wall_height` [d]. The result has
+/// the same bits on every machine.
 WallPose wall_pose(const Cell& cell, double theta, double wall_height);
 
 /// Centre of one wall grain in a pose [d].
 Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose, const WallGrain& grain);
 
-/// Centres of all wall grains in a pose, 3 x n [d], in their permanent order.
+/// Centres of all wall grains in a pose, 3 x n [d], in the order of Cell::wall_grains.
 Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose);
 
 /// Velocities of all wall grains [d/s] while tan(theta) changes at `shear_rate` [1/s] and the

@@ -6,17 +6,17 @@
 
 namespace shearcell {
 
-// A kernel that visits the sites in order finds most neighbours in three rows of cells: the row
-// below, the row of the site, and the row above. Strips keep the rows so short that all three stay
-// in the cache.
+// The kernel visits the sites row by row. Most neighbours of a site lie in three rows of cells: the
+// row below, the row of the site, and the row above. Strips shorten the rows, so that all three
+// rows stay in the cache.
 void CellOrder::choose_strip(std::size_t sites) {
   Grid& cells = grid_.cells;
   constexpr double kSitesPerRow = 1200;
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // The row above, one more line on either side, and a fifth for rows that are fuller than the
-  // mean. A small cell fits in the cache as a whole.
+  // Prefetch distance: one row, one more line of cells on each side, and 20 % more because some
+  // rows hold more sites than the average. A small cell fits in the cache and needs no prefetch.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));
@@ -24,7 +24,7 @@ void CellOrder::choose_strip(std::size_t sites) {
 
 void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
                       const std::vector<Site>& sites, Team& team) {
-  // A pair at distance r is at most r sqrt(1 + tan^2) apart along x in the untilted frame.
+  // Two points at distance r differ by at most r sqrt(1 + tan^2(theta)) in x of the untilted frame.
   const double reach_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
   grid_.cells = Grid(cell, pose, {reach_x, reach, reach}, sites.size());
   choose_strip(sites.size());
@@ -40,9 +40,9 @@ void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, cons
   for (std::size_t c = 0; c < cells; ++c) begin_[c + 1] += begin_[c];
 
   site_.resize(sites.size());
-  id_.assign(padded(sites.size()) + 8, 0);  // a run may be read up to a vector beyond its end
+  id_.assign(padded(sites.size()) + 8, 0);  // vector loads may read past the last site
   for (auto& axis : row_) axis.resize(padded(sites.size()) + 8);
-  std::vector<std::uint32_t>& next = cell_;  // cell_ is filled only after `next` was used
+  std::vector<std::uint32_t>& next = cell_;  // scratch memory, since cell_ is filled later
   next.assign(begin_.begin(), begin_.end());
   for (std::size_t s = 0; s < sites.size(); ++s) {
     site_[next[cell_of_site_[s]]++] = static_cast<std::int32_t>(s);

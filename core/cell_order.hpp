@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains and wall grains copied into the order of a grid's cells, so that a search reads contiguous
-// memory.
+// Copies of grains and wall grains, sorted by grid cell, so that a neighbour search reads
+// contiguous memory.
 #pragma once
 
 #include <array>
@@ -15,24 +15,24 @@
 
 namespace shearcell {
 
-/// Row offset and permanent id of a grain or a wall grain.
+/// A grain or a wall grain, with row offset (kernel.hpp) and permanent id.
 struct Site {
   std::int32_t offset, id;
 };
 
 class CellOrder {
  public:
-  /// Sorts the sites, whose positions are in `rows` (kernel.hpp), into cells. Two sites at most
-  /// `reach` [d] apart lie in the same cell or in neighbouring cells.
+  /// Sorts the sites into grid cells. `rows` holds the positions of the sites (kernel.hpp). Sites
+  /// up to `reach` [d] apart lie in the same grid cell or in neighbouring grid cells.
   void build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
              const std::vector<Site>& sites, Team& team);
 
   const CellGrid& grid() const { return grid_; }
   std::size_t size() const { return site_.size(); }
-  /// About how many places lie between a site and its farthest neighbours, a multiple of 8; 0 for a
-  /// cell that fits in a core's cache.
+  /// Approximate index distance from a site to its last neighbour in the sorted order, a multiple
+  /// of 8. It is 0 for a cell that fits in the cache of a core.
   std::size_t ahead() const { return ahead_; }
-  /// For each place the index of its site in the list that build() was given.
+  /// Index of each sorted site in the unsorted list of sites that build() received.
   const std::vector<std::int32_t>& site() const { return site_; }
   std::size_t bytes() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact law: a linear repulsive spring between spheres of diameter 1 (d).
+// The contact law: a linear repulsive spring between two spheres of diameter d = 1.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 
 namespace shearcell {
 
-/// The force of grain j on grain i is k (1 - r) n = k (1/r - 1) dr with dr = r_i - r_j. The factor
-/// (1/r - 1) is a function of s = 1 - r^2 alone. Up to kSeriesEnd (an overlap of 1.6 % of d) it is
-/// s times this polynomial, a Chebyshev fit of ((1 - s)^(-1/2) - 1) / s on [0, 1/32] with a
-/// relative error below 1.6e-15. It costs a fifth of an IEEE square root and division; one degree
-/// more gives 4e-16 and is 7 % slower. Fused multiply-adds in a fixed order give the same bits on
-/// every machine.
+/// Grain j acts on grain i with the force k (1 - r) n = k (1/r - 1) dr, where dr = r_i - r_j. The
+/// factor (1/r - 1) depends only on s = 1 - r^2. For s <= kSeriesEnd (overlaps up to 1.6 % of d)
+/// the factor is s times this polynomial, a Chebyshev fit of ((1 - s)^(-1/2) - 1) / s on [0, 1/32]
+/// with a relative error below 1.6e-15. The polynomial takes a fifth of the time of an IEEE square
+/// root and division. A polynomial of one degree more has an error of 4e-16 and is 7 % slower.
+/// Fused multiply-adds in a fixed order give the same bits on every machine.
 inline constexpr std::array<double, 7> kContactSeries = {
     0x1.0000000000007p-1, 0x1.7ffffffff5521p-2, 0x1.40000015536bcp-2, 0x1.17fff00e04b40p-2,
     0x1.f80b53f5bc39cp-3, 0x1.cbf1852eaae8cp-3, 0x1.dbe4440991bcbp-3};
 inline constexpr double kSeriesEnd = 0.03125;
 
-/// (1/r - 1) for s = 1 - r^2 in (0, 1], infinite for coincident centres; 0 for s <= 0. The SIMD
-/// kernel evaluates the same operations.
+/// Returns 1/r - 1 for s = 1 - r^2 in (0, 1], and 0 for s <= 0. The result is infinite for s = 1
+/// (coincident centres). The SIMD kernel performs the same operations.
 inline double contact_factor(double s) {
   if (s > kSeriesEnd) return 1.0 / std::sqrt(1.0 - s) - 1.0;
   s = std::max(0.0, s);  // faster than a branch, which would be mispredicted
@@ -32,12 +32,12 @@ inline double contact_factor(double s) {
   return s * series;
 }
 
-/// 1 - r^2 of a separation, positive where two grains touch.
+/// 1 - r^2, where r is the distance between two grains. It is positive if the grains touch.
 inline double one_minus_square(double dx, double dy, double dz) {
   return std::fma(-dz, dz, std::fma(-dy, dy, std::fma(-dx, dx, 1.0)));
 }
 
-/// The nearest periodic image of a difference in z.
+/// Returns the difference in z [d] to the nearest periodic image, from any difference `dz` [d].
 inline double nearest_image(double dz, double depth, double per_depth) {
   return std::fma(-std::nearbyint(dz * per_depth), depth, dz);
 }

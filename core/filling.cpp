@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// Volume per area that the grains of a rough wall take from the cell: 0.66 grains per d^2, each a
-// cap of mean volume 0.17 d^3 for recesses of 0 to d/4, and the gaps behind them.
+// Volume per wall area that a rough wall takes from the cell [d]: 0.66 grains per d^2, which fill
+// 0.17 d^3 of the cell each (mean for recesses of 0 to d/4), and the gaps between these grains.
 constexpr double kRoughLayer = 0.175;
-constexpr std::uint32_t kFillStream = 4;  // after the four wall sides
+constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
-// Each draw has one stream of random numbers per wall side. The streams of later draws come after
-// kFillStream, with one unused stream between two draws.
+// Random stream of a wall side for a Geometry::wall_grain_draw. Draw 0 uses the streams 0 to 3,
+// draw 1 the streams 5 to 8, draw 2 the streams 10 to 13, and so on.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }
@@ -29,7 +29,7 @@ double wrapped_difference(double dz, double depth) {
   return dz - depth * std::nearbyint(dz / depth);
 }
 
-// Random numbers of one attempt to place a grain.
+// Four uniform random numbers for one attempt to place a grain.
 std::array<double, 4> draw(std::uint64_t seed, std::size_t grains, std::uint32_t stream,
                            std::uint64_t attempt) {
   const auto n = static_cast<std::uint32_t>(grains);
@@ -44,15 +44,15 @@ void poll_sometimes(const Poll& poll, std::uint64_t attempt) {
   if (poll && attempt % 1024 == 1023) poll();
 }
 
-// Random sequential addition of discs of diameter d on a wall of `length` by `depth`, periodic
-// along the depth; each becomes a wall grain through `place(along, z, recess)`.
+// Places discs of diameter d on a wall of `length` by `depth` by random sequential addition. The
+// wall is periodic along the depth. Calls place(along, z, recess) for each disc.
 template <class Place>
 void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,
                      double depth, const Poll& poll, Place&& place) {
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
-  // Near jamming (0.547) the number of attempts diverges; a wall with fewer grains is still rough.
+  // The number of attempts diverges near jamming (0.547). A wall with fewer grains is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);
@@ -86,7 +86,7 @@ double cell_width(const Geometry& geometry) {
   };
   double low = layers;
   double high = std::cbrt(volume) + 1.0 + layers;
-  while (too_small(high)) high *= 2;  // a flat cell is wider than the first bound
+  while (too_small(high)) high *= 2;  // the first bound is too small for a flat cell
   for (int i = 0; i < 200 && low < high; ++i) {
     const double width = 0.5 * (low + high);
     (too_small(width) ? low : high) = width;
@@ -124,14 +124,14 @@ Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll) {
   if (!(cell.depth >= kShallowestCell)) {
     throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
                         std::to_string(cell.depth) +
-                        " d deep; the periodic depth must be at least 3 d, so that no grain meets "
-                        "another through both seams: use more grains");
+                        " d deep. The depth must be at least 3 d, so that no grain touches two "
+                        "periodic images of the same neighbour. Use more grains");
   }
   if (too_large(geometry)) {
     throw GeometryError("a cell of " + std::to_string(cell.width) + " d by " +
                         std::to_string(fill_height(geometry)) + " d is too large for " +
                         std::to_string(geometry.grains) +
-                        " grains: raise fill_packing_fraction or nominal_packing_fraction");
+                        " grains. Raise fill_packing_fraction or nominal_packing_fraction");
   }
   cell.bottom = 0;
   cell.top = fill_height(geometry);
@@ -158,7 +158,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
   if (!(height >= 1)) {
     throw GeometryError("a cell for " + std::to_string(geometry.grains) + " grains is only " +
                         std::to_string(height) +
-                        " d high, too low for a grain: use more grains or raise height_over_width");
+                        " d high, too low for a grain. Use more grains or raise height_over_width");
   }
   State state;
   const auto n = static_cast<Eigen::Index>(geometry.grains);
@@ -166,7 +166,7 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
   state.velocity = Eigen::Matrix3Xd::Zero(3, n);
   state.wall_height = cell.moving == MovingWall::bottom ? cell.bottom : cell.top;
 
-  // Wall grains come first in `sites`, so that one search finds wall grains and grains.
+  // `sites` holds the wall grains and then the placed grains, so that one search finds both.
   std::vector<Eigen::Vector3d> sites;
   LinkedCells near(cell, {.bottom = cell.bottom, .top = cell.top}, 1.0,
                    geometry.grains + cell.wall_grains.size());
@@ -182,8 +182,8 @@ State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed, 
     for (bool free = false; !free; ++attempt) {
       if (attempt == attempts) {
         throw GeometryError("only " + std::to_string(i) + " of " + std::to_string(n) +
-                            " grains found a place in the loose filling: lower "
-                            "fill_packing_fraction");
+                            " grains could be placed without touching another grain. "
+                            "Lower fill_packing_fraction");
       }
       poll_sometimes(poll, attempt);
       const auto u = draw(seed, geometry.grains, kFillStream, attempt);

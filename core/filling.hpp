@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The initial cell and loose grains of a run. They depend on seed, number of grains and geometry
-// only.
+// The initial cell of a run and its loose grains. Both depend only on the seed, the number of
+// grains and the geometry.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,29 @@
 
 namespace shearcell {
 
-/// The geometry cannot hold the grains; the message says what to change.
+/// Thrown if a cell is too small or too large for its grains. The message says what to change.
 class GeometryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct Geometry {
   std::size_t grains = 0;
-  double height_over_width = 1.675;        ///< of the settled cell (supplement E)
-  double nominal_packing_fraction = 0.64;  ///< sets the width for a given number of grains
-  double fill_packing_fraction = 0.28;     ///< of the loose initial grains; sets the fill height
+  double height_over_width = 1.675;        ///< aspect ratio of the settled cell (supplement E)
+  double nominal_packing_fraction = 0.64;  ///< determines the width of the cell
+  double fill_packing_fraction = 0.28;     ///< packing fraction of the loose initial grains
   WallTexture walls = WallTexture::rough;
-  double wall_grain_area_fraction = 0.52;  ///< target of the sequential addition
-  double wall_grain_recess = 0.25;         ///< largest distance of a centre behind its plane [d]
-  std::uint32_t wall_grain_draw = 0;  ///< other values give other wall grains for the same seed
+  double wall_grain_area_fraction = 0.52;  ///< target area fraction of discs on a rough wall
+  double wall_grain_recess = 0.25;         ///< largest distance of centres behind the plane [d]
+  std::uint32_t wall_grain_draw = 0;       ///< each value gives different wall grains
   MovingWall moving = MovingWall::bottom;
 };
 
-/// Width L [d] of a cell of height_over_width * L by L by L that holds the grains at the nominal
-/// volume fraction. Rough walls take up a layer of 0.175 d each: the volume of their grains.
+/// Width L [d] of a cell that holds the grains at nominal_packing_fraction. The depth is also L,
+/// and the height is height_over_width * L. Each rough wall takes a layer of 0.175 d from the
+/// volume.
 double cell_width(const Geometry& geometry);
 
-/// Called about every millisecond during a long placement. It may throw to stop the placement.
+/// Callback, called about once per millisecond while grains are placed. It may throw to stop.
 using Poll = std::function<void()>;
 
 /// Distance [d] between the bottom and the top plane when the loose grains are placed.
@@ -43,22 +44,22 @@ double fill_height(const Geometry& geometry);
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains. It is if its width or height exceeds kLongestCell,
-/// if its volume per grain exceeds half of kLoosestCell (the wall may still move outwards), or if
-/// it has more than 10^4 + 1000 N wall grains, each of which may take 6000 attempts to place.
+/// Whether the cell is too large for its grains. This is true if the width or height exceeds
+/// kLongestCell, if V / (N + 100) exceeds half of kLoosestCell (the moving wall may still move
+/// outwards), or if there are more than 10^4 + 1000 N wall grains (each may need 6000 attempts).
 bool too_large(const Geometry& geometry);
 
-/// The cell at its fill height, with its wall grains placed by random sequential addition.
-/// Throws GeometryError.
+/// Makes a cell of height fill_height() with wall grains from random sequential addition. Throws
+/// GeometryError.
 Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll = {});
 
-/// Grains at rest at random places, none touching another, a wall grain or a plane.
-/// Throws GeometryError when they cannot be placed.
+/// Places grains at rest at random positions where they touch no other grain and no wall. Throws
+/// GeometryError if not all grains can be placed.
 State fill_cell(const Cell& cell, const Geometry& geometry, std::uint64_t seed,
                 const Poll& poll = {});
 
-/// Moves each grain by independent normal noise of standard deviation `noise` [d] along x, y and z.
-/// The noise depends on the seed and the number of the grain only.
+/// Displaces each grain along x, y and z by independent normal noise of standard deviation `noise`
+/// [d]. The noise of a grain depends only on the seed and the grain's index.
 void add_noise(State& state, double noise, std::uint64_t seed);
 
 }  // namespace shearcell

@@ -6,7 +6,7 @@
 namespace shearcell {
 namespace {
 
-// The cell of a scaled coordinate, clamped in floating point.
+// Grid index along one axis. The value is clamped first, because the conversion may overflow.
 std::int32_t clamp_to_cell(double scaled, std::int32_t cells) {
   if (!(scaled > 0)) return 0;
   return static_cast<std::int32_t>(std::min(scaled, static_cast<double>(cells - 1)));

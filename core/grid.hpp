@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cell of a simulation, cut into the cells of a grid. A grid cell is at least as wide as the
-// search distance, so all points near to a point lie in its grid cell or in the 26 around it.
+// A grid that divides the simulation cell into grid cells. A grid cell is at least as wide as the
+// search distance. So all neighbours of a point lie in its grid cell or in the 26 cells around it.
 #pragma once
 
 #include <algorithm>
@@ -12,34 +12,33 @@
 
 namespace shearcell {
 
-/// Cells with the numbers begin, ..., end - 1.
+/// The grid cells with the numbers begin to end - 1.
 struct CellRange {
   std::size_t begin, end;
 };
 
-/// A grid in the untilted frame of a pose, periodic in z. Points outside the walls belong to the
-/// border cells, which is correct up to a distance of one cell. The grid is cut along z into
-/// strips; within a strip x is fastest, then z, then y.
+/// A grid in the untilted frame of a pose, periodic in z. Points up to one grid cell outside the
+/// walls are found, because they belong to the border cells. The layers in z are grouped into
+/// strips. Within a strip, the cell number increases fastest along x, then along z, then along y.
 struct Grid {
-  std::int32_t columns = 1, layers = 1, rows = 1;  ///< in x, z and y
-  std::int32_t strip = 1;                          ///< layers of a strip; the last may have fewer
+  std::int32_t columns = 1, layers = 1, rows = 1;  ///< number of cells in x, z and y
+  std::int32_t strip = 1;  ///< layers per strip; the last strip may have fewer
   double depth = 0;
   WallPose pose;
-  std::array<double, 3> per_cell{};  ///< cells per d in x, y, z
+  std::array<double, 3> per_cell{};  ///< number of grid cells per d along x, y and z
 
   Grid() = default;
-  /// As many cells of at least these sizes [d] as fit, in one strip. There are at most about four
-  /// cells for each point, so that a nearly empty grid costs no more than its points.
+  /// Divides the cell into as many grid cells of at least these sizes [d] as fit, in one strip. The
+  /// number of grid cells is limited to about four per point, so that a sparse grid costs little.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
-  /// The number of cells.
   std::size_t size() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
            static_cast<std::size_t>(layers);
   }
 
-  /// The number of the cell of {x, y, z}; a coordinate outside of the grid (or NaN) belongs to a
-  /// border cell.
+  /// Number of the grid cell that holds {x, y, z}. A coordinate outside the grid, or NaN, is
+  /// assigned to a border cell.
   std::uint32_t cell_of(const double* point) const;
 
   /// Index of the line of cells along x at `row` and `layer`.
@@ -48,19 +47,19 @@ struct Grid {
     return first * rows + row * std::min(strip, layers - first) + layer - first;
   }
 
-  /// A cell and its neighbours, each once: at most nine ranges of three cells in x. Returns the
-  /// number of ranges.
+  /// Lists a cell and its neighbours without duplicates, as at most nine ranges of up to three
+  /// cells along x. Returns the number of ranges.
   std::size_t surrounding(std::uint32_t number, std::array<CellRange, 9>& ranges) const {
     const auto cell = static_cast<std::int32_t>(number);
     const std::int32_t column = cell % columns;
     const std::int32_t line = cell / columns;
-    const std::int32_t start = line / (strip * rows) * strip;  // the first layer of its strip
+    const std::int32_t start = line / (strip * rows) * strip;  // first layer of this strip
     const std::int32_t width = std::min(strip, layers - start);
     const std::int32_t row = (line - start * rows) / width;
     const std::int32_t layer = start + (line - start * rows) % width;
     const std::int32_t first = column > 0 ? column - 1 : 0;
     const std::int32_t last = column + 1 < columns ? column + 1 : column;
-    // With fewer than three layers the neighbours on both sides coincide.
+    // With fewer than three layers, the neighbours in +z and -z are the same cells.
     const std::int32_t most = layers < 3 ? layers : 3;
     std::size_t count = 0;
     for (std::int32_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < rows; ++r) {

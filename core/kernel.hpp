@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops over neighbours, which take nearly all of the computing time, as functions over arrays.
+// The loops over neighbours, which take nearly all of the computing time, as functions on arrays.
 //
 // Each loop has a scalar reference implementation (scalar_kernel.cpp) and a SIMD version
-// (simd_kernel.cpp, simd_lists.cpp); both give the same bits. The rules that make this possible:
-//  1. One grain per lane: the lane of a grain sums the force on this grain. The order is: plane and
-//     grains of the moving wall, the other planes, then the grains of the other walls and the
-//     neighbouring grains in ascending permanent id. No sum crosses lanes.
-//  2. A neighbour that does not touch, and padding, adds +0 to the sum, which changes no bit.
-//     So the result does not depend on which non-touching neighbours a list happens to hold.
-//  3. A position is a row {x, y, z, margin} of four doubles. Lanes load whole rows and
-//     transpose them in registers: no gathers, and a lane writes only its own grain's row.
+// (simd_kernel.cpp, simd_lists.cpp). Both give the same bits. Three rules make this possible:
+//  1. One vector lane sums the force on one grain, in this order: the plane and the grains of the
+//     moving wall, the other planes, then the grains of the other walls and the neighbouring grains
+//     in ascending permanent id. No sum crosses lanes.
+//  2. A neighbour that does not touch adds +0 to the sum. Padding also adds +0. Adding +0 changes
+//     no bit, so the result does not depend on which neighbours without contact are in a list.
+//  3. A position is a row {x, y, z, margin} of four doubles. Whole rows are loaded and transposed
+//     in registers, without gather instructions. A lane writes only the row of its grain.
 //
-// One array holds these rows: the grains, padded; one row that touches nothing; the wall grains,
-// those of the moving wall first. The margin [d] is how far the grain may move in the frame of the
+// One array holds the rows in this order: the grains, padded; one padding row, which touches
+// nothing; the grains of the moving wall; the other wall grains. The margin [d] is the distance
+// that a grain may move in the frame of the shear before its neighbour list must be rebuilt.
 // shear before its neighbour list must be rebuilt.
 #pragma once
 
@@ -26,132 +27,131 @@
 
 namespace shearcell {
 
-/// Arrays over grains are padded to a multiple of the widest vector.
+/// Rounds a number of grains up to a multiple of 8, the number of lanes of the widest vector.
 constexpr std::size_t padded(std::size_t grains) {
   return (grains + 7) / 8 * 8;
 }
 
-/// Offset of the row that touches nothing, right behind the padded grains.
+/// Offset of the padding row, which follows the padded grains and touches nothing.
 constexpr std::int32_t padding_offset(std::size_t grains) {
   return static_cast<std::int32_t>(4 * padded(grains));
 }
 
-/// Offset of the first wall grain's row.
+/// Offset of the row of the first wall grain.
 constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
 
-/// What some grain of a block is near to; the kernel skips everything else. kNearSeam: the nearest
-/// image of some neighbour lies across the seam in z.
+/// Flags of a block of grains. kNearSeam: the nearest image of some neighbour lies across the
+/// periodic boundary in z. The kernel skips the code for walls and boundary if no grain needs it.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
-/// Neighbours as row offsets (4 * index, in doubles), in blocks of one vector of grains. Grain
-/// `lane` of block b has its k-th neighbour, k < moving_wall_slots[b] + other_slots[b], at
-/// list[begin[b] + k * lanes + lane]. The first moving_wall_slots[b] are grains of the moving wall.
-/// Shorter rows are filled up with padding_offset.
+/// Neighbour lists as row offsets (4 * index, in doubles). A block is one vector of grains, and a
+/// slot is one neighbour of each of them. Slot k of lane l of block b is
+/// list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The first
+/// moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold padding_offset().
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
-  const std::uint32_t* begin = nullptr;  ///< per block, like the next three
+  const std::uint32_t* begin = nullptr;  ///< one entry per block, as in the arrays below
   const std::uint16_t* other_slots = nullptr;
   const std::uint16_t* moving_wall_slots = nullptr;
   const std::uint8_t* near = nullptr;
 };
 
-/// One time step of the leapfrog, and the check of the margins at its end. With
-/// D = 1 + b dt / 2m the new velocity is velocity_factor * v + contact_kick * sum + gravity_step +
-/// fluid_step * (y - fluid_rest_height).
+/// One time step of the leapfrog, followed by a check of the margins. The new velocity is
+/// velocity_factor * v + contact_kick * (contact sum) + gravity_step +
+/// fluid_step * (y - fluid_rest_height). D stands for 1 + b dt / 2m.
 struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
   std::array<WallPlane, 4> planes;  ///< the plane of the moving wall first
-  /// Output for each grain of a block near the moving wall: the y component of the sum over its
+  /// Output for each grain of a block near the moving wall: y component of the sum over the grain's
   /// contacts with this wall [d].
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
-  /// Position of each grain when its list was built, in the frame that moves with the shear.
-  /// `margin_loss` includes the rounding to single precision.
+  /// Position of each grain when the list was built, in the frame that moves with the shear [d].
+  /// The rounding to single precision is part of `margin_loss`.
   const float* reference[3] = {};
-  double frame_height = 0;  ///< height at which that frame does not move [d]
-  double tan_theta = 0;     ///< of the tilt at the end of the step
-  double margin_loss = 0;   ///< part of every margin used up by the shear and by rounding [d]
-  /// The kernel fetches rows this far ahead of a block into the cache (CellOrder::ahead()); 0:
-  /// none.
+  double frame_height = 0;  ///< height at which the moving frame is at rest [d]
+  double tan_theta = 0;     ///< tan(theta) at the end of the step
+  double margin_loss = 0;   ///< part of each margin lost to shear and rounding [d]
+  /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.
   std::size_t ahead = 0;
   double* next_rows = nullptr;   ///< output: positions at the next step
-  double* velocity[3] = {};      ///< [d/s], half a step before `rows` -> half a step after
+  double* velocity[3] = {};      ///< [d/s] half a step before `rows`, updated to half a step after
   double velocity_factor = 0;    ///< (1 - b dt / 2m) / D
   double contact_kick = 0;       ///< dt k/m / D [1/s]
-  double gravity_step = -0.0;    ///< -dt g / D [d/s], added to v_y; adding -0 changes no bit
+  double gravity_step = -0.0;    ///< -dt g / D [d/s], added to v_y; the default -0 changes no bit
   double fluid_step = 0;         ///< dt b/m du_x/dy / D [1/s]; 0 in a still fluid
-  double fluid_rest_height = 0;  ///< height at which that fluid is at rest [d]
+  double fluid_rest_height = 0;  ///< height at which the fluid is at rest [d]
   double time_step = 0;          ///< dt [s]
 };
 
-/// Sites (grains and wall grains) ordered by the cells of a grid.
+/// Sites (grains and wall grains), sorted by grid cell. Most arrays have one entry per site.
 struct CellGrid {
   Grid cells;
-  const std::uint32_t* begin = nullptr;  ///< first place of each cell, and the number of sites
-  const std::uint32_t* cell = nullptr;   ///< cell of the site at each place
-  const double* position[3] = {};        ///< of the site at each place [d]
-  const double* margin = nullptr;        ///< its margin [d]
-  const std::int32_t* id = nullptr;      ///< its permanent id: wall grains before grains
+  const std::uint32_t* begin = nullptr;  ///< first site of each cell; last entry: number of sites
+  const std::uint32_t* cell = nullptr;   ///< grid cell of each site
+  const double* position[3] = {};        ///< position of each site [d]
+  const double* margin = nullptr;        ///< margin of each site [d]
+  const std::int32_t* id = nullptr;      ///< permanent id of each site; wall grains come first
 };
 
-/// Finds the outer lists of the grains at a range of places. The outer list of a grain holds the
-/// sites nearer than 1 plus both margins, in ascending id.
+/// Input of the search for outer lists. The outer list of a grain holds all sites nearer than 1
+/// plus both margins [d], in ascending id.
 struct SearchTask {
   CellGrid grid;
-  std::int32_t first_grain = 0;                ///< smallest id of a grain; wall grains have no list
-  const std::int32_t* offset_of_id = nullptr;  ///< row offset of the site with an id
-  std::int32_t* outer = nullptr;               ///< per grain, `stride` apart
+  std::int32_t first_grain = 0;  ///< smallest id of a grain; smaller ids are wall grains
+  const std::int32_t* offset_of_id = nullptr;  ///< row offset of each site, by id
+  std::int32_t* outer = nullptr;  ///< output: one list per grain, `stride` entries apart
   std::size_t stride = 0;
-  std::uint16_t* count = nullptr;  ///< per grain
-  std::int32_t padding = 0;        ///< fills each row up to a multiple of 8
+  std::uint16_t* count = nullptr;  ///< output: length of each grain's list
+  std::int32_t padding = 0;        ///< entry that fills lists up to a multiple of 8
   double depth = 0, per_depth = 0;
 };
 
-/// More neighbours than a grain has in any sound packing. In a collapsed cell, lists are cut off at
-/// this length.
+/// Largest length of a neighbour list. A grain of a valid packing has fewer neighbours. In a
+/// collapsed cell, longer lists are truncated.
 inline constexpr std::size_t kMostNeighbours = 1024;
 
-/// Prunes the outer lists to the inner lists: to the neighbours that are nearer than 1 plus both
-/// margins now.
+/// Input for pruning the outer lists to inner lists. An inner list keeps the neighbours that are
+/// now nearer than 1 plus both margins [d].
 struct PruneTask {
   std::size_t grains = 0;
   const double* rows = nullptr;
   const std::int32_t* outer = nullptr;
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;   ///< per grain
-  std::int32_t first_wall = 0, moving_end = 0;  ///< offsets of the moving wall's grains
+  std::int32_t first_wall = 0, moving_end = 0;  ///< row offsets of the moving wall's grains
   std::array<WallPlane, 4> planes;              ///< the plane of the moving wall first
-  double wall_margin = 0;                       ///< of the planes [d]
-  std::int32_t* inner = nullptr;                ///< laid out as NeighbourRows
-  std::size_t inner_stride = 0;                 ///< most slots that a block may have
-  std::uint32_t* begin = nullptr;               ///< per block, packed within each range
-  std::uint16_t* inner_count = nullptr;         ///< per grain and spare lane
-  std::uint16_t* other_slots = nullptr;         ///< per block, like the next two
+  double wall_margin = 0;                       ///< margin of the wall planes [d]
+  std::int32_t* inner = nullptr;                ///< output, laid out as in NeighbourRows
+  std::size_t inner_stride = 0;                 ///< largest number of slots of a block
+  std::uint32_t* begin = nullptr;               ///< list start of each block, as in NeighbourRows
+  std::uint16_t* inner_count = nullptr;         ///< list length of each grain and spare lane
+  std::uint16_t* other_slots = nullptr;         ///< one entry per block, as in the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
   std::uint8_t* near = nullptr;
-  std::uint8_t* grain_near = nullptr;  ///< per grain and spare lane
+  std::uint8_t* grain_near = nullptr;  ///< flags of each grain and spare lane
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number if some grain is farther from
-/// its `reference` than its margin minus margin_loss.
+/// One implementation of the loops. `step` returns a positive number if some grain has moved
+/// farther from its `reference` than its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;
   double (*step)(const StepTask&, std::size_t first_block, std::size_t last_block);
-  /// Returns the largest number of neighbours found; rows longer than the stride are cut off.
+  /// Returns the length of the longest list. Lists longer than the stride are truncated.
   std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
-  /// Returns false, leaving the inner list unusable, when a row outgrows inner_stride.
+  /// Returns false if a block needs more than inner_stride slots. The inner lists are then invalid.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);
 };
 
-/// The implementations that run on this machine: the fastest first, the scalar implementation last.
+/// Implementations that this machine can run, from the fastest to the scalar implementation.
 std::span<const Kernels* const> kernels_here();
 
 const Kernels& scalar_kernels();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points in the cells of a grid, for searches while points are still being added.
+// Points sorted into grid cells. Points can be added between searches.
 #pragma once
 
 #include <cmath>
@@ -12,21 +12,21 @@ namespace shearcell {
 
 class LinkedCells {
  public:
-  /// For searches of points up to `reach` [d] apart in a cell with this pose.
+  /// Makes a grid for finding points up to `reach` [d] apart in a cell with this pose.
   LinkedCells(const Cell& cell, const WallPose& pose, double reach, std::size_t points) {
     const double size = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
     grid_ = Grid(cell, pose, {size, size, size}, points);
     head_.assign(grid_.size(), -1);
   }
 
-  /// Adds point `index`; a later point of a cell is visited before an earlier one.
+  /// Adds point `index`. Within a grid cell, points that were added later are visited first.
   void insert(std::int32_t index, const Eigen::Vector3d& at) {
     const auto slot = static_cast<std::size_t>(index);
     if (next_.size() <= slot) next_.resize(std::max(slot + 1, 2 * next_.size()), -1);
     next_[slot] = std::exchange(head_[grid_.cell_of(at.data())], index);
   }
 
-  /// Calls visit(index) for every point in the cell of a place and its neighbours, once each.
+  /// Calls visit(index) once for every point in the grid cell of `at` and in the cells around it.
   template <class Visit>
   void for_each_near(const Eigen::Vector3d& at, Visit&& visit) const {
     std::array<CellRange, 9> ranges;

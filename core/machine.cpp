@@ -15,9 +15,9 @@
 namespace shearcell {
 namespace {
 
-/// The smallest limit of the cgroups (version 2) that hold this process: the cgroup of a batch job,
-/// for example, and all cgroups above it. In a container, the root is the cgroup of the container.
-/// read(file) gives a limit or NaN.
+/// Returns the smallest limit among the cgroups (version 2) of this process: for example the cgroup
+/// of a batch job and all its parents. In a container, the root is the container's cgroup.
+/// read(file) returns a limit, or NaN if the file contains no number.
 template <class Read>
 double smallest_limit(const char* name, const Read& read) {
   std::filesystem::path group = "/";
@@ -33,13 +33,13 @@ double smallest_limit(const char* name, const Read& read) {
   }
 }
 
-/// NaN for "max".
+/// Reads a number. Returns NaN for the word "max".
 double number_in(std::istream& file) {
   double number = 0;
   return file >> number ? number : std::nan("");
 }
 
-/// The number of cores as `docker run --cpus` limits it: processor time per time.
+/// Limit on the number of cores, as set by `docker run --cpus`: processor time per period.
 double cores_in(std::istream& file) {
   const double time = number_in(file), period = number_in(file);
   return time / period;
@@ -55,7 +55,7 @@ double machine_memory() {
 
 std::size_t usable_cores() {
   cpu_set_t set;
-  const bool known = sched_getaffinity(0, sizeof set, &set) == 0;  // fails beyond 1024 cores
+  const bool known = sched_getaffinity(0, sizeof set, &set) == 0;  // fails with over 1024 cores
   const auto cores =
       known ? static_cast<unsigned>(CPU_COUNT(&set)) : std::thread::hardware_concurrency();
   return static_cast<std::size_t>(std::clamp(std::ceil(smallest_limit("cpu.max", cores_in)), 1.0,

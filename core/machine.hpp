@@ -7,10 +7,10 @@
 
 namespace shearcell {
 
-/// Memory [bytes] of the machine, or the limit of this process's container or batch job.
+/// Memory [bytes] of the machine, or less if a container or batch job limits it.
 double machine_memory();
 
-/// Cores of the machine, or fewer under taskset, in a batch job or in a container.
+/// Number of cores of the machine, or fewer if taskset, a batch job or a container limits them.
 std::size_t usable_cores();
 
 }  // namespace shearcell

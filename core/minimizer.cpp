@@ -9,13 +9,13 @@
 namespace shearcell {
 namespace {
 
-// Constants of FIRE as Guenole et al. recommend them; time steps in units of sqrt(m/k), in which
-// the fastest mode of a contact network allows 2/sqrt(8) = 0.71.
+// Constants of FIRE, as recommended by Guenole et al. Time steps are in units of sqrt(m/k). In
+// these units, the fastest mode of a contact network allows a time step of 2/sqrt(8) = 0.71.
 constexpr double kFirstStep = 0.1, kLargestStep = 0.5, kSmallestStep = 0.002;
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kMixing = 0.25, kMixingShrink = 0.99;
 constexpr int kDelay = 20;
-// Mass of the moving wall per d^2, chosen so that it moves about as fast as a grain.
+// Mass of the moving wall per d^2 [m]. With this value the wall moves about as fast as a grain.
 constexpr double kWallMass = 1;
 constexpr std::uint64_t kWatchInterval = 256;
 
@@ -29,8 +29,8 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
   return std::max(std::sqrt(largest), wall) / force_unit(scene);
 }
 
-// Power, and the squares of velocity and force, where the height of the wall is weighted by its
-// mass. These are plain loops in the order of the ids, since the order decides the bits.
+// Power, squared velocity and squared force. The terms of the wall are weighted by the wall's mass.
+// Plain loops in the order of the ids fix the order of the additions, and so the bits.
 struct Sums {
   double power, velocity, force;
 };
@@ -49,7 +49,7 @@ Sums sums(const Forces& forces, const State& state, double wall_mass) {
   return s;
 }
 
-// The state holds the velocities of FIRE.
+// One FIRE minimization. `state_` holds the velocities of FIRE, which are not physical velocities.
 class Fire {
  public:
   explicit Fire(const Simulation& simulation)
@@ -76,7 +76,7 @@ class Fire {
       if (++uphill_ > 1) dt_ = std::max(kShrink * dt_, kSmallestStep);
       downhill_ = 0;
       mixing_ = kMixing;
-      move(-0.5 * dt_ * unit_);  // back by half a step from beyond the minimum
+      move(-0.5 * dt_ * unit_);  // go back half a step, because the minimum was passed
       rest();
     }
     const double dt = dt_ * unit_;
@@ -92,7 +92,7 @@ class Fire {
     state_.wall_height += dt * state_.wall_velocity;
   }
 
-  // Turns the velocity towards the force without changing its norm.
+  // Mixes the velocity with a vector of the same norm in the direction of the force.
   void mix(const Forces& forces) {
     const Sums s = sums(forces, state_, wall_mass_);
     if (!(s.force > 0)) return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanical equilibrium of a packing under gravity and pressure: a local minimum of the enthalpy
 //   H = sum of contacts (k/2) overlap^2 + m g sum y + F h
-// over the positions of the grains and the height h between bottom and top, walls upright. F is the
-// load on the moving wall: P A_w, plus carried_weight() (scene.hpp).
+// with respect to the positions of the grains and the distance h between the bottom and top planes.
+// The walls are upright. F is the load on the moving wall: P A_w plus carried_weight() (scene.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 namespace shearcell {
 
 struct MinimizeSettings {
-  /// Largest net force on any grain over P d^2, and |net force on the moving wall| over P A_w.
+  /// Limit of |net force| / (P d^2) on grains and of |net force| / (P A_w) on the moving wall.
   double force_tolerance = 1e-4;
-  std::uint64_t most_evaluations = 1'000'000;  ///< of the forces, before it counts as a failure
+  std::uint64_t most_evaluations = 1'000'000;  ///< limit on the number of force evaluations
 };
 
-/// Moves the simulation to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
-/// with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)). Velocities become
-/// zero and the step is raised by one. The result depends on the positions and the scene alone;
-/// global sums run in the order of permanent ids. Throws NumericalFailure when the tolerance is not
-/// reached or a watchdog check fails.
+/// Moves the grains and the moving wall to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97,
+/// 170201 (2006), with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)).
+/// Afterwards all velocities are zero, and the step number is one higher. The result depends only
+/// on the positions and the scene, because global sums follow the order of permanent ids. Throws
+/// NumericalFailure if the tolerance is not reached or a watchdog check fails.
 void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
-/// The quantity that force_tolerance limits, for a state between upright walls, with forces summed
-/// contact by contact.
+/// Returns the quantity that force_tolerance limits, for a state with upright walls. The contacts
+/// are found without neighbour lists.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 
 }  // namespace shearcell

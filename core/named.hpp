@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Enumerations and the names of their values in manifests, records, tables and messages, and tables
-// whose items have a name.
+// The names of enumerators in manifests, records, tables and messages, and a search for named
+// items.
 //
-// Each enumeration has one table beside its definition:
+// Each enumeration has one table of names beside its definition, for example:
 //   template <>
 //   inline constexpr auto kNames<Fluid> =
 //       names_in_order<Fluid>("still", "cell");
@@ -19,8 +19,8 @@ namespace shearcell {
 
 namespace named_detail {
 
-/// Whether the enumeration has an enumerator of this value: only then does the compiler print its
-/// name, as `V = shearcell::Fluid::cell` and not as `V = (shearcell::Fluid)2`.
+/// Whether V is an enumerator. The compiler prints an enumerator as `V = shearcell::Fluid::cell`,
+/// and any other value as `V = (shearcell::Fluid)2`.
 template <auto V>
 constexpr bool is_enumerator() {
   const std::string_view text = __PRETTY_FUNCTION__;
@@ -29,17 +29,17 @@ constexpr bool is_enumerator() {
 
 }  // namespace named_detail
 
-/// The names of an enumeration whose values are 0, 1, ..., in that order.
+/// Table of the names of the enumerators 0, 1, 2, ... in this order.
 template <class Enum, class... Names>
 constexpr auto names_in_order(Names... names) {
   constexpr std::size_t size = sizeof...(Names);
   static_assert(named_detail::is_enumerator<static_cast<Enum>(size - 1)>(),
-                "more names than values");
-  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(), "a value without a name");
+                "there are more names than enumerators");
+  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(), "a value has no name");
   return std::array<std::string_view, size>{names...};
 }
 
-/// Specialised for each enumeration that has names.
+/// Table of names. It is specialised for each enumeration that has names.
 template <class Enum>
 inline constexpr auto kNames = nullptr;
 
@@ -49,7 +49,7 @@ constexpr std::string_view name_of(Enum value) {
   return names[static_cast<std::size_t>(value)];
 }
 
-/// Nothing when no value has that name.
+/// The enumerator with this name, or nullopt if no enumerator has the name.
 template <class Enum>
 constexpr std::optional<Enum> value_of(std::string_view name) {
   const auto found = std::ranges::find(kNames<Enum>, name);
@@ -57,7 +57,7 @@ constexpr std::optional<Enum> value_of(std::string_view name) {
   return static_cast<Enum>(found - kNames<Enum>.begin());
 }
 
-/// The item whose member `name` is `name`; null when there is none. A span may be temporary.
+/// Pointer to the item with this name, or null. `items` may be a temporary span.
 const auto* find_named(const auto& items, std::string_view name) {
   const auto found =
       std::ranges::find_if(items, [&](const auto& item) { return item.name == name; });

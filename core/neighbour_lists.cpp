@@ -8,7 +8,7 @@
 namespace shearcell {
 namespace {
 
-// Time steps for which the margin of a fast grain should suffice.
+// Number of time steps for which the margin of a fast grain should be wide enough.
 constexpr double kOuterHorizon = 500, kInnerHorizon = 80;
 
 // Speed of a grain in the frame that moves with the shear [d/s].
@@ -23,7 +23,7 @@ float round_down(double margin) {
   return static_cast<float>(margin * (1 - 0x1p-23));
 }
 
-// The largest margin of a grain in a cell of this depth [d].
+// Largest margin [d] of a grain in a cell with this depth [d].
 double largest_margin(double depth) {
   return 0.24 * (depth - 2);
 }
@@ -51,7 +51,7 @@ void Reference::set(const double* rows, std::size_t grains, const WallPose& pose
     }
     return coordinate;
   });
-  rounding_ = 0x1p-22 * largest;  // half a unit in the last place is 2^-25 of a coordinate at most
+  rounding_ = 0x1p-22 * largest;  // a float is rounded by at most 2^-24 of its value
 }
 
 double Reference::moved(const double* rows, std::size_t grain, const WallPose& pose) const {
@@ -64,18 +64,18 @@ double Reference::moved(const double* rows, std::size_t grain, const WallPose& p
 }
 
 double Reference::wall_moved(const WallPose& pose) const {
-  // Side walls follow the shear about the top wall. The bottom's wall grains move in x with its
-  // plane: a grain up to d behind the plane differs from the shear by the strain times that
-  // distance.
+  // Side walls follow the shear about the top wall. Grains of the bottom wall move in x with the
+  // bottom plane. A grain up to d behind the plane deviates from the shear by at most d times the
+  // change of tan(theta).
   const double travel =
       std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
 }
 
 double Reference::margin_loss(double tan_theta) const {
-  // The smallest singular value of a simple shear e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A distance
-  // of 1 plus two margins shrinks by at most that factor; each of the two grains bears half of the
-  // loss.
+  // The smallest singular value of a simple shear by e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A
+  // distance of 1 plus two margins shrinks by at most this factor. Each of the two grains accounts
+  // for half of the loss.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// While many grains are fast (when a wall presses loose grains together), wider margins cost less
-// than a search every few dozen steps.
+// When many grains are fast, for example while a wall presses loose grains together, wide margins
+// cost less than a new search every few dozen steps.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;
@@ -166,8 +166,8 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// A pair within its inner margins must be in the outer list, so an inner margin is at most what is
-// left of the outer margin. Returns false if too little is left for some grain or wall.
+// Every pair within its inner margins must be in the outer list. So an inner margin cannot exceed
+// the unused part of the outer margin. Returns false if this part is too small for a grain or wall.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

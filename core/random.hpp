@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counter-based random numbers. A value depends on key and counter alone, so there is no generator
-// state to store, share or split.
+// Counter-based random numbers. A value depends only on the key and the counter, so there is no
+// generator state to store, share or split.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@ namespace shearcell {
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                         std::array<std::uint32_t, 2> key);
 
-/// Two uniform numbers in [0, 1) with 53 random bits each.
+/// Two uniform random numbers in [0, 1) with 53 random bits each.
 std::array<double, 2> uniform_pair(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
 
-/// A nearly normal number of mean 0 and variance 1: the sum of twelve uniform numbers minus 6. It
-/// is the same on every machine, since it needs no logarithm or cosine. The last component of
-/// `counter` must be 0.
+/// A nearly normal random number with mean 0 and variance 1: the sum of twelve uniform numbers
+/// minus 6. It has the same bits on every machine, because no logarithm or cosine is needed. The
+/// last component of `counter` is replaced by 0 to 5.
 double normal_number(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
 
 }  // namespace shearcell

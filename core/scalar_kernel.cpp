@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reference implementation of the loops: one grain at a time. Every other implementation keeps
-// the order of these operations. This file is also compiled for AVX2, since without the fused
-// multiply-add of AVX2 each std::fma calls the C library, which is many times slower.
+// The reference implementation of the loops, one grain at a time. All other implementations perform
+// the same operations in the same order. This file is also compiled for AVX2: without a fused
+// multiply-add instruction, each std::fma would call the C library, which is many times slower.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -24,7 +24,7 @@ struct Sum {
   double x, y, z;
 };
 
-// The sum and (1/r - 1) dr of the touching neighbours of the grain at `own`.
+// Returns `sum` plus (1/r - 1) dr for each neighbour that touches the grain at `own`.
 Sum add_contacts(Sum sum, const double* own, const double* rows, const std::int32_t* list,
                  std::size_t slots, double depth, double per_depth) {
   for (std::size_t k = 0; k < slots; ++k) {
@@ -51,7 +51,7 @@ void touch_plane(Sum& sum, const double* own, const WallPlane& plane) {
   sum.y = std::fma(overlap, plane.normal[1], sum.y);
 }
 
-// Sum over the contacts of grain g.
+// Contact sum of grain g [d].
 Sum contact_sum(const StepTask& t, std::size_t g) {
   const double* own = t.rows + 4 * g;
   Sum sum{0, 0, 0};
@@ -70,8 +70,8 @@ Sum contact_sum(const StepTask& t, std::size_t g) {
   return add_contacts(sum, own, t.rows, list, t.neighbours.other_slots[g], t.depth, t.per_depth);
 }
 
-// The squared distance that a grain has moved since its list was built, minus the square of what is
-// left of its margin. If this is positive, the list may miss a neighbour.
+// The square of the distance that a grain has moved since its list was built, minus the square of
+// the remaining margin. If the result is positive, the list may lack a neighbour.
 double margin_excess(const StepTask& t, std::size_t g, const double* at) {
   const double ry = double{t.reference[1][g]};
   const double wx = at[0] - std::fma(t.tan_theta, ry - t.frame_height, double{t.reference[0][g]});

@@ -20,16 +20,16 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// The number of neighbours of a lane whose factors are computed side by side, since each operation
-// of a series waits for the operation before it. Four neighbours fit in 32 registers if the
-// coefficients are not kept there. With 16 registers one neighbour at a time is faster (README.md).
+// Number of neighbours of a lane whose factors are computed side by side, because each operation of
+// a series waits for the previous operation. Four neighbours fit in 32 registers if coefficients
+// are loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
-// contact_factor(s) of kCount numbers up to the end of the series.
+// Computes contact_factor(s) of kCount numbers s <= kSeriesEnd.
 template <std::size_t kCount>
 HWY_INLINE void series_factors(const V* s, V* factor) {
   const double* coefficient = kContactSeries.data() + kContactSeries.size() - 1;
-  if constexpr (kSlots > 1) asm("" : "+r"(coefficient));  // so they are loaded each time
+  if constexpr (kSlots > 1) asm("" : "+r"(coefficient));  // forces a load for each use
   HWY_UNROLL(4)
   for (std::size_t k = 0; k < kCount; ++k) factor[k] = hn::Set(kD, *coefficient);
   for (std::size_t n = kContactSeries.size() - 1; n-- > 0;) {
@@ -41,14 +41,14 @@ HWY_INLINE void series_factors(const V* s, V* factor) {
   for (std::size_t k = 0; k < kCount; ++k) factor[k] = hn::Mul(s[k], factor[k]);
 }
 
-// contact_factor(s), given `series` for s up to the end of the series.
+// Returns `series` for s <= kSeriesEnd, and the exact contact_factor(s) for larger s.
 HWY_INLINE V exact_beyond(V s, V series) {
   const V one = hn::Set(kD, 1.0);
   const V exact = hn::Sub(hn::Div(one, hn::Sqrt(hn::Sub(one, s))), one);
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// The separations from kLanes neighbours, one for each lane.
+// Separations of the grains in `own` from one neighbour of each grain.
 template <bool kSeam>
 HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
@@ -58,7 +58,7 @@ HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows
   return separation<kSeam>(own, other, depth, per_depth);
 }
 
-// Adds (1/r - 1) dr for the touching ones among kCount separations of each lane, in their order.
+// Adds (1/r - 1) dr of kCount neighbours of each lane, in this order, if the neighbour touches.
 template <std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   V s[kCount], factor[kCount];
@@ -67,7 +67,7 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   for (std::size_t k = 0; k < kCount; ++k) {
     s[k] = hn::NegMulAdd(y[k], y[k], hn::NegMulAdd(x[k], x[k], hn::Set(kD, 1.0)));
     s[k] = hn::NegMulAdd(z[k], z[k], s[k]);
-    s[k] = hn::Max(s[k], hn::Zero(kD));  // not touching: the factor is 0
+    s[k] = hn::Max(s[k], hn::Zero(kD));  // the factor is 0 without contact
     deepest = k == 0 ? s[k] : hn::Max(deepest, s[k]);
   }
   series_factors<kCount>(s, factor);
@@ -83,7 +83,7 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   }
 }
 
-// Adds (1/r - 1) dr for the touching neighbours. The k-th neighbour of lane l is
+// Adds (1/r - 1) dr of all neighbours that touch. The k-th neighbour of lane l is
 // list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
@@ -101,7 +101,7 @@ HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY
     }
   }
   if (slots == 0) return;
-  // Each slot is loaded before the slot in front of it is added, so that no series waits for rows.
+  // Each slot is loaded before the previous slot is added, so that no addition waits for memory.
   Vectors dr = load_slot<kSeam>(own, rows, list, depth, per_depth);
   for (; slots > 1; --slots) {
     list += kLanes;
@@ -120,7 +120,7 @@ HWY_INLINE void touch_plane(Vectors& sum, const Vectors& own, const WallPlane& p
   sum.y = hn::MulAdd(overlap, ny, sum.y);
 }
 
-// Raises `excess` to the margin_excess of scalar_kernel.cpp for each grain of a block.
+// Returns for each lane the larger of `excess` and the grain's margin_excess (scalar_kernel.cpp).
 HWY_INLINE V raise_excess(V excess, const StepTask& t, std::size_t g, const Vectors& at, V margin) {
   const hn::Rebind<float, D> single;
   const auto reference = [&](std::size_t axis) HWY_ATTR {
@@ -134,12 +134,12 @@ HWY_INLINE V raise_excess(V excess, const StepTask& t, std::size_t g, const Vect
   const V wz = hn::Sub(at.z, reference(2));
   const V moved = hn::MulAdd(wz, wz, hn::MulAdd(wy, wy, hn::Mul(wx, wx)));
   const V room = hn::Max(hn::Sub(margin, hn::Set(kD, t.margin_loss)), hn::Zero(kD));
-  // The last block's spare lanes hold no grain.
+  // Spare lanes of the last block hold no grain.
   const auto real = hn::FirstN(kD, t.grains - g);
   return hn::IfThenElse(real, hn::Max(excess, hn::NegMulAdd(room, room, moved)), excess);
 }
 
-// Sum over the contacts of one block of grains.
+// Contact sums of one block of grains [d].
 HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vectors& own, V depth,
                                V per_depth) {
   Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};
@@ -166,18 +166,18 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
   return sum;
 }
 
-// Positions and margins of a block. Only neighbours in the next row of cells are not in the cache
-// yet. Their places advance at the same pace as the blocks, so they are fetched as a stream.
+// Loads the positions and margins of a block. Only neighbours in the next row of cells are not in
+// the cache yet. These neighbours lie about `ahead` rows further in memory and are prefetched.
 HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {
-    hwy::Prefetch(t.rows + 4 * (g + t.ahead) + k);  // beyond the last row it does nothing
+    hwy::Prefetch(t.rows + 4 * (g + t.ahead) + k);  // harmless beyond the last row
   }
   return load_rows(
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
 }
 
-// Velocities and positions at the next step of the block at grain g; raises `excess`.
+// Advances velocities and positions of the block that starts at grain g. Returns the new excess.
 HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vectors& own, V margin,
                            const Vectors& sum) {
   const V factor = hn::Set(kD, t.velocity_factor);
@@ -200,7 +200,7 @@ HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vec
   return raise_excess(excess, t, g, next, margin);
 }
 
-// Sums the next block before it advances a block: by then the sum of that block is complete.
+// Sums the contacts of block n + 1 before it advances block n, so that the sum of n is complete.
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   if (first == last) return -1;
   const V depth = hn::Set(kD, t.depth);
@@ -220,7 +220,7 @@ double step(const StepTask& t, std::size_t first, std::size_t last) {
   return hn::GetLane(hn::MaxOfLanes(kD, excess));
 }
 
-// simd_lists.cpp
+// Defined in simd_lists.cpp.
 std::size_t search(const SearchTask& task, std::size_t first_place, std::size_t last_place);
 bool prune(const PruneTask& task, std::size_t first_block, std::size_t last_block);
 
@@ -232,7 +232,7 @@ const Kernels* kernels() {
   return &table;
 }
 
-#endif  // a target with fused multiply-add
+#endif  // SHEARCELL_HAS_SIMD
 }  // namespace HWY_NAMESPACE
 }  // namespace shearcell
 HWY_AFTER_NAMESPACE();
@@ -243,7 +243,7 @@ namespace shearcell {
 std::span<const Kernels* const> kernels_here() {
   static const std::vector<const Kernels*> here = [] {
     std::vector<const Kernels*> found;
-#if HWY_TARGETS & HWY_NEON  // part of every 64-bit ARM
+#if HWY_TARGETS & HWY_NEON  // every 64-bit ARM has NEON
     found.push_back(N_NEON::kernels());
 #endif
 #if HWY_TARGETS & HWY_AVX3

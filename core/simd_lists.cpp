@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loops that build and prune the neighbour lists, with one neighbour per vector lane. They
-// decide which pairs the kernel tests, never what it computes.
+// select the pairs that the kernel tests, and never change a result of the kernel.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
@@ -25,9 +25,9 @@ namespace HWY_NAMESPACE {
 using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
-// Stores the lanes of `values` that `mask` selects, contiguously; the rest of the vector is
-// undefined. Returns their number. (For doubles, Compress of Highway 1.0 copies a table of 16 kB on
-// every call.)
+// Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
+// whole vector is written, and the rest of it is undefined. Doubles are not used because Compress
+// of Highway 1.0 copies a table of 16 kB per call for doubles.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -37,8 +37,8 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
 }
 
 // Writes the offsets of the ids to `outer` in ascending id. The rank of an id is the number of
-// smaller ids. Two vectors hold nearly every list, and the branches of a loop over always two
-// vectors are predicted. `ids` has room for two vectors behind its end.
+// smaller ids. Two vectors hold nearly every list. Both vectors are always compared, so that the
+// branches are predicted. `ids` must have room for two vectors after its end.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -56,14 +56,14 @@ HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids
   }
 }
 
-// The square of 1 plus both margins.
+// Square of the cutoff, which is 1 plus both margins.
 HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   const V cutoff = hn::Add(hn::Set(kD, 1.0), hn::Add(own_margin, other_margin));
   return hn::Mul(cutoff, cutoff);
 }
 
-// The sites in and around one cell, copied so that the search of a grain is one long loop. The ends
-// of nine short loops would be mispredicted.
+// A contiguous copy of the sites in one grid cell and the cells around it. The search for a grain
+// is then one long loop. The ends of nine short loops would be mispredicted branches.
 class Surroundings {
  public:
   void copy(const CellGrid& grid, std::uint32_t cell) {
@@ -85,7 +85,7 @@ class Surroundings {
     }
   }
 
-  // Finds the other sites near the site at `place`, in any order. Returns their number.
+  // Writes the ids of all sites near a given site to `found`. Returns the number of these ids.
   std::size_t find_near(const SearchTask& t, std::size_t place,
                         std::int32_t* HWY_RESTRICT found) const {
     const V depth = hn::Set(kD, t.depth);
@@ -94,7 +94,7 @@ class Surroundings {
                       hn::Set(kD, t.grid.position[1][place]),
                       hn::Set(kD, t.grid.position[2][place])};
     const V own_margin = hn::Set(kD, t.grid.margin[place]);
-    // Compared as doubles, which represent every id exactly and have masks of the right size.
+    // Ids are compared as doubles, which are exact for all ids and have masks of the right size.
     const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
     std::size_t count = 0;
     for (std::size_t k = 0; k < size_; k += kLanes) {
@@ -156,7 +156,7 @@ std::size_t search(const SearchTask& t, std::size_t first, std::size_t last) {
   return most;
 }
 
-// Copies the near neighbours of one grain's outer list to `kept`; returns their number.
+// Copies the near neighbours of grain g from its outer list to `kept`. Returns the new list length.
 HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
                                  std::int32_t* HWY_RESTRICT kept) {
   const V depth = hn::Set(kD, t.depth);
@@ -185,7 +185,7 @@ HWY_INLINE std::size_t prune_row(const PruneTask& t, std::size_t g,
   return count;
 }
 
-// The number of grains of the moving wall in a row, where they come first.
+// Number of grains of the moving wall in a list. They are the first entries of the list.
 HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t* kept,
                                          std::size_t count) {
   std::size_t wall = 0;
@@ -193,7 +193,7 @@ HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t*
   return wall;
 }
 
-// Sets the planes that each grain of a block is near to.
+// Sets the flags of the wall planes near each grain of a block.
 HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
   V margin;
   const Vectors own = load_rows(
@@ -214,12 +214,12 @@ HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
   }
 }
 
-// The kept neighbours of one block, per lane, before they are interleaved.
+// Neighbours of one block that remain after pruning, with one list per lane.
 struct Kept {
-  // write_block pads a row behind its wall grains up to the other slots of the longest lane.
+  // write_block pads the list of lane l to at least wall[l] + other_slots entries.
   std::int32_t rows[kLanes][2 * kMostNeighbours + 64];
   std::size_t count[kLanes], wall[kLanes];
-  std::size_t other_slots, wall_slots;  // of the longest lane
+  std::size_t other_slots, wall_slots;  // largest slot counts of all lanes
 };
 
 HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {
@@ -244,7 +244,7 @@ HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {
   t.other_slots[block] = static_cast<std::uint16_t>(kept.other_slots);
 }
 
-// Interleaves the lanes: first the grains of the moving wall, then the others.
+// Interleaves the lists of the lanes: first the moving wall's grains, then the other neighbours.
 HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RESTRICT to) {
   for (std::size_t l = 0; kept.wall_slots > 0 && l < kLanes; ++l) {
     for (std::size_t k = 0; k < kept.wall_slots; ++k) {
@@ -256,7 +256,7 @@ HWY_INLINE void write_block(const PruneTask& t, Kept& kept, std::int32_t* HWY_RE
   const std::int32_t* from[kLanes];
   for (std::size_t l = 0; l < kLanes; ++l) {
     std::size_t k = kept.count[l];
-    do {  // one vector is nearly always enough, and the branch is predicted
+    do {  // one pass is nearly always enough
       hn::StoreU(padding, kOffsets, kept.rows[l] + k);
       k += kLanes;
     } while (k < kept.wall[l] + kept.other_slots);
@@ -280,7 +280,7 @@ bool prune(const PruneTask& t, std::size_t first, std::size_t last) {
   return true;
 }
 
-#endif  // a target with fused multiply-add
+#endif  // SHEARCELL_HAS_SIMD
 }  // namespace HWY_NAMESPACE
 }  // namespace shearcell
 HWY_AFTER_NAMESPACE();

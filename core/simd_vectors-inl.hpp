@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of positions as vectors, one grain per lane, for both files of SIMD loops. Included once for
-// each instruction set, so it has no ordinary include guard.
+// Loads and stores rows of positions as vectors, with one grain per lane. Each SIMD file includes
+// this file once per instruction set, so it has no ordinary include guard.
 #if defined(SHEARCELL_SIMD_VECTORS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHEARCELL_SIMD_VECTORS_INL
 #undef SHEARCELL_SIMD_VECTORS_INL
@@ -17,8 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace shearcell {
 namespace HWY_NAMESPACE {
-// Targets without a fused multiply-add would give other bits; they use the scalar kernel. SVE is
-// left out because the compiler does not know the size of its vectors, so no struct can hold them.
+// Targets without a fused multiply-add would give different bits, so they use the scalar kernel.
+// SVE is not used, because a struct cannot hold vectors whose size is unknown at compile time.
 #define SHEARCELL_HAS_SIMD \
   (HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON)
 #if SHEARCELL_HAS_SIMD
@@ -35,7 +35,7 @@ struct Vectors {
 };
 
 #if HWY_TARGET != HWY_NEON
-// The even or the odd 128-bit blocks of `low`, then those of `high`.
+// The even (or odd) 128-bit blocks of `low`, followed by the even (or odd) blocks of `high`.
 template <bool kOdd>
 HWY_INLINE V half_of_blocks(V low, V high) {
 #if HWY_TARGET == HWY_AVX3
@@ -46,7 +46,7 @@ HWY_INLINE V half_of_blocks(V low, V high) {
 }
 #endif
 
-// Loads kLanes rows; lane l takes the row at rows + offset(l).
+// Loads kLanes rows. Lane l gets the row at rows + offset(l).
 template <class Offset>
 HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V& margin) {
 #if HWY_TARGET == HWY_NEON
@@ -76,7 +76,7 @@ HWY_INLINE Vectors load_rows(const double* HWY_RESTRICT rows, Offset&& offset, V
 
 // Stores kLanes consecutive rows.
 HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows) {
-  const V xy_even = hn::InterleaveLower(kD, v.x, v.y);  // lanes 0, 2 (, 4, 6)
+  const V xy_even = hn::InterleaveLower(kD, v.x, v.y);  // lanes 0 and 2 (AVX-512: also 4 and 6)
   const V xy_odd = hn::InterleaveUpper(kD, v.x, v.y);
   const V z_even = hn::InterleaveLower(kD, v.z, margin);
   const V z_odd = hn::InterleaveUpper(kD, v.z, margin);
@@ -86,7 +86,7 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
   hn::StoreU(xy_odd, kD, rows + 4);
   hn::StoreU(z_odd, kD, rows + 6);
 #else
-  // Puts {x y} and {z margin} of the same 128-bit block side by side.
+  // Joins {x y} and {z margin} of each grain.
   const V row0 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_even), xy_even);
   const V row1 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(z_odd), xy_odd);
   const V row2 = hn::OddEvenBlocks(z_even, hn::SwapAdjacentBlocks(xy_even));
@@ -112,7 +112,7 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
 template <bool kSeam = true>
 HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth, V per_depth) {
   V dz = hn::Sub(own.z, other.z);
-  // Without a seam the nearest image is this one, and subtracting 0 * depth would change no bit.
+  // Without kSeam, no nearest image is across the boundary, and subtracting 0 would change no bit.
   if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
   return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
 }
@@ -123,9 +123,9 @@ HWY_INLINE V distance_to(const WallPlane& plane, const Vectors& at) {
       hn::Mul(hn::Sub(at.y, hn::Set(kD, plane.point[1])), hn::Set(kD, plane.normal[1])));
 }
 
-#endif  // a target with fused multiply-add
+#endif  // SHEARCELL_HAS_SIMD
 }  // namespace HWY_NAMESPACE
 }  // namespace shearcell
 HWY_AFTER_NAMESPACE();
 
-#endif  // once for each target
+#endif  // SHEARCELL_SIMD_VECTORS_INL

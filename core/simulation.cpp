@@ -12,7 +12,7 @@
 namespace shearcell {
 namespace {
 
-// Steps between two watchdog checks. A check costs as much time as about four steps.
+// Number of steps between two watchdog checks. A check takes as long as about four steps.
 constexpr std::uint64_t kWatchInterval = 1024;
 
 }  // namespace
@@ -27,14 +27,14 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
       walls_(cell_),
       lists_(kernels_, settings.lists, cell_.depth, walls_, team_) {
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
-    throw std::invalid_argument("a simulation needs as many velocities as positions, and a grain");
+    throw std::invalid_argument("a simulation needs at least one grain and a velocity per grain");
   }
-  // A grain must not meet a neighbour through both seams.
+  // A list must never need two periodic images of one neighbour.
   if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin(cell_.depth))) {
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
-                                " d, is less than twice the cutoff of the neighbour list: a "
-                                "grain could meet a neighbour, or itself, through both ends of the "
-                                "period. Use a deeper cell");
+                                " d, is less than twice the cutoff of the neighbour list. A "
+                                "grain could touch two images of one neighbour, or an image of "
+                                "itself. Use a deeper cell");
   }
   load(state);
   set_constants();
@@ -47,8 +47,8 @@ void Simulation::load(const State& state) {
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
   moving_wall_force_y_.assign(room, 0.0);
-  // The spare lanes are far away on one side and the padding of the lists is far away on the other,
-  // so neither touches anything. NaN would not be safe, since 0 * NaN is NaN.
+  // The spare lanes lie far to the right and the padding row lies far to the left, so they touch
+  // nothing and not each other. NaN would not be safe, since 0 * NaN is NaN.
   for (auto& rows : rows_) {
     rows.assign(4 * (room + 1 + walls_.size()), 0.0);
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
@@ -93,7 +93,7 @@ WallPose Simulation::pose_at(const Drive& drive, std::uint64_t step) const {
 
 double Simulation::shear_rate(const Drive& drive) const {
   if (drive.amplitude == 0) return 0;
-  // The rate of tan(theta) is theta' sec^2(theta).
+  // The time derivative of tan(theta) is theta' sec^2(theta).
   const double omega =
       2 * std::numbers::pi / (static_cast<double>(drive.steps_per_cycle) * scene_.time_step);
   return tilt(drive, step_).rate * omega / (pose_.cos_theta * pose_.cos_theta);
@@ -105,7 +105,7 @@ void Simulation::advance(const Drive& drive, std::uint64_t steps) {
   if (counts_.builds == 0 || was_set_) {
     refresh_lists(drive);
     was_set_ = false;
-    // An error in the initial state may be hidden by the next check.
+    // Check now, because an invalid initial state may look valid at the next check.
     if (step_ == 0) watch(settings_.limits, scene_.time_step);
   }
   for (std::uint64_t n = 0; n < steps; ++n) step_once(drive);
@@ -114,7 +114,7 @@ void Simulation::advance(const Drive& drive, std::uint64_t steps) {
 void Simulation::set_state(const State& state) {
   const auto grains = static_cast<Eigen::Index>(id_.size());
   if (state.position.cols() != grains || state.velocity.cols() != grains) {
-    throw std::invalid_argument("the state has another number of grains than the simulation");
+    throw std::invalid_argument("the state and the simulation have different numbers of grains");
   }
   copy_in(state);
   pose_ = pose_at(Drive{}, step_);
@@ -122,7 +122,7 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Prepares the contact sums at the present positions. The margins are checked at `tan_theta`.
+// Prepares a kernel call at the present positions. The kernel checks the margins at `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();
@@ -132,7 +132,7 @@ void Simulation::set_contacts(double tan_theta) {
   task_.planes = walls_.planes(pose_);
 }
 
-// Runs the kernel on all blocks. Returns its excess over the margins at the end of the step.
+// Runs the kernel on all blocks. The result is positive if a grain has exceeded its margin.
 double Simulation::over_blocks(const StepTask& task) {
   const std::size_t blocks = (id_.size() + kernels_.lanes - 1) / kernels_.lanes;
   ++evaluations_;
@@ -141,8 +141,8 @@ double Simulation::over_blocks(const StepTask& task) {
   });
 }
 
-// A step of no time, which writes the contact sums into sum_. Returns false if the lists were not
-// valid.
+// Calls the kernel with constants for which it moves no grain and writes the contact sums into
+// sum_. Returns false if the lists were not valid.
 bool Simulation::sum_contacts() {
   set_contacts(pose_.tan_theta);
   StepTask task = task_;
@@ -176,7 +176,7 @@ const Forces& Simulation::forces() {
   return forces_;
 }
 
-// The fluid's du/dy is Eq. S5 with the height counted from the top wall.
+// Sets the constants of the fluid's shear (Eq. S5). The fluid is at rest at the top wall.
 void Simulation::set_fluid_step(const Drive& drive) {
   const double share = fluid_share(scene_.fluid);
   const double rate = share == 0 ? 0 : share * shear_rate(drive);
@@ -206,12 +206,12 @@ void Simulation::step_once(const Drive& drive) {
     zero_slowest_velocities();
     watch(settings_.limits, scene_.time_step);
   } else if (drive.amplitude != 0 && step_ % cycle_steps(drive) == 0) {
-    watch(settings_.limits, 0);  // a run may be shorter than the interval
+    watch(settings_.limits, 0);  // a run may be shorter than kWatchInterval
   }
 }
 
-// Drag alone reduces a velocity to a subnormal number, and operations with subnormal numbers take a
-// hundred times as long. Such a velocity changes no position.
+// Drag alone can reduce a velocity to a subnormal number. Operations on subnormal numbers take a
+// hundred times as long, and a velocity this small changes no position.
 void Simulation::zero_slowest_velocities() {
   const auto zero = [](double& v) {
     if (v != 0 && std::fabs(v) < 0x1p-1000) v = 0;
@@ -221,7 +221,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // Without lists the state is still the one that was loaded.
+  // Without lists, no step was computed, so the loaded state has not changed.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 
@@ -247,7 +247,7 @@ void Simulation::watch(const WatchdogLimits& limits, double time_step) const {
                 .wall_velocity = wall_velocity_});
 }
 
-// The force upwards: the load acts inwards, and contacts act on the wall opposite to the grains.
+// Net upward force: the inward load, plus the contact forces that the grains exert on the wall.
 double Simulation::force_on_wall() const {
   double contacts = 0;
   for (const std::int32_t g : lists_.at_moving_wall()) {
@@ -280,7 +280,7 @@ Snapshot Simulation::snapshot(const Drive& drive) {
 void Simulation::refresh_lists(const Drive& drive) {
   const bool first = counts_.builds == 0;
   if (first || !lists_.prune(snapshot(drive))) rebuild_lists(drive);
-  if (first) rebuild_lists(drive);  // the order in memory depends on the lists before
+  if (first) rebuild_lists(drive);  // sort_memory() needs the lists of the first build
   ++counts_.prunes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     task_.velocity[axis] = velocity_[axis].data();
@@ -305,19 +305,19 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites, team_);
-  // In a loose, fast packing the order in memory stays good for longer than the lists are valid.
+  // In a loose, fast packing, the lists become invalid long before the memory must be sorted again.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
-  // Both buffers hold the rows that `place` does not write.
+  // Both buffers need the padding row and all wall grains. Walls::place updates only active grains.
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   ++counts_.builds;
 }
 
-// Grains that are near in space become near in memory. Within a stretch of memory, a vector gets
-// grains that are near the same walls or the seam, and among these grains with equally many
-// neighbours, because each lane takes as long as the lane with the longest list and most branches.
+// Sorts the grains by grid cell, so that near grains are near in memory. Each stretch of 256 grains
+// is then sorted by flags (near a wall or the periodic boundary) and by number of neighbours. So
+// the grains of a vector need the same branches and have lists of similar length.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One cell being simulated: the time loop over contacts, drag, gravity, drive and moving wall.
+// Simulates one cell: the time loop with contacts, drag, gravity, drive and moving wall.
 //
-// The integrator is the leapfrog with the drag taken implicitly: with v at half steps,
+// The integrator is a leapfrog with implicit drag. With velocities v at half steps,
 //   v' = [(1 - b dt/2m) v + dt (F/m + b/m u)] / (1 + b dt/2m),   x' = x + dt v',
-// where F depends on positions alone and u is the fluid's velocity. The moving wall obeys the same
-// scheme. This is velocity Verlet with velocities stored at half steps; a restart from (x, v, step)
-// is exact.
+// where F depends only on positions and u is the velocity of the fluid. The moving wall is
+// integrated by the same scheme. The scheme is velocity Verlet with velocities stored at half
+// steps. A restart from (x, v, step) is exact.
 #pragma once
 
 #include <array>
@@ -32,10 +32,10 @@ struct SimulationSettings {
   const Kernels* kernels = kernels_here().front();  ///< not null
   std::size_t threads = 1;
   ListSettings lists;
-  WatchdogLimits limits;  ///< decide when a run fails, not what it computes before it fails
+  WatchdogLimits limits;  ///< limits that decide when a run fails; they change no result
 };
 
-/// How often the outer lists were built and the inner lists pruned.
+/// How often the outer lists were built and how often the inner lists were pruned.
 struct ListCounts {
   std::uint64_t builds = 0;
   std::uint64_t prunes = 0;
@@ -43,38 +43,38 @@ struct ListCounts {
 
 /// Net forces [m d/s^2] on the grains and the moving wall.
 struct Forces {
-  Eigen::Matrix3Xd on_grain;  ///< of contacts and gravity, in the order of the permanent ids
-  double on_wall = 0;         ///< upwards on the moving wall: load and contacts
+  Eigen::Matrix3Xd on_grain;  ///< force from contacts and gravity, by permanent id
+  double on_wall = 0;         ///< upward force on the moving wall from load and contacts
 };
 
-/// The largest overlap limit [d] that a run can have.
+/// Upper bound of the overlap limit of a run [d].
 inline constexpr double kLargestOverlapLimit = 0.5;
 
 class Simulation {
  public:
-  /// Copies the state. Throws std::invalid_argument when the sizes disagree or the cell
-  /// is too shallow for the cutoffs.
+  /// Copies `state`. Throws std::invalid_argument if there is no grain, if the numbers of positions
+  /// and velocities differ, or if the cell is too shallow for the cutoffs of the neighbour lists.
   Simulation(Cell cell, const Scene& scene, const State& state, SimulationSettings settings = {});
 
-  /// Advances by `steps` time steps. The watchdog checks step 0, every 1024th step and, except for
-  /// the time-step check, the end of each cycle. It checks no other step: whether a run fails must
-  /// not depend on where it was recorded or continued. Throws NumericalFailure (watchdog.hpp).
+  /// Advances by `steps` time steps. The watchdog runs at step 0, at every 1024th step and, without
+  /// the time-step check, at the end of each cycle. It runs at no other step, because a failure
+  /// must not depend on where the run was recorded or continued. Throws NumericalFailure.
   void advance(const Drive& drive, std::uint64_t steps);
 
   /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.
   void check() const;
 
-  /// Checks that all numbers are finite and all grains inside the cell, without which a state
-  /// cannot be recorded. Throws NumericalFailure.
+  /// Checks that all numbers are finite and all grains are inside the cell. Other states must not
+  /// be recorded. Throws NumericalFailure.
   void check_recordable() const;
 
-  /// Continues from another state of the same grains, between upright walls. Throws
-  /// std::invalid_argument when their number differs.
+  /// Replaces the state by another state of the same grains, with upright walls. Throws
+  /// std::invalid_argument if the number of grains differs.
   void set_state(const State& state);
 
-  /// Forces at the present positions without drag, walls upright; the same bits as in a time step.
-  /// After steps between tilted walls, call set_state() first.
-  /// The reference is valid until the next call.
+  /// Forces at the present positions, without drag and with upright walls. They have the same bits
+  /// as in a time step. After steps with tilted walls, call set_state() first. The returned
+  /// reference is valid until the next call.
   const Forces& forces();
 
   /// The state in the order of the permanent ids.
@@ -83,13 +83,13 @@ class Simulation {
   const Cell& cell() const { return cell_; }
   const Scene& scene() const { return scene_; }
   std::size_t grains() const { return id_.size(); }
-  /// How often steps and forces() have computed forces since construction.
+  /// Number of force evaluations by advance() and forces() since construction.
   std::uint64_t evaluations() const { return evaluations_; }
   const ListCounts& list_counts() const { return counts_; }
   /// Memory used for grains, walls and lists [bytes].
   std::size_t bytes() const;
 
-  /// Uses other forces from the next step on; the state does not change.
+  /// Replaces the scene from the next step on. The state does not change.
   void set_scene(const Scene& scene);
 
   /// Sets the watchdog's largest overlap [d].
@@ -123,10 +123,10 @@ class Simulation {
   std::uint64_t step_ = 0;
   std::uint64_t sorted_at_ = 0;  // step when the memory was last sorted
   double wall_height_ = 0, wall_velocity_ = 0;
-  std::vector<std::int32_t> id_;  // permanent id of each grain in memory
+  std::vector<std::int32_t> id_;  // permanent id of each grain, in memory order
   std::array<AlignedVector<double>, 2> rows_;
   std::array<AlignedVector<double>, 3> velocity_;
-  std::vector<double> moving_wall_force_y_;  // of each grain's contacts with that wall, over k [d]
+  std::vector<double> moving_wall_force_y_;  // output of the kernel, see StepTask
   CellOrder order_;
   Walls walls_;
   NeighbourLists lists_;
@@ -134,7 +134,7 @@ class Simulation {
   StepTask task_;
   std::array<AlignedVector<double>, 3> sum_;  // contact sums for forces()
   Forces forces_;
-  bool was_set_ = false;  // the lists have not been checked for the new state
+  bool was_set_ = false;  // the lists have not been checked since set_state()
   std::uint64_t evaluations_ = 0;
   ListCounts counts_;
 };

@@ -11,9 +11,9 @@
 namespace shearcell {
 namespace {
 
-// The parts of a step end within microseconds of each other, so a thread waits in a short spin
-// before it sleeps. With fewer cores than threads the spin is shorter, since the awaited thread may
-// need this core.
+// All threads finish a step within microseconds of each other, so a waiting thread spins for a
+// short time before it sleeps. With fewer cores than threads the spin is shorter, because another
+// thread may need the core.
 constexpr int kSpins = 1000, kSpinsWithFewCores = 100;
 
 void relax() {
@@ -22,7 +22,7 @@ void relax() {
 #endif
 }
 
-// Waits until `number` is no longer `seen`.
+// Waits until `number` differs from `seen`.
 void wait_for_change(const std::atomic<std::uint32_t>& number, std::uint32_t seen, int spins) {
   while (number.load(std::memory_order_acquire) == seen) {
     if (spins-- > 0) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Threads that share the loops of one simulation.
 //
-// Properties: (1) each thread computes one contiguous range of a loop's items; (2) no result
-// depends on the ranges, so the bits do not depend on the number of threads; (3) `run` returns when
-// all ranges are done, and everything written in them is visible to the caller.
+// Each thread computes one contiguous range of a loop. No result depends on these ranges, so the
+// bits do not depend on the number of threads. `run` returns when all threads have finished. The
+// caller then sees everything that the threads have written.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace shearcell {
 
 class Team {
  public:
-  /// `threads` includes the thread of the caller, so 1 starts none. The team is smaller if the
-  /// system refuses to start this many threads.
+  /// `threads` includes the calling thread, so Team(1) starts no thread. The team is smaller if the
+  /// system cannot start all threads.
   explicit Team(std::size_t threads);
   ~Team();
   Team(const Team&) = delete;
@@ -27,8 +27,8 @@ class Team {
 
   std::size_t size() const { return workers_.size() + 1; }
 
-  /// Calls work(thread, first, last) once on each thread with its part of [0, count). `work` must
-  /// not throw.
+  /// Divides [0, count) among the threads. Each thread calls work(thread, first, last) once for its
+  /// range. `work` must not throw.
   template <class Work>
   void run(std::size_t count, Work&& work) {
     if (workers_.empty()) {
@@ -45,7 +45,8 @@ class Team {
     wait_for_workers();
   }
 
-  /// Returns the largest result of work(first, last) over the parts of [0, count).
+  /// Divides [0, count) among the threads, which call work(first, last). Returns the largest
+  /// result.
   template <class Work>
   double largest(std::size_t count, Work&& work) {
     run(count, [&](std::size_t thread, std::size_t first, std::size_t last) {
@@ -64,12 +65,12 @@ class Team {
   void* argument_ = nullptr;
   std::size_t count_ = 0;
   bool stop_ = false;
-  int spins_;  // before a thread that waits goes to sleep
-  // Number of the current round, and of the workers that have done it.
+  int spins_;  // number of spins before a waiting thread sleeps
+  // Number of the current round, and number of workers that have finished this round.
   alignas(64) std::atomic<std::uint32_t> round_{0};
   alignas(64) std::atomic<std::uint32_t> done_{0};
-  std::vector<double> most_;           // of each thread, in largest()
-  std::vector<std::jthread> workers_;  // last: they use the other members
+  std::vector<double> most_;           // result of each thread in largest()
+  std::vector<std::jthread> workers_;  // declared last, because the threads use the members above
 };
 
 }  // namespace shearcell

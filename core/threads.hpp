@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starting as many threads as the system allows.
+// Starts threads, up to the limit of the system.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace shearcell {
 
-/// Starts up to workers - 1 threads. Thread k, counted from 1, calls work(k); the caller does part
-/// 0 itself. Fewer threads are started if a limit of the system is reached, so no result may depend
-/// on their number. `work` must not throw. The threads are joined when the list is destroyed.
+/// Starts workers - 1 threads. Thread k = 1, 2, ... calls work(k). The caller must do part 0. If
+/// the system reaches a limit, fewer threads are started, so no result may depend on the number of
+/// threads. `work` must not throw. The destructor of the returned vector joins the threads.
 template <class Work>
 std::vector<std::jthread> start_threads(std::size_t workers, const Work& work) {
   std::vector<std::jthread> threads;

@@ -8,11 +8,11 @@
 namespace shearcell {
 namespace {
 
-// Factorials up to 25: the last Taylor term at pi/2 is below 1e-20.
+// Number of Taylor terms after the first term. At pi/2 the last term is below 1e-19.
 constexpr int kTerms = 12;
 
-// 1 - x^2 / (a (a + 1)) (1 - x^2 / ((a + 2) (a + 3)) (1 - ...)): the cosine of x for a = 1, and its
-// sine over x for a = 2.
+// Computes 1 - x^2 / (a (a + 1)) (1 - x^2 / ((a + 2) (a + 3)) (1 - ...)). This is cos(x) for a = 1
+// and sin(x) / x for a = 2.
 double series(double x, int a) {
   double sum = 1.0;
   for (int m = a + 2 * (kTerms - 1); m >= a; m -= 2) {

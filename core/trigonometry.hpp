@@ -11,11 +11,11 @@ struct SineCosine {
   double cosine;
 };
 
-/// Sine and cosine of `angle` [rad], |angle| <= pi/2, to about one unit in the last place, by
-/// Taylor series and explicit fused multiply-adds. Outside that range the result is not a number.
+/// Sine and cosine of `angle` [rad] for |angle| <= pi/2, from Taylor series with explicit fused
+/// multiply-adds. The error is about one unit in the last place. Other angles give NaN.
 SineCosine sine_cosine(double angle);
 
-/// Sine and cosine of the full turn's fraction step / period. Exact at the quarter turns.
+/// Sine and cosine of 2 pi step / period. The result is exact at multiples of a quarter turn.
 SineCosine turn_sine_cosine(std::uint64_t step, std::uint64_t period);
 
 }  // namespace shearcell

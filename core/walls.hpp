@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The walls as the kernel sees them: four planes, and wall grains as rows after those of the
-// grains.
+// The walls in the form that the kernel reads: four planes, and rows of the wall grains, which
+// follow the rows of the grains.
 #pragma once
 
 #include <array>
@@ -14,34 +14,34 @@
 
 namespace shearcell {
 
-/// Planes and wall grains in a pose. The permanent id of a wall grain is its place in an order
-/// where the grains of the moving wall come first and all others keep the order of the cell.
+/// Planes and wall grains in a pose. Permanent ids begin with the grains of the moving wall. The
+/// other wall grains follow in the order of Cell::wall_grains.
 class Walls {
  public:
   explicit Walls(const Cell& cell);
 
   std::size_t size() const { return cell_.wall_grains.size(); }
-  /// Number of wall grains of the moving wall; they come first.
+  /// Number of grains of the moving wall, which have the smallest ids.
   std::size_t moving_size() const { return moving_size_; }
 
-  /// The plane of the moving wall, then the other planes by WallSide.
+  /// The plane of the moving wall, then the other planes in the order of WallSide.
   std::array<WallPlane, 4> planes(const WallPose& pose) const;
 
-  /// Writes the centres of all wall grains [d], with this margin, into rows of 4.
+  /// Writes a row {x, y, z, margin} [d] for each wall grain.
   void place_all(const WallPose& pose, double margin, double* rows) const;
 
-  /// Selects the wall grains that `place` moves: the wall grains between the planes or up to
-  /// `reach` [d] beyond them. Side walls extend beyond the moving wall.
+  /// Selects the wall grains that place() updates. These wall grains lie between the bottom and top
+  /// planes or at most `reach` [d] outside. Side walls extend beyond the moving wall.
   void choose_active(const WallPose& pose, double reach);
   const std::vector<std::int32_t>& active() const { return active_; }
 
-  /// Updates the active wall grains in rows that place_all has filled.
+  /// Updates the rows of the active wall grains. place_all() must have filled the rows before.
   void place(const WallPose& pose, double* rows, Team& team) const;
 
   std::size_t bytes() const { return sizeof(WallGrain) * size() + 4 * active_.size(); }
 
  private:
-  Cell cell_;  // its wall grains in the order of their permanent ids
+  Cell cell_;  // with the wall grains sorted by permanent id
   std::size_t moving_size_ = 0;
   std::vector<std::int32_t> active_;
 };

@@ -23,8 +23,8 @@ std::string message(const std::string& quantity, double value, double limit, std
   return text.str();
 }
 
-// Calls visit(row offset, separation, whether the neighbour belongs to the moving wall) for every
-// neighbour.
+// Calls visit(offset, separation, moving) for every neighbour of grain g, with the neighbour's row
+// offset. `moving` says whether the neighbour belongs to the moving wall.
 template <class Visit>
 void for_each_neighbour(const WatchTask& task, std::size_t g, Visit&& visit) {
   const double* own = task.rows + 4 * g;
@@ -49,11 +49,11 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w of contacts in the frequency bound (watchdog.hpp).
+// Weights w of contacts in the bounds of the frequency (watchdog.hpp).
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
-// Calls visit(unit normal, weight, whether it is with the moving wall) for every contact of a
-// grain.
+// Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether
+// the contact is with the moving wall.
 template <class Visit>
 void for_each_contact_of(const WatchTask& task, std::size_t g, Visit&& visit) {
   const std::int32_t first_wall = wall_offset(task.id.size());
@@ -74,14 +74,14 @@ void for_each_contact_of(const WatchTask& task, std::size_t g, Visit&& visit) {
   }
 }
 
-// Largest bound of omega^2 in units of k/m, and its grain.
+// Largest bound of omega^2 in units of k/m, and the id of its grain (-1: the moving wall).
 struct Fastest {
   double bound = 0;
   std::int64_t grain = -1;
 };
 
-// Raises `fastest` to the bound of one grain if this bound exceeds `least`. Nearly always the
-// number of neighbours, or else a simpler bound, shows that it does not.
+// Updates `fastest` if the bound of grain g exceeds `least` and the bound in `fastest`. For nearly
+// all grains, a cheaper estimate shows that it does not.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
   const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +
@@ -92,7 +92,7 @@ void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fa
     sum += weight * normal * normal.transpose();
   });
   // Largest eigenvalue <= mean + sqrt(2) spread (Wolkowicz and Styan, Linear Algebra Appl. 29, 471
-  // (1980)). The spread of equal eigenvalues is rounded to 1e-8 of their mean.
+  // (1980)). Rounding gives equal eigenvalues a spread of up to 1e-8 of their mean.
   const double mean = sum.trace() / 3;
   const double spread = std::sqrt(std::max(0.0, sum.squaredNorm() / 3 - mean * mean));
   if (mean + std::numbers::sqrt2 * spread <= (1 - 1e-6) * std::max(least, fastest.bound)) return;
@@ -101,7 +101,7 @@ void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fa
   if (bound > fastest.bound) fastest = {bound, task.id[g]};
 }
 
-// Raises `fastest` to the bound of the moving wall if this bound exceeds `least`.
+// Updates `fastest` if the bound of the moving wall exceeds `least` and the bound in `fastest`.
 void bound_wall(const WatchTask& task, double least, Fastest& fastest) {
   const double each = kOnMovingWall / (task.scene.wall_mass * task.cell.width * task.cell.depth);
   std::vector<std::size_t> near;
@@ -134,14 +134,14 @@ void check_time_step(const WatchTask& task) {
       "the time step [s]", task.time_step,
       2 * task.limits.time_step / std::sqrt(fastest.bound * task.scene.stiffness), fastest.grain,
       task.step,
-      "The contacts may vibrate faster than it can follow: use a smaller time step (more "
+      "Contacts may vibrate too fast for this time step. Use a smaller time step (more "
       "steps_per_cycle; while settling, a smaller settle_time_step_s)" +
           std::string(fastest.grain < 0 ? ", or a heavier wall (wall_mass_grains_per_d2)" : ""));
 }
 
 void check_place(const WatchTask& task, std::size_t g) {
   const double* own = task.rows + 4 * g;
-  // NaN in x or y reaches the first distance, and nothing is smaller than that.
+  // If x or y is NaN, the first distance is NaN and stays the smallest, so the check fails.
   double smallest = distance_to(task.planes[0], own[0], own[1]);
   for (const WallPlane& plane : task.planes) {
     const double distance = distance_to(plane, own[0], own[1]);
@@ -150,14 +150,14 @@ void check_place(const WatchTask& task, std::size_t g) {
   if (!(smallest >= -task.limits.escape && std::isfinite(own[2]))) {
     throw NumericalFailure("the distance [d] of a grain's centre behind a wall", -smallest,
                            task.limits.escape, task.id[g], task.step,
-                           "A grain was pushed out of the cell: lower the pressure or raise the "
+                           "A grain was pushed out of the cell. Lower the pressure or raise the "
                            "stiffness");
   }
   if (!(0.5 - smallest <= task.limits.overlap)) {
     throw NumericalFailure("the overlap [d] of a grain and a wall plane", 0.5 - smallest,
                            task.limits.overlap, task.id[g], task.step,
                            "The grains are too soft for this load, or were placed too near a "
-                           "wall: raise the stiffness, lower the pressure, or use a smaller time "
+                           "wall. Raise the stiffness, lower the pressure, or use a smaller time "
                            "step");
   }
 }
@@ -179,8 +179,8 @@ void check_grains(const WatchTask& task) {
   if (!std::isfinite(task.wall_height) || !std::isfinite(task.wall_velocity)) {
     throw NumericalFailure("the height [d] of the moving wall", task.wall_height,
                            std::numeric_limits<double>::max(), -1, task.step,
-                           "Use a smaller time step, or check the pressure and the wall's mass "
-                           "and drag");
+                           "Use a smaller time step, or check the pressure and the mass and drag "
+                           "of the wall");
   }
   const double most_overlap = task.limits.overlap;
   const double fastest_square = 12 * task.scene.stiffness * most_overlap * most_overlap;
@@ -188,12 +188,12 @@ void check_grains(const WatchTask& task) {
     const double v2 = task.velocity[0][g] * task.velocity[0][g] +
                       task.velocity[1][g] * task.velocity[1][g] +
                       task.velocity[2][g] * task.velocity[2][g];
-    // Written so that NaN fails.
+    // The negated comparison also rejects NaN.
     if (!(v2 <= fastest_square)) {
       throw NumericalFailure(
           "the speed [d/s] of a grain", std::sqrt(v2), std::sqrt(fastest_square), task.id[g],
           task.step,
-          "The integration is unstable: use a smaller time step (more steps_per_cycle; "
+          "The integration is unstable. Use a smaller time step (more steps_per_cycle; "
           "while settling, a smaller settle_time_step_s)");
     }
     check_place(task, g);
@@ -202,10 +202,10 @@ void check_grains(const WatchTask& task) {
       throw NumericalFailure("the overlap [d] of two grains", overlap, most_overlap, task.id[g],
                              task.step,
                              "The grains are too soft for this load, or the time step is too "
-                             "large: raise the stiffness, lower the pressure, or use a smaller "
-                             "time step. If they are merely compressed, raise the limit "
-                             "(max_overlap_diameters; 0.5 d at least until the moving wall has "
-                             "first compacted the loose grains)");
+                             "large. Raise the stiffness, lower the pressure, or use a smaller "
+                             "time step. If such overlaps are intended, raise the limit "
+                             "(max_overlap_diameters; while the moving wall compacts the loose "
+                             "grains, the limit is at least 0.5 d)");
     }
   }
   check_time_step(task);

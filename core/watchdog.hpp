@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// A quantity exceeds its limit. what() states the numbers and what to change.
+/// Thrown if a quantity exceeds its limit. what() gives both numbers and says what to change.
 class NumericalFailure : public std::runtime_error {
  public:
   NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,
@@ -29,11 +29,11 @@ class NumericalFailure : public std::runtime_error {
 
 struct WatchdogLimits {
   double overlap = 0.1;  ///< largest overlap of two grains, or of a grain and a wall plane [d]
-  double escape = 0.5;   ///< largest distance of a centre behind a wall plane [d]
-  double time_step = 1;  ///< largest time step over the stability limit of the contacts (below)
+  double escape = 0.5;   ///< largest distance of a grain centre outside a wall plane [d]
+  double time_step = 1;  ///< largest time step, divided by the stability limit (see check_grains)
 };
 
-/// Input of the checks; arrays as in kernel.hpp.
+/// Input of the checks. The arrays are laid out as in kernel.hpp.
 struct WatchTask {
   const Cell& cell;
   const Scene& scene;
@@ -46,19 +46,19 @@ struct WatchTask {
   std::size_t lanes;
   std::uint64_t step;
   double time_step;      ///< [s]; 0 skips the time-step check
-  double wall_height;    ///< of the moving wall [d]
-  double wall_velocity;  ///< [d/s]
+  double wall_height;    ///< height of the moving wall [d]
+  double wall_velocity;  ///< velocity of the moving wall [d/s]
 };
 
-/// Checks that all numbers are finite, all grains are inside the walls, and no overlap is over its
-/// limit. No grain may be faster than the energy of twelve contacts at this limit allows. The time
-/// step must be below 2/omega for every frequency omega of the contact network. omega is bounded
-/// grain by grain, because (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2: omega^2 is at most k/m times
-/// the largest eigenvalue of any grain's sum of w n n^T over its contacts, with w = 2 for a grain,
-/// 1 for a fixed wall and 5/4 for the moving wall. For the moving wall the bound is k/m times 5
-/// (sum of n_y^2) / M. The bound is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). The
-/// checks cost about four time steps. Throws NumericalFailure for the first failing grain in
-/// memory.
+/// Checks that all numbers are finite, all grains are inside the walls, and no overlap exceeds its
+/// limit. The speed of a grain is limited by the energy of twelve contacts at the overlap limit.
+/// The time step must be below 2/omega for every frequency omega of the contact network. The
+/// largest of the following bounds limits omega^2, because (a - b)^2 <= (1 + c) a^2 + (1 + 1/c)
+/// b^2. For a grain, the bound is k/m times the largest eigenvalue of the sum of w n n^T over its
+/// contacts, with w = 2 for a grain, 1 for a fixed wall and 5/4 for the moving wall. For the moving
+/// wall, the bound is k/m times 5 (sum of n_y^2) / M. The largest bound is exact for a pair (2 k/m)
+/// and for an FCC crystal (8 k/m). The checks take as long as about four time steps. Throws
+/// NumericalFailure for the first failing grain in memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tilts the side walls periodically (supplement B.5), without a pause or with one after each cycle.
+// Tilts the side walls periodically (supplement B.5), with or without a pause after each cycle.
 #pragma once
 
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace shearcell {
 
-/// When checkpoints are due: after every `every_cycles` cycles; at the `steps` of each cycle that
-/// follows such a checkpoint; and at the end of the last cycle.
+/// Each period of `every_cycles` cycles ends with a checkpoint, and the first cycle of each period
+/// has checkpoints at `steps`. The last checkpoint is at the end of `last_cycle`.
 struct CheckpointCadence {
   std::uint64_t every_cycles = 1;
-  std::vector<std::uint64_t> steps = {};  ///< since the cycle began, ascending; see steps_at()
-  std::uint64_t last_cycle = 0;           ///< 0: without end
+  std::vector<std::uint64_t> steps = {};  ///< steps of the cycle, ascending; see steps_at()
+  std::uint64_t last_cycle = 0;           ///< 0: the schedule does not end
 };
 
-/// The first step after `step` at which one of the cadences has a checkpoint; 2^64 - 1 without any.
+/// First step after `step` with a checkpoint of any cadence; 2^64 - 1 if there is no such step.
 std::uint64_t next_checkpoint(std::span<const CheckpointCadence> cadences, const Drive& drive,
                               std::uint64_t step);
 
-/// Shears for `cycles` cycles. Checkpoints are due by the cadences and at the end.
+/// Shears for `cycles` cycles. Checkpoints are due at the steps of the cadences and at the end.
 Protocol cyclic_shear(const Drive& drive, std::uint64_t cycles,
                       std::vector<CheckpointCadence> cadences);
 

@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// Largest distance [d] of a touching grain from a wall plane: the centre of a wall grain is at most
-// one diameter behind the plane, and the centre of the grain one diameter from it.
+// A grain farther than this from a wall plane [d] does not touch the wall. Wall grains have
+// diameter 1, and their centres lie behind the plane.
 constexpr double kWallReach = 2;
 
 // Positions of the grains that may touch a wall.
@@ -27,16 +27,17 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
   return state.position(Eigen::all, near);
 }
 
-// Generalized forces of the grains on the walls. A point of a wall at height y is displaced in x by
-// (y - top) tan(theta). A horizontal wall moves as a whole, so y is the height of its plane.
+// Generalized forces of the grains on the walls. A wall point at height y is displaced in x by
+// (y - top) tan(theta). A horizontal wall moves as a rigid body, so y is the height of its plane.
 struct WallForces {
   double on_tilt = 0;  // conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
-  // Conjugate to the moving wall's height times tan(theta) [m d/s^2]: sum of f_x on a moving bottom
-  // wall; of -f_x on all walls but the top one if the top one moves.
+  // on_height times tan(theta) is conjugate to the height of the moving wall [m d/s^2]. on_height
+  // is the sum of f_x on a moving bottom wall, or of -f_x on the three other walls if the top wall
+  // moves.
   double on_height = 0;
 };
 
-// The height y at which the wall point of a contact is displaced by (y - top) tan(theta).
+// Height y of the touched wall point, which is displaced by (y - top) tan(theta).
 double height_of(const Cell& cell, const WallPose& pose, const Contact& c,
                  const Eigen::Vector3d& centre) {
   if (c.side == WallSide::bottom) return pose.bottom;
@@ -60,8 +61,8 @@ WallForces wall_forces(const Cell& cell, const Scene& scene, const State& state,
   return sum;
 }
 
-// Adds `sign` times the energies at a whole step. The positions are in `here`; the velocities of
-// the whole step are the mean of the velocities in `here` and `after`.
+// Adds `sign` times the energies at the step of `here`. The velocities at this step are the mean of
+// the half-step velocities in `here` and `after`.
 void add_energies(const Cell& cell, const Scene& scene, const State& here, const State& after,
                   const WallPose& pose, double sign, Ledger& sum) {
   double elastic = 0;
@@ -79,7 +80,7 @@ void add_energies(const Cell& cell, const Scene& scene, const State& here, const
   sum.load -= sign * inwards(cell) * load * here.wall_height;
 }
 
-// Power that drag takes from the grains in the half step before `state`.
+// Power that the grains lose by drag, half a step before `state`.
 double drag_power(const Cell& cell, const Scene& scene, const Drive& drive, const State& state,
                   const WallPose& pose) {
   Eigen::Matrix3Xd relative = state.velocity;
@@ -103,7 +104,7 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
   Simulation simulation(cell, scene, start);
-  simulation.set_overlap_limit(kLargestOverlapLimit);  // the run's own limit was checked before
+  simulation.set_overlap_limit(kLargestOverlapLimit);  // the original run has already been checked
   simulation.advance(drive, 1);
   Ledger sum;
   add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);

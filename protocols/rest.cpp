@@ -7,12 +7,11 @@ namespace shearcell {
 
 State rested(const Cell& cell, const Scene& scene, State state, double seconds) {
   const auto steps = static_cast<std::uint64_t>(std::llround(seconds / scene.time_step));
-  // Only the pause of this drive is used. It follows a cycle of one step, so the state begins at
-  // step 1.
+  // The drive has a cycle of one step and then a pause. Starting at step 1 skips the cycle.
   const Drive pause{.amplitude = 0, .steps_per_cycle = 1, .pause_steps = steps};
   state.step = 1;
   Simulation simulation(cell, scene, state);
-  simulation.set_overlap_limit(kLargestOverlapLimit);  // the run's own limit was checked before
+  simulation.set_overlap_limit(kLargestOverlapLimit);  // the original run has already been checked
   simulation.advance(pause, steps);
   state = simulation.state();
   state.step = 0;

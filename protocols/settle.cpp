@@ -19,7 +19,7 @@ std::uint64_t steps_in(double seconds, const Scene& scene) {
 }  // namespace
 
 double pressing_time(const Scene& scene, double height, double per_area) {
-  constexpr double dense_grains = 1.2;  // per d^3, of a packing at phi = 0.63
+  constexpr double dense_grains = 1.2;  // per d^3, at a packing fraction of 0.63
   const double way = std::max(0.0, height - per_area / dense_grains);
   const double speed = scene.pressure / (scene.wall_drag + scene.drag_rate * per_area);
   return way / speed + 0.5;
@@ -79,12 +79,12 @@ bool Settle::finished(const Simulation& simulation) const {
   const std::uint64_t pressed = steps_without_gravity(simulation.cell(), simulation.grains());
   if (step > pressed && settled(simulation)) return true;
   if (step < limit_steps_) return false;
-  throw NumericalFailure("the time [s] that the packing takes to settle",
-                         static_cast<double>(step) * scene_.time_step, parameters_.time_limit, -1,
-                         step,
-                         "Raise that limit (settle_time_limit_s) or the settling tolerances, or "
-                         "check that the pressure can lift the grains and that the drag "
-                         "(drag_kg_per_s) neither leaves them moving nor holds the wall");
+  throw NumericalFailure(
+      "the time [s] that the packing takes to settle", static_cast<double>(step) * scene_.time_step,
+      parameters_.time_limit, -1, step,
+      "Raise the limit (settle_time_limit_s) or the settling tolerances. Check that "
+      "the pressure can lift the grains. Check that the drag (drag_kg_per_s) is "
+      "large enough to stop the grains and does not stop the wall");
 }
 
 StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {
@@ -93,7 +93,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   simulation.set_overlap_limit(compacting
                                    ? std::max(parameters_.overlap_limit, kLargestOverlapLimit)
                                    : parameters_.overlap_limit);
-  // A stage that was interrupted after its last state must not continue.
+  // If the stage was interrupted after its last state, it must not advance further.
   if (finished(simulation)) return {.checkpoint_due = true, .finished = true};
 
   Scene scene = scene_;

@@ -1,56 +1,55 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a packing from loose grains: presses them together, then lets them come to rest under
-// gravity and the load.
+// Makes a packing from loose grains. The moving wall presses the grains together. Then the grains
+// come to rest under gravity and the load.
 #pragma once
 
 #include "protocols/protocol.hpp"
 
 namespace shearcell {
 
-/// Largest number of time steps of a stage. A double represents every whole number up to it.
+/// Largest number of time steps of a stage. A double holds all whole numbers up to this number.
 inline constexpr double kMostSteps = 1e15;
 
-/// Time between checks of whether a packing has settled [s].
+/// Time between two checks of a settling packing [s].
 inline constexpr double kSettleCheckInterval = 0.1;
 
 struct SettleParameters {
   double force_tolerance = 1e-3;    ///< largest |load - contact force| / (P A_w) of the moving wall
-  double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain over P d^3
-  double time_limit = 60;           ///< [s]; a packing that takes longer is an error
+  double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain, divided by P d^3
+  double time_limit = 60;           ///< largest settling time [s]; a longer time is an error
   double overlap_limit =
-      WatchdogLimits{}.overlap;  ///< of the watchdog, after the wall has pressed the grains [d]
+      WatchdogLimits{}.overlap;  ///< overlap limit after the wall has pressed the grains [d]
 };
 
-/// Time [s] for which the moving wall presses loose grains together: until they are dense, and half
-/// a second more. The wall is assumed to move at the speed at which its drag and the drag of all
-/// grains balance the pressure. The loose grains are `height` [d] high, with `per_area` grains per
-/// d^2 of wall.
+/// Estimated time [s] in which the moving wall presses loose grains into a dense packing, plus half
+/// a second. The wall is assumed to move at the speed at which the drag on the wall and on all
+/// grains balances the pressure. The loose grains fill a height of `height` [d], with `per_area`
+/// grains per d^2 of wall.
 double pressing_time(const Scene& scene, double height, double per_area);
 
-/// Gravity is switched on only after the moving wall has had time to press the grains together.
-/// Grains that fall first form a heap, and a heap nearly as heavy as P A_w (0.95 of it at N =
-/// 18200) jams between rough side walls before it reaches the top.
+/// Gravity is switched on only after the moving wall has pressed the grains together. With gravity
+/// from the start, the grains would form a heap. A heap of nearly the weight P A_w (0.95 P A_w at
+/// N = 18200) jams between rough side walls before it reaches the top.
 ///
-/// The packing has settled when three numbers are below their tolerances, at a check every 0.1 s
-/// under gravity: the force imbalance of the moving wall, its drag force B_w y' (both over P A_w),
-/// and the kinetic energy per grain. The drag force is checked so that a creeping wall does not
-/// count as balanced.
+/// Under gravity, the packing is checked every 0.1 s. It has settled when three numbers are below
+/// their tolerances: the force imbalance of the moving wall, the drag force B_w y' on this wall
+/// (both divided by P A_w), and the kinetic energy per grain. The drag force is checked so that a
+/// slowly creeping wall does not count as balanced.
 ///
-/// While the wall presses, overlaps up to half a diameter are accepted: the wall may catch a grain
-/// between its own wall grains and those of a side wall, and push the grain out with the whole
-/// load.
+/// While the wall presses, overlaps up to half a diameter are allowed. The grains of the moving
+/// wall and of a side wall may catch a grain between them and push it out with the whole load.
 class Settle {
  public:
-  /// `scene` is the scene with gravity.
+  /// `scene` is the scene after gravity is switched on.
   Settle(const SettleParameters& parameters, const Scene& scene);
   /// See Protocol::advance.
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;
 
-  /// pressing_time() in steps, a multiple of the check interval, at most the time limit. 0 without
-  /// pressure.
+  /// Number of time steps in pressing_time(), rounded up to a multiple of the check interval. It is
+  /// at most the time limit, and 0 without pressure.
   std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
-  /// The compaction steps before gravity is switched on: all of them, or 0 if the scene has no
+  /// Number of steps before gravity is switched on: compaction_steps(), or 0 for a scene without
   /// gravity.
   std::uint64_t steps_without_gravity(const Cell& cell, std::size_t grains) const;
 
@@ -58,8 +57,8 @@ class Settle {
   std::uint64_t next_check(std::uint64_t step) const;
 
  private:
-  /// Whether the packing has settled, at a check. Throws NumericalFailure at a check after the time
-  /// limit.
+  /// Returns true if the simulation is at a check and the packing has settled. Throws
+  /// NumericalFailure at the first check after the time limit.
   bool finished(const Simulation& simulation) const;
   bool settled(const Simulation& simulation) const;
 
@@ -69,8 +68,8 @@ class Settle {
   std::uint64_t limit_steps_;
 };
 
-/// Presses the grains together without gravity for as long as Settle does. The result is a dense
-/// packing that has not come to rest, at step 0.
+/// Presses the grains together without gravity for pressing_time(). The result is a dense packing
+/// at step 0 that is not yet at rest.
 State pressed(const Cell& cell, const State& loose, Scene scene);
 
 }  // namespace shearcell

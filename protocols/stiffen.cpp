@@ -10,8 +10,8 @@ double power(double base, std::uint64_t exponent) {
   return product;
 }
 
-// 10^(1/m) by Newton's iteration, since std::pow differs between libraries. It starts above the
-// root and decreases until it is constant to rounding.
+// Computes 10^(1/m) by Newton's method, because std::pow differs between libraries. The iteration
+// starts above the root and decreases until rounding stops it.
 double root_of_ten(std::uint64_t m) {
   const auto degree = static_cast<double>(m);
   double root = 1 + 9 / degree;

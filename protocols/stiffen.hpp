@@ -9,18 +9,18 @@
 namespace shearcell {
 
 struct StiffenParameters {
-  std::uint64_t steps_per_decade = 4;  ///< a step raises k by 10^(1/steps_per_decade)
-  std::uint64_t steps = 9;  ///< number of stiffnesses; the first is the scene's stiffness
+  std::uint64_t steps_per_decade = 4;  ///< each step multiplies k by 10^(1/steps_per_decade)
+  std::uint64_t steps = 9;             ///< number of stiffness values; the first is k of the scene
   MinimizeSettings minimize;
 };
 
-/// k_0 10^(step / steps_per_decade), with the same bits on every machine.
+/// Returns first * 10^(step / steps_per_decade), with the same bits on every machine.
 double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_per_decade);
 
-/// A cycle is one stiffness: the state of cycle n is at rest at k_0 10^((n - 1)/m); cycle 0 is the
-/// settled packing. The step of the simulation is the cycle. No time passes. `scene` holds k_0,
-/// gravity and pressure. Each advance does one whole stiffness, since a minimization cannot be
-/// continued from a state.
+/// Each cycle has one stiffness. The state of cycle n is at rest with k_0 10^((n - 1)/m), where m
+/// is `steps_per_decade`. Cycle 0 is the settled packing. The step of the simulation counts the
+/// cycles, and no time passes. `scene` holds k_0, gravity and pressure. Each advance does one whole
+/// minimization, because a minimization cannot be continued from a state.
 Protocol stiffen(const StiffenParameters& parameters, const Scene& scene);
 
 }  // namespace shearcell

@@ -18,15 +18,15 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Twelve chains of fused multiply-adds, more than two units with a latency of five cycles can
-// hold. With the constant they fit in 16 registers.
+// Fused multiply-adds per second, measured with twelve independent chains. Ten chains keep two
+// units with a latency of five cycles busy. Twelve chains and the constant fit in 16 registers.
 template <class D>
 double fused_per_second(D d) {
   constexpr std::size_t kRounds = 150'000, kChains = 12;
   using V = hn::Vec<D>;
   const V half = hn::Set(d, 0.5);
   V chains[kChains];
-  double start = 0.1;  // different values, or the compiler would compute one for all
+  double start = 0.1;  // the compiler would merge chains of equal values
   for (V& v : chains) v = hn::Set(d, start += 0.1);
   const Stopwatch watch;
   for (std::size_t k = 0; k < kRounds; ++k) {
@@ -53,7 +53,7 @@ HWY_AFTER_NAMESPACE();
 namespace shearcell::bench {
 
 double multiplications(std::size_t lanes, double slots) {
-  // A slot: square distance 3, series 7, sums 3. A block: velocity 6, position 3, margin 5.
+  // Operations per slot: distance 3, series 7, sums 3; per block: velocity 6, position 3, margin 5.
   return (13 * slots + 14) / static_cast<double>(lanes);
 }
 

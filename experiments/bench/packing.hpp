@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Packings to measure with: not at rest, but dense, and made in a second.
+// Packings for benchmarks. They are dense but not at rest, and take about a second to make.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace shearcell::bench {
 
-/// Grains in a cell, and the scene that acts on them.
+/// A cell with grains, and the forces that act on them.
 struct Packing {
-  Parameters parameters;  ///< defaults if the cell is not made from parameters
+  Parameters parameters;  ///< default values if the cell is not made from parameters
   Cell cell;
   Scene scene;
   State state;
 };
 
-/// Loose grains pressed together without gravity: dense but not at rest, at step 0, with the scene
-/// of shearing. Throws GeometryError.
+/// Makes loose grains and presses them together without gravity. The packing is dense but not at
+/// rest, and its step is 0. Its scene is the scene of the shear. Throws GeometryError.
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 
 Simulation simulate(const Packing& packing, const SimulationSettings& settings = {});

@@ -16,16 +16,16 @@
 namespace shearcell::bench {
 namespace {
 
-// The engine has no clock, so its kernels are timed from outside: a table of functions that call
-// the kernel's functions and sum their times. Only for one simulation at a time, with one thread.
+// The engine has no clock, so timed_kernels() wraps the functions of a kernel and adds up the
+// times. Only one simulation with one thread can be timed at once.
 struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
   double step = 0, search = 0, prune = 0;
-  // Every 16th step is repeated with its results written elsewhere: whole, without the walls, and
-  // without any neighbours.
+  // Every 16th step is computed three more times, and the results are written into `elsewhere`: the
+  // whole step, the step without walls, and the step without neighbours.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
-  double blocks = 0, slots = 0;  // of the same steps
+  double blocks = 0, slots = 0;  // numbers of blocks and slots in the repeated steps
   std::vector<double> elsewhere;
 };
 KernelTimes times;
@@ -98,15 +98,15 @@ Packing repeated(const Packing& one, std::size_t copies) {
   return made;
 }
 
-// Beyond 18,200 grains the cell becomes deeper, not higher: the smallest number of equal parts
-// along the depth, with at least this number of grains in all.
+// With more than 18,200 grains the cell becomes deeper, not higher. It consists of the smallest
+// number of equal parts along the depth that hold at least `grains` grains together.
 Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;
   parameters.grains = (grains + parts - 1) / parts;
   Packing made = pressed_packing(parameters, 1);
   Simulation simulation = simulate(made);
-  simulation.advance({}, 2000);  // under the grains' weight too
+  simulation.advance({}, 2000);  // advances the packing under gravity
   made.state = simulation.state();
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
@@ -142,7 +142,7 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
       static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
 }
 
-// After measure_shares.
+// Uses the times of the last measure_shares().
 void measure_limit(std::size_t lanes, SpeedResult& result) {
   result.multiplications = multiplications(lanes, times.slots / times.blocks);
   result.limit = 1e-6 * static_cast<double>(result.threads) * peak_multiplications(lanes) /
@@ -186,9 +186,9 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
       const SimulationSettings settings{kernels, threads, {}, {}};
       result.state_hash = hash_after(made, settings, 200);
       if (results.size() > first && result.state_hash != results[first].state_hash) {
-        throw std::runtime_error(
-            fmt::format("{} with {} threads and {} give different states after 200 steps at N = {}",
-                        result.simd, threads, results[first].simd, grains));
+        throw std::runtime_error(fmt::format(
+            "kernels {} ({} threads) and {} give different states after 200 steps at N = {}",
+            result.simd, threads, results[first].simd, grains));
       }
       measure_rate(made, settings, options, result);
       const double steps = 1e6 * result.median_rate * options.seconds_per_repeat /
