@@ -29,8 +29,8 @@ using hdf5::Shape;
 
 static_assert(std::endian::native == std::endian::little, "hashes and files are little-endian");
 
-/// Calls field(name, value) for each floating-point attribute of /restart (cell_numbers(): of
-/// /restart/cell), in the order of the file.
+/// restart_numbers() and cell_numbers() call field(name, value) for each number of /restart and of
+/// /restart/cell, in the order of the file.
 void restart_numbers(auto& checkpoint, auto field) {
   field("time_s", checkpoint.time_s);
   field("cycle", checkpoint.cycle);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint as one immutable HDF5 file (H5MD 1.1 plus /restart). provenance/README.md has the
-// layout.
+// One checkpoint is one immutable HDF5 file (H5MD 1.1 plus /restart; layout in README.md).
 #pragma once
 
 #include <cstddef>
@@ -33,12 +32,11 @@ inline WallPose pose_of(const Checkpoint& checkpoint) {
 }
 
 /// The bytes of the checkpoint file; equal checkpoints give equal bytes. Throws
-/// std::invalid_argument for a checkpoint that could not be read again (NaN, bad names, too many
-/// observables).
+/// std::invalid_argument for a checkpoint that could not be read again (NaN, invalid names, too
+/// many observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 
-/// Decodes the bytes of a checkpoint file. Throws StoreDamaged when the bytes are not a complete,
-/// consistent checkpoint.
+/// Decodes a checkpoint file. Throws StoreDamaged unless it is complete and consistent.
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
 /// Throws StoreDamaged, which names the HDF5 path, when no cell can have such a length, position or

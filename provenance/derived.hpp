@@ -48,8 +48,7 @@ class DerivedCache {
   /// Contents of the objects, in the order of `keys`; nothing for an object that is not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// The digests of all objects of a checkpoint, without checking the objects against their hashes.
-  /// Empty if the file cannot be read.
+  /// The digests of all objects of a checkpoint, not verified. Empty if the file cannot be read.
   Digests digests(const std::string& checkpoint);
 
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exceptions, grouped by what the caller can do about them. experiments/cli/main.cpp maps them to
-// exit codes.
+// Exceptions, by what the caller can do. experiments/cli/main.cpp maps them to exit codes.
 #pragma once
 
 #include <stdexcept>
@@ -33,8 +32,7 @@ struct TooLittleMemory : MachineError {
   using MachineError::MachineError;
 };
 
-/// Another process was faster: it holds the run, has taken over the run, or has written events that
-/// the caller has not read.
+/// Another process holds the run, has taken it over, or wrote events that the caller did not read.
 struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -189,8 +189,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // A new store begins with an empty file. If there are objects beside the file, the log was
-    // lost.
+    // A new store begins with an empty file. If there are objects beside it, the log was lost.
     if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log store.sqlite: events in streams, chained by SHA-256 so that any later change
-// is detected.
+// The append-only log store.sqlite: events in streams. A chain of SHA-256 reveals any later change.
 #pragma once
 
 #include <cstdint>

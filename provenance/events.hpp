@@ -161,8 +161,7 @@ struct StoreMerged {
   }
 };
 
-/// Any other event: this program has no struct for its payload (FigureGenerated, JobQueued, ...),
-/// or does not know its type.
+/// Any other event: it has no struct (FigureGenerated, JobQueued, ...), or its type is unknown.
 struct Other {};
 
 using Any =

@@ -78,8 +78,7 @@ class Object {
 
   Bytes file_;
   std::string path_;
-  std::map<std::string, std::optional<std::uint64_t>>
-      links_;  ///< addresses; nothing if not a hard link
+  std::map<std::string, std::optional<std::uint64_t>> links_;  ///< addresses, or nothing
   std::map<std::string, Attribute> attributes_;
   std::optional<Bytes> type_, space_;  ///< data type and shape of a dataset
   std::optional<Layout> layout_;

@@ -14,10 +14,10 @@
 
 namespace shearcell::hdf5 {
 
-/// A lock for the HDF5 library, which may be built without thread safety. An object of this class
-/// must exist during every call of the library. The constructor turns off error messages of the
-/// library. It throws std::bad_alloc if `room` bytes cannot be allocated, because the library may
-/// crash when memory runs out.
+/// A lock for the HDF5 library, which may be built without thread safety. Create one before any
+/// call of the library. The library then prints no errors; they become exceptions. The constructor
+/// throws std::bad_alloc if `room` bytes cannot be allocated, because the library may crash when
+/// memory runs out.
 class Library {
  public:
   explicit Library(std::size_t room = 0) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes JSON values as text, and parses untrusted JSON. The JSON library copies, compares and
-// writes values recursively, so deeply nested input would overflow the stack. The parsers limit the
-// depth.
+// Writes JSON values as text and parses untrusted JSON. The parsers limit the depth, because the
+// library handles values recursively, and deeply nested input would overflow the stack.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +16,7 @@ namespace shearcell {
 
 struct Event;
 
-/// Parses JSON. Returns a discarded value (json::is_discarded()) when the text is not JSON or is
-/// nested deeper than StoreLimits::json_depth.
+/// Returns a discarded value if the text is not JSON or is deeper than StoreLimits::json_depth.
 nlohmann::json parse_json(std::string_view text);
 /// Like parse_json(), but parses CBOR.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);

@@ -34,14 +34,14 @@ struct Lease {
 /// Describes this process, with a new token.
 Holder this_process();
 
-/// The longest duration of a lease. An expiry time after it comes from a wrong clock or a forged
-/// row and is ignored.
+/// The longest duration of a lease. An expiry time further in the future comes from a wrong clock
+/// or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
-/// Whether any program may take over the lease. The lease has lapsed when it has expired, when it
-/// was renewed more than kLongestLeaseMs ago, when the process of its holder is dead (checked only
-/// for the same boot and namespace), or when its time of renewal is in the future because the clock
-/// was set back.
+/// Whether any program may take over the lease. A lease lapses when it expires, when
+/// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (checked
+/// only for the same boot and namespace). It also lapses if the clock was set back to before its
+/// renewal.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".

@@ -22,8 +22,8 @@ template <>
 inline constexpr auto kNames<AttemptOutcome> =
     names_in_order<AttemptOutcome>("running", "completed", "interrupted", "failed", "lost");
 
-/// The program and the machine of an attempt, as texts for display; "unknown" for a value that was
-/// not recorded.
+/// The program and the machine of an attempt, as texts for display. "unknown" stands for a value
+/// that was not recorded.
 struct Maker {
   std::string program;                 ///< "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release"
   std::string version;                 ///< "0.1.0 (dd11cbe)"
@@ -73,8 +73,7 @@ struct RunLineage {
 /// The stage and all stages before it, in order. Throws NotFound for an unknown stage.
 std::vector<Stage> chain_of(const Store& store, const std::string& id);
 
-/// The lineage of each stage of chain_of(). Throws StoreDamaged, which names the event, when a
-/// payload is damaged.
+/// The lineage of each stage of chain_of(). Throws StoreDamaged, which names a damaged event.
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id
@@ -84,15 +83,14 @@ void add_run_lineage(const Store& store, const std::string& id, RunLineages& lin
 
 /// Processor time of a stage, and the names of the processors.
 struct ComputingTime {
-  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. Events of
-  /// earlier versions and of LAMMPS under mpirun have no processor time; for these, the wall-clock
-  /// time times the number of processes is counted.
+  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. Where none was
+  /// recorded (earlier versions, LAMMPS under mpirun), the wall-clock time times the number of
+  /// processes is added instead.
   double core_seconds = 0;
   std::set<std::string> processors;  ///< of the attempts that recorded checkpoints
 };
 
-/// The processor time up to the checkpoint of `last_cycle`. Throws StoreDamaged, which names the
-/// event, when a payload is damaged.
+/// The processor time up to cycle `last_cycle`. Throws StoreDamaged, which names a damaged event.
 ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle);
 
 struct ManifestText : events::ManifestRegistered {

@@ -29,8 +29,7 @@ using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-/// A snapshot of a store to merge from, after its chain and events were checked. The files of this
-/// store are not changed.
+/// A snapshot of a store to merge from, whose chain and events were checked. It stays unchanged.
 struct Source {
   std::filesystem::path folder;
   Head head;
@@ -154,8 +153,8 @@ struct RunMerge {
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    const bool more_to_do = before->state == StageState::completed &&
-                            now == StageState::declared;  // the target was raised
+    // A larger target makes a completed run `declared`. It stays so.
+    const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
   }
@@ -360,8 +359,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // A rejection by this store may still count, because events that both stores have were not
-        // copied.
+        // This store may still reject the checkpoint: events that both stores have were not copied.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;

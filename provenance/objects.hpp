@@ -13,9 +13,8 @@
 
 namespace shearcell {
 
-/// The objects of one store folder. Several threads and processes may use the folder at the same
-/// time, because an object appears under its name only when it is complete. Links inside the store
-/// are not followed.
+/// The objects of one store folder. Several threads and processes may use it at the same time: an
+/// object appears under its name only when it is complete. Links in the store are not followed.
 class ObjectStore {
  public:
   /// The folder must exist; the first put creates `objects` in it.

@@ -104,7 +104,7 @@ void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every)
   require("checkpoint_every", checkpoint_every, 1);
 }
 
-/// Applies the events of one stream to the tables.
+/// Applies one event to the tables.
 class Projector {
  public:
   Projector(Database& database, const Event& event)
@@ -238,8 +238,8 @@ class Projector {
   }
 
   /// Sets cycle, step and state of the run to those of its furthest recorded checkpoint. Does
-  /// nothing if the run is beyond `sha256`: a run whose last checkpoints were pruned keeps its
-  /// cycle.
+  /// nothing if the run is beyond `sha256`, so pruning its last checkpoints does not move a run
+  /// back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

@@ -51,12 +51,10 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` has a place that the stage does not have yet, or a larger target or another
-/// checkpoint interval than the stage has in this place. `known` is the stage in the store, if
-/// there.
+/// Whether `wanted` is a new place of the stage, or has a larger target or another checkpoint
+/// interval there. `known` is the stage in the store, if it is stored.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether `run` was the last run to be declared in this place. Runs that start from different
-/// packings can have the same place.
+/// Whether no run was declared later in this place. Runs from different packings can share a place.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.
@@ -68,8 +66,7 @@ std::vector<CheckpointRecord> query_all_checkpoints(const sqlite::Database& data
 /// The checkpoints of one run, in ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
                                                 std::string_view run);
-/// Whether the checkpoint is pruned now, even if `record` was read before. False if the tables
-/// cannot be read.
+/// Whether the checkpoint is pruned by now. False if the tables cannot be read.
 bool is_pruned_now(const sqlite::Database& database, const CheckpointRecord& record);
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);

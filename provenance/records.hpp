@@ -38,8 +38,7 @@ struct Ask {
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// Whether the manifest was registered last among those that declared a stage of the experiment
-  /// at this scale.
+  /// Whether no manifest that was registered later declares a stage of the experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -66,8 +65,7 @@ inline std::string scale_name(const std::string& scale) {
 /// The checkpoints to list: only recorded, recorded and pruned, or all (also rejected).
 enum class Listed { recorded, and_pruned, all };
 
-/// In ascending order of preference: if two stores hold a stage at the same step, a merge keeps the
-/// state that comes later in this list.
+/// If two stores hold a stage at the same step, a merge keeps the state that is later in this list.
 enum class StageState { declared, running, interrupted, failed, completed };
 
 template <>
@@ -111,7 +109,7 @@ struct Run {
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
   bool named = false;     ///< whether the name is a label of the manifest
-  /// Whether the newest version of the manifest declares this run, and no later declaration put
+  /// Whether the run belongs to the newest version of the manifest and no later declaration put
   /// another run in its place.
   bool newest = true;
 };

@@ -21,15 +21,14 @@ class Sha256 {
   Sha256();
   Sha256& add(std::span<const std::byte> data);
   Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
-  /// Adds each field as a netstring, "<length in bytes>:<text>,", so that ("ab", "c") and ("a",
-  /// "bc") have different hashes. Numbers are written in decimal.
+  /// Adds each field as a netstring, "<length in bytes>:<text>,", so that different fields cannot
+  /// give the same bytes. Numbers are written in decimal.
   template <class... Fields>
   Sha256& add_fields(const Fields&... fields) {
     (add_field(fields), ...);
     return *this;
   }
-  /// Adds eight bytes, least significant byte first. A double is added as its bits, so -0.0 and 0.0
-  /// give different hashes.
+  /// Adds the eight bytes of a number, least significant first. 0.0 and -0.0 have different bytes.
   Sha256& add_u64(std::uint64_t value) { return add(std::as_bytes(std::span(&value, 1))); }
   Sha256& add_f64(double value) { return add_u64(std::bit_cast<std::uint64_t>(value)); }
   /// The digest of all added data. The object cannot be used afterwards.

@@ -31,8 +31,7 @@ enum class Access {
 
 namespace shearcell::sqlite {
 
-/// The absolute path of a database file. Throws UsageError when the path is longer than SQLite
-/// allows.
+/// The absolute path of a database. Throws UsageError when SQLite does not allow its length.
 std::string full_name(const std::filesystem::path& file);
 
 /// A connection to one database, for one thread at a time. Exceptions name the file. All functions
@@ -73,13 +72,11 @@ class Database {
   std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Prepared statements that are not in use, by SQL text. They are kept because preparing a
-  /// statement takes longer than running it.
+  /// Prepared statements that are not in use, by SQL text: preparing is slower than running.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
-/// A prepared statement; the database must outlive it. Parameters are numbered from 1, columns from
-/// 0.
+/// A prepared statement; the database must outlive it. Parameters count from 1, columns from 0.
 class Statement {
  public:
   /// Binds the values to parameters 1, 2, ...

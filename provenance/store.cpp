@@ -71,8 +71,8 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
-/// Throws StoreDamaged if the folder of the checkpoints is missing or empty. Without this check,
-/// the program would reject all checkpoints and compute all runs again.
+/// Throws StoreDamaged if the folder of the checkpoints is missing or empty. Otherwise the program
+/// would reject all checkpoints and compute all runs again.
 void require_objects(const std::filesystem::path& folder, const sqlite::Database& database) {
   try {
     sqlite::Statement kept(database, "SELECT 1 FROM checkpoints WHERE state = 'recorded' LIMIT 1");
@@ -133,8 +133,8 @@ double start_cycle(const Stage& stage) {
   return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
-/// Whether `keep_every` keeps the checkpoint. While a packing settles, all checkpoints have cycle
-/// 0, but only the first of them counts as a checkpoint of cycle 0.
+/// Whether `keep_every` keeps the checkpoint. All checkpoints of settling have cycle 0; of these
+/// only the first is kept.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;

@@ -81,8 +81,8 @@ class Store {
  public:
   /// Throws StoreDamaged when the folder is not a store, has a newer schema, or must be written but
   /// lacks the folder of its checkpoints. Throws NotFound when the folder is missing and `access`
-  /// does not create it. A lease expires if it is not renewed for `lease_seconds` (at most
-  /// kLongestLeaseMs).
+  /// does not create it. A lease expires when it is not renewed for `lease_seconds`, which is at
+  /// most kLongestLeaseMs.
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();
@@ -104,10 +104,10 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each place of the stage that is new, or has a larger target or another checkpoint
+  /// Records each place of the stage that is new or has a larger target or another checkpoint
   /// interval. A larger target makes a completed stage `declared` again. Throws
   /// std::invalid_argument when the id is not a SHA-256 or belongs to other parameters, or when the
-  /// parent was never declared.
+  /// parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
@@ -142,17 +142,15 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. With `damage`, missing and
-  /// damaged checkpoints are rejected (with Access::read: skipped), and their errors are appended
-  /// to `damage`.
+  /// The newest checkpoint before `before_step` that can be loaded. With `damage`, rejects missing
+  /// and damaged checkpoints (with Access::read: skips them) and appends their errors to `damage`.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// Appends an event that changes no run: FigureGenerated in the stream "figure/drag/desk/S2",
-  /// ReplayVerified or ReplayDiverged in the stream of the run, CampaignSubmitted or JobQueued in
-  /// kSubmissions. Throws ConcurrencyConflict when `seen` is not the number of events in the
-  /// stream.
+  /// Appends an event that changes no run: FigureGenerated to "figure/drag/desk/S2", ReplayVerified
+  /// or ReplayDiverged to the stream of the run, CampaignSubmitted or JobQueued to kSubmissions.
+  /// Throws ConcurrencyConflict unless the stream has `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);
 
@@ -168,21 +166,20 @@ class Store {
   std::vector<Stage> stages() const;  ///< in the order of their declaration
   Stage stage(const std::string& id) const;
   std::vector<Lease> leases() const;  ///< only leases that have not lapsed
-  /// The stage whose id begins with `prefix`. Throws NotFound if there is none or, with a list of
-  /// candidates, if there are several.
+  /// The stage whose id begins with `prefix`. Throws NotFound when there is none or more than one;
+  /// the message lists the candidates.
   Stage find_stage(std::string_view prefix) const;
   /// The checkpoints of a stage, in ascending order of step.
   std::vector<CheckpointRecord> checkpoints(const std::string& id,
                                             Listed listed = Listed::recorded) const;
-  /// The checkpoint, in any state, whose SHA-256 begins with `prefix`, or nothing. Throws NotFound,
-  /// with a list of candidates, if there are several.
+  /// The checkpoint, in any state, whose SHA-256 begins with `prefix`; nothing when there is none.
+  /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// The bytes of a checkpoint file, after its SHA-256 was checked. Throws StoreDamaged, which
-  /// names the file, or FilePruned, also if another program pruned the checkpoint after `record`
-  /// was read.
+  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
+  /// file. Throws FilePruned, even if the checkpoint was pruned after `record` was read.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
-  /// Reads the file with read_file(), decodes it and compares it with the record. Throws
-  /// StoreDamaged, which names the file.
+  /// Decodes the bytes of read_file() and compares them with the record. Throws StoreDamaged, which
+  /// names the file, and FilePruned.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;

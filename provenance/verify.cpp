@@ -88,8 +88,7 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
                   event, found, earlier.hash));
 }
 
-/// Derives the tables from the events alone. Events that cannot be applied are reported and
-/// skipped.
+/// The tables derived from the events. Events that cannot be applied are reported and skipped.
 sqlite::Database derive(const EventLog& log, const std::string& name, VerifyReport& report) {
   sqlite::Database fresh = empty_projections(name);
   log.for_each([&](const Event& event) {

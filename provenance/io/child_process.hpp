@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs other programs, in the background or until they end. The arguments are passed unchanged; no
-// shell is involved.
+// Runs other programs, in the background or until they end. No shell interprets the arguments.
 #pragma once
 
 #include <sys/types.h>

@@ -26,8 +26,8 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-/// The first `most` bytes of a regular file, or all bytes of a shorter file. Nothing when `path` is
-/// not a regular file or cannot be read.
+/// The first `most` bytes (fewer if the file ends earlier); nothing unless it is a readable regular
+/// file.
 std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
   // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));

@@ -15,8 +15,7 @@
 
 namespace shearcell {
 
-/// Owns a file descriptor, which the destructor closes. A negative number means that no file is
-/// open.
+/// Owns a file descriptor, which the destructor closes. A negative number means no open file.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -53,9 +52,8 @@ enum class Durability {
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
-/// mode 0666 minus umask. Then renames the temporary file to the last component of `path`, which
-/// replaces a file or link of this name. After any error, deletes the temporary file and throws as
-/// fail_on().
+/// mode 0666 minus umask. Then renames it to the last component of `path`, which replaces a file or
+/// link there. After any error, deletes the temporary file and throws as fail_on().
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability);
