@@ -241,7 +241,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
                               "a memory file"),
                       H5Fclose);
-    // H5MD wants the version of the creator. The version of the layout is written, not of the
+    // H5MD requires the version of the creator. The version of the layout is written, not of the
     // program, so equal states give equal bytes in every release.
     hdf5::put_h5md(file, std::to_string(hdf5::kRestartFormat));
     put_particles(file, checkpoint);

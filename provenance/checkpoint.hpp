@@ -32,8 +32,8 @@ inline WallPose pose_of(const Checkpoint& checkpoint) {
 }
 
 /// The bytes of the checkpoint file; equal checkpoints give equal bytes. Throws
-/// std::invalid_argument for a checkpoint that could not be read again (NaN, invalid names, too
-/// many observables).
+/// std::invalid_argument for a checkpoint that could not be read again (NaN, bad names, too many
+/// observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 
 /// Decodes a checkpoint file. Throws StoreDamaged unless it is complete and consistent.

@@ -133,7 +133,7 @@ std::string DerivedCache::replaced() const {
   if (!fs::exists(kept, ignored)) return "";
   return fmt::format(
       "{}: the file was damaged and is kept as {}, so measures of pruned checkpoints are missing; "
-      "restore it from a backup, or run `shearcell regenerate --all`",
+      "restore it from a backup, or recompute the checkpoints by `shearcell regenerate --all`",
       file_.string(), kept.filename().string());
 }
 

@@ -41,7 +41,7 @@ struct PackingRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  Stage stage;  ///< its id is not in the payload; its state is `declared`
+  Stage stage;  ///< only the members that `fields` names
   Membership membership;
   static void fields(auto& e, auto field) {
     field("parent", e.stage.parent), field("kind", e.stage.kind),
@@ -161,7 +161,7 @@ struct StoreMerged {
   }
 };
 
-/// Any other event: it has no struct (FigureGenerated, JobQueued, ...), or its type is unknown.
+/// Any other event: no struct describes its payload (FigureGenerated), or its type is unknown.
 struct Other {};
 
 using Any =

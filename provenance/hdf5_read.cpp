@@ -204,7 +204,7 @@ void Object::read_message(std::uint64_t type, Bytes body) {
 
 void Object::read_link(Bytes body) {
   Cursor cursor(body);
-  if (cursor.number(1) != 1) fail("has a link of another version");
+  if (cursor.number(1) != 1) fail("has a link of an unknown version");
   const std::uint64_t flags = cursor.number(1);
   const bool hard = (flags & 8) == 0 || cursor.number(1) == 0;
   if ((flags & 4) != 0) cursor.take(8);   // creation order
@@ -219,7 +219,7 @@ void Object::read_link(Bytes body) {
 
 void Object::read_attribute(Bytes body) {
   Cursor cursor(body);
-  if (cursor.number(1) != 1) fail("has an attribute of another version");
+  if (cursor.number(1) != 1) fail("has an attribute of an unknown version");
   cursor.take(1);
   const std::uint64_t name_size = cursor.number(2);
   const std::uint64_t type_size = cursor.number(2);
@@ -264,7 +264,7 @@ Object::Bytes Object::attribute(const std::string& name, std::string_view type,
   const auto shape = shape_of(attribute.space);
   if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
   if (!type.empty() && !is_type(attribute.type, type))
-    refuse(below(name), "has another number type");
+    refuse(below(name), "has a wrong number type");
   if (attribute.data.size() < size) refuse(below(name), "is truncated");
   return attribute.data.first(size);
 }
@@ -299,7 +299,7 @@ Object::Bytes Object::values(const std::string& name, std::string_view type, std
   if (!dataset.layout_ || !dataset.links_.empty()) {
     dataset.fail("is not stored contiguously in this file");
   }
-  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has another number type");
+  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has a wrong number type");
   const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
   if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
       (columns != 0 && shape->back() != columns)) {

@@ -14,8 +14,8 @@
 
 namespace shearcell::hdf5 {
 
-/// A lock for the HDF5 library, which may be built without thread safety. Create one before any
-/// call of the library. The library then prints no errors; they become exceptions. The constructor
+/// A lock for the HDF5 library, which may be built without thread safety. Create a Library object
+/// before any call. The library then prints no errors; they become exceptions. The constructor
 /// throws std::bad_alloc if `room` bytes cannot be allocated, because the library may crash when
 /// memory runs out.
 class Library {
@@ -63,12 +63,12 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
-/// `links` and `attributes` are the expected numbers; they are needed only above 8.
+/// Creates a group. `links` and `attributes`: its numbers of members, needed only if above 8.
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // By default HDF5 stores more than eight in a heap. hdf5_read.cpp does not read heaps, and HDF5
-  // 1.10 writes uninitialized bytes into heaps.
+  // By default HDF5 stores more than eight members in a heap. hdf5_read.cpp does not read heaps,
+  // and HDF5 1.10 writes uninitialized bytes into heaps.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
@@ -116,8 +116,8 @@ inline void put_attribute(const Handle& object, const std::string& name, const s
   put_strings(object, name, cell, cell.size(), {});
 }
 
-/// Writes a contiguous dataset, with the attribute `unit` unless it is empty. If `data` is null,
-/// the caller writes the values later.
+/// Writes a contiguous dataset and, unless `unit` is empty, its attribute `unit`. If `data` is
+/// null, the caller writes the values later.
 inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t type,
                           const void* data, const Shape& shape, const std::string& unit = "") {
   const Handle space = make_space(shape);

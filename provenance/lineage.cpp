@@ -135,7 +135,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // Early events do not name the initial state: the newest checkpoint of the stage before.
+      // Early events do not name their initial state. It is the newest checkpoint of the parent.
       attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
       if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }
@@ -178,7 +178,7 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
           "`verify`",
           event.seq));
     }
-    found.sha256 = sha256;  // a forged payload may state another one
+    found.sha256 = sha256;  // a forged payload may state another SHA-256
     return ManifestText{std::move(found), event.recorded_at};
   }
   return std::nullopt;

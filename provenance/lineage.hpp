@@ -22,8 +22,7 @@ template <>
 inline constexpr auto kNames<AttemptOutcome> =
     names_in_order<AttemptOutcome>("running", "completed", "interrupted", "failed", "lost");
 
-/// The program and the machine of an attempt, as texts for display. "unknown" stands for a value
-/// that was not recorded.
+/// Program and machine of an attempt, as texts for display; "unknown" for what was not recorded.
 struct Maker {
   std::string program;                 ///< "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release"
   std::string version;                 ///< "0.1.0 (dd11cbe)"
@@ -47,7 +46,7 @@ struct Attempt {
   nlohmann::json host = nlohmann::json::object();
   std::string from_run;  ///< run of the initial state; "" if it began from loose grains or a file
   std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< of the program; old events imply it
+  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; inferred for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 
@@ -83,11 +82,11 @@ void add_run_lineage(const Store& store, const std::string& id, RunLineages& lin
 
 /// Processor time of a stage, and the names of the processors.
 struct ComputingTime {
-  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. Where none was
-  /// recorded (earlier versions, LAMMPS under mpirun), the wall-clock time times the number of
-  /// processes is added instead.
+  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. For events
+  /// without processor time (earlier versions, LAMMPS under mpirun), the wall-clock time times the
+  /// number of processes is added.
   double core_seconds = 0;
-  std::set<std::string> processors;  ///< of the attempts that recorded checkpoints
+  std::set<std::string> processors;  ///< names of the processors that computed these steps
 };
 
 /// The processor time up to cycle `last_cycle`. Throws StoreDamaged, which names a damaged event.

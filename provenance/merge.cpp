@@ -29,7 +29,7 @@ using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-/// A snapshot of a store to merge from, whose chain and events were checked. It stays unchanged.
+/// A snapshot of a store to merge from, whose chain and events were checked.
 struct Source {
   std::filesystem::path folder;
   Head head;
@@ -142,18 +142,18 @@ struct RunMerge {
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);
     }
-    // Rejected, pruned and regenerated checkpoints, and any other event of the run.
+    // The event is about a rejected, pruned or regenerated checkpoint, or about something else.
     if (!event.type.starts_with("Checkpoint")) return true;
     const nlohmann::json sha256 = member_of(event.body(), "sha256");
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
   }
 
-  /// Returns `last_claim` if the copied events changed the state of the run. When it is appended
-  /// again, the run has the state again that it had in this store.
+  /// Returns `last_claim` if the copied events changed the state of the run. Appending this event
+  /// again restores the state that the run had in this store.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // A larger target makes a completed run `declared`. It stays so.
+    // A larger target has made the completed run `declared`. This state is kept.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
@@ -359,7 +359,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // This store may still reject the checkpoint: events that both stores have were not copied.
+        // The last event about a checkpoint may still be its rejection, but now its file is valid.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;

@@ -237,9 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Sets cycle, step and state of the run to those of its furthest recorded checkpoint. Does
-  /// nothing if the run is beyond `sha256`, so pruning its last checkpoints does not move a run
-  /// back.
+  /// Moves the run to its furthest recorded checkpoint. Does nothing if the run is beyond `sha256`,
+  /// so pruning its last checkpoints does not move a run back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

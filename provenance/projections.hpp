@@ -43,7 +43,7 @@ void shadow_projections(sqlite::Database& database, const EventLog& log);
 /// The rows of a table in ascending order, each cell as an SQL literal.
 using TableRows = std::vector<std::vector<std::string>>;
 
-/// Every row of every table, to compare two derivations.
+/// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);
 
 // All queries throw StoreDamaged when a table holds a value that no event can give.
@@ -54,7 +54,7 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 /// Whether `wanted` is a new place of the stage, or has a larger target or another checkpoint
 /// interval there. `known` is the stage in the store, if it is stored.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether no run was declared later in this place. Runs from different packings can share a place.
+/// Whether `run` was declared last in this place. Runs from different packings can share a place.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.
@@ -66,7 +66,7 @@ std::vector<CheckpointRecord> query_all_checkpoints(const sqlite::Database& data
 /// The checkpoints of one run, in ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
                                                 std::string_view run);
-/// Whether the checkpoint is pruned by now. False if the tables cannot be read.
+/// Whether the checkpoint is now recorded as pruned. False if the tables cannot be read.
 bool is_pruned_now(const sqlite::Database& database, const CheckpointRecord& record);
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);

@@ -29,9 +29,9 @@ struct Place {
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
-  nlohmann::json until = nullptr;              ///< condition that may end it earlier
-  std::vector<double> checkpoint_phases = {};  ///< for more checkpoints: fractions of a cycle
-  std::uint64_t ordinal = 0;                   ///< seq of the event that declared it
+  nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
+  std::vector<double> checkpoint_phases = {};  ///< more checkpoints at these fractions of a cycle
+  std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
 };
 
 /// The place of a stage in an experiment, and what the experiment asks of the stage.
@@ -95,7 +95,7 @@ struct Stage {
   std::string state_hash;                         ///< of the furthest checkpoint, or ""
   double wall_seconds = 0;                        ///< sum over all checkpoints
   double particle_steps = 0;                      ///< sum over all checkpoints
-  nlohmann::json ends = nlohmann::json::array();  ///< for each completion, why it ended
+  nlohmann::json ends = nlohmann::json::array();  ///< why it ended, one entry per completion
   std::string error;                    ///< why it failed or was interrupted; "" otherwise
   std::string updated_at;               ///< time of its last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared

@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr const char* kCrateSpecification = "https://w3id.org/ro/crate/1.1";
 constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// Identifier of the crate of a run. It also identifies the folder of an earlier export.
+/// Identifier of the crate of a run. A folder whose metadata have it is an earlier export.
 std::string crate_identifier(const std::string& run) {
   return "urn:x-shearcell:run:" + run;
 }
@@ -64,7 +64,7 @@ json file_entity(const std::string& path, const std::string& name, const std::st
 }
 
 json add_manifest(Graph& graph, const ManifestText& manifest) {
-  // The rest of the path is private.
+  // Only the file name is written, because the rest of the path is private.
   const std::string name = fs::path(manifest.path).filename().string();
   return graph.add(file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
                                "application/yaml", manifest.text.size(), manifest.sha256,

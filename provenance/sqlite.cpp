@@ -80,7 +80,7 @@ Database::Database(const std::filesystem::path& file, Access access)
     inode_ = opened.st_ino;
   }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
-  constexpr std::size_t beside = 64 << 10;  // for other values: the limit also holds for a row
+  constexpr std::size_t beside = 64 << 10;  // the limit includes the other values of a row
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes + beside));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
   // A forged schema could have views and triggers that run forever or that open other files.
@@ -273,8 +273,7 @@ std::vector<std::byte> Statement::blob(int column) const {
 std::vector<std::string> Statement::cells() const {
   std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
-    const int type = sqlite3_column_type(handle_.get(),
-                                         column);  // read first, because text() converts the value
+    const int type = sqlite3_column_type(handle_.get(), column);  // text() changes the type
     if (type == SQLITE_FLOAT) {
       row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal keeps every bit
     } else if (type == SQLITE_INTEGER) {

@@ -141,7 +141,7 @@ class Transaction {
   void commit();
 
  protected:
-  /// Runs `begin`. With `nested`, does nothing inside another transaction.
+  /// Runs the SQL statement `begin`. With `nested`, does nothing inside another transaction.
   Transaction(Database& database, const std::string& begin, bool nested = false);
 
  private:

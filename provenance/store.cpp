@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
-/// The name of a file or folder that does not belong to a new store; "" if there is none.
+/// The name of a visible file or folder in `folder`; "" if there is none.
 std::string other_file_in(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -39,8 +39,7 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder /
-                    kLogFile);  // throws if the path is too long, before anything is created
+  sqlite::full_name(folder / kLogFile);  // throws if too long, before anything is created
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; name another one", name));
@@ -80,8 +79,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
   } catch (const StoreDamaged&) {
     return;  // `rebuild` repairs the damaged table
   }
-  const std::filesystem::path objects =
-      folder / "objects";  // exists before the first CheckpointRecorded
+  const std::filesystem::path objects = folder / "objects";  // created before checkpoint events
   std::error_code unreadable;
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;

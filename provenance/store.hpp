@@ -47,7 +47,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< a copy elsewhere proves later that the log only grew
+  Head head;                      ///< a copy kept elsewhere can prove that the log only grew
 
   /// The number of findings of this severity.
   std::size_t count(Finding::Severity severity) const;
@@ -68,9 +68,9 @@ struct MergeReport {
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
                            const Stage& stage);
 
-/// Thread-safe. Several processes may open one store on a local disk; the order in the log decides
-/// between them. Every function may throw StoreDamaged, and std::runtime_error when the machine
-/// fails or another process keeps the store locked.
+/// Thread-safe. Several processes may open one store on a local disk; conflicting writes throw
+/// ConcurrencyConflict. Every function may throw StoreDamaged, and std::runtime_error when the
+/// machine fails or another process keeps the store locked.
 ///
 /// Between start_stage() and the end of the attempt this object holds a lease on the run. Every
 /// recorded event of the run and renew_leases() renew the lease. Another program may take over the
@@ -178,8 +178,8 @@ class Store {
   /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
   /// file. Throws FilePruned, even if the checkpoint was pruned after `record` was read.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
-  /// Decodes the bytes of read_file() and compares them with the record. Throws StoreDamaged, which
-  /// names the file, and FilePruned.
+  /// Decodes read_file() and compares it with the record. Throws StoreDamaged, which names the
+  /// file.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
@@ -201,8 +201,8 @@ class Store {
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
-  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that must be
-  /// kept by now. Returns the number of bytes freed.
+  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that may no
+  /// longer be pruned. Returns the number of bytes freed.
   std::uint64_t prune(const std::vector<CheckpointRecord>& records, bool last_too = false);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);

@@ -101,7 +101,7 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
   return fresh;
 }
 
-/// Part of a cell: at most 60 bytes that begin shortly before `place`.
+/// Part of a table cell: at most 60 bytes that begin shortly before `place`.
 std::string excerpt(const std::string& cell, std::size_t place) {
   const std::size_t begin = place > 40 ? place - 20 : 0;
   const std::string part = cell.substr(begin, 60);
@@ -247,8 +247,8 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   } catch (const StoreDamaged& damage) {
     add_error(report, database_.name(),
               without_path(database_.name(), damage.what()) +
-                  (log_was_read ? "; the log is readable, so `shearcell merge` copies what it "
-                                  "records into a new store"
+                  (log_was_read ? "; the log is readable, so `shearcell merge` can copy its "
+                                  "runs into a new store"
                                 : "; the rest was not read"));
   }
   if (!log_was_read) return report;  // without the log, the files cannot be checked

@@ -26,8 +26,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-/// The first `most` bytes (fewer if the file ends earlier); nothing unless it is a readable regular
-/// file.
+/// At most `most` bytes from the beginning of a file; nothing unless it is regular and readable.
 std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
   // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
@@ -191,16 +190,16 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
       const char* set = std::getenv("TMPDIR");
       throw std::system_error(missing, std::string(set != nullptr ? set : "/tmp") +
                                            ": cannot use the folder for temporary files; make it, "
-                                           "or name another one in TMPDIR");
+                                           "or name another folder in TMPDIR");
     }
     whole = folder / whole;
   }
   remove_leftovers(whole.parent_path());
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {
-    fail_on(whole.parent_path(), named
-                                     ? "make a temporary folder in it"
-                                     : "make a temporary folder in it (TMPDIR names another one)");
+    fail_on(whole.parent_path(),
+            named ? "make a temporary folder in it"
+                  : "make a temporary folder in it (set TMPDIR to use another folder)");
   }
   path_ = pattern;
   flock(held_.emplace(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).get(), LOCK_EX);

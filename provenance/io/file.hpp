@@ -47,7 +47,7 @@ enum class Durability {
 };
 
 /// Deletes the temporary files and folders that killed programs left in `folder`; with `below` also
-/// those in its subfolders. Their names are "." + any text + "tmp-<pid>-*". An entry is deleted
+/// those in its subfolders. Names: ".tmp-<pid>-*" or ".*.tmp-<pid>-*". An entry is deleted
 /// only if process <pid> has ended and no process, for example in another container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
