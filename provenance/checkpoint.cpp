@@ -209,7 +209,7 @@ Cell read_cell(const Object& group) {
 
 void read_restart(const Object& restart, Checkpoint& checkpoint) {
   if (restart.count("format") != hdf5::kRestartFormat) {
-    refuse("/restart/format", "has an unknown format; use the shearcell that wrote it");
+    refuse("/restart/format", "has an unknown format; use the shearcell version that wrote it");
   }
   State& state = checkpoint.state;
   checkpoint.run = restart.text("run");

@@ -77,8 +77,8 @@ void create_whole(const std::filesystem::path& file) {
   }
 }
 
-/// A forged schema could run its own SQL whenever a table is read or written. So every statement of
-/// the schema must be one that this program writes. A missing table causes an error only when it is
+/// A forged schema could contain SQL that runs whenever a table is read or written. So every schema
+/// statement must be one that this program writes. A missing table causes an error only when it is
 /// used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();

@@ -63,7 +63,7 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
-/// Creates a group. `links` and `attributes`: its numbers of members, needed only if above 8.
+/// Creates a group. State the number of `links` or `attributes` if it will exceed 8.
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);

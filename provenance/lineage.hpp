@@ -50,7 +50,7 @@ struct Attempt {
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 
-/// One checkpoint, as it is after all events.
+/// One checkpoint in its state after all events.
 struct CheckpointHistory {
   CheckpointRecord record;
   std::string recorded_at;  ///< UTC
@@ -86,7 +86,7 @@ struct ComputingTime {
   /// without processor time (earlier versions, LAMMPS under mpirun), the wall-clock time times the
   /// number of processes is added.
   double core_seconds = 0;
-  std::set<std::string> processors;  ///< names of the processors that computed these steps
+  std::set<std::string> processors;  ///< names of the processors that computed the steps
 };
 
 /// The processor time up to cycle `last_cycle`. Throws StoreDamaged, which names a damaged event.

@@ -128,7 +128,7 @@ using Stream = std::vector<const Event*>;  // in the order of the log
 /// attempt is also copied if the run is further in the source than in the store.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
-  std::optional<Event> last_claim;   ///< last begin or end of an attempt in the store
+  std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not news
   std::set<std::uint64_t> attempts;  ///< seq in the source of all events of the copied attempts
   bool source_wins = false;          ///< the run is further in the source than in the store

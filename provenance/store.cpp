@@ -39,7 +39,7 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder / kLogFile);  // throws if too long, before anything is created
+  sqlite::full_name(folder / kLogFile);  // throws if the path is too long, before anything is made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; name another one", name));
@@ -131,8 +131,8 @@ double start_cycle(const Stage& stage) {
   return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
-/// Whether `keep_every` keeps the checkpoint. All checkpoints of settling have cycle 0; of these
-/// only the first is kept.
+/// Whether `keep_every` keeps the checkpoint. While a packing settles, all checkpoints have cycle
+/// 0, but only the first one is kept.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// Owns a file descriptor, which the destructor closes. A negative number means no open file.
+/// Owns a file descriptor and closes it in the destructor. It is negative if no file is open.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -71,8 +71,8 @@ std::optional<std::string> read_plain(const std::filesystem::path& path, std::si
 /// Says whether this program wrote the file that begins with these bytes (at most 4096).
 using Recognize = std::function<bool(std::string_view beginning)>;
 
-/// Throws NotOurs unless nothing exists at `path` or `ours` recognizes the regular file at `path`.
-/// Throws std::system_error when the type of the file cannot be determined.
+/// Throws NotOurs if `path` exists, except for a regular file that `ours` recognizes. Throws
+/// std::system_error when the type of the file cannot be determined.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
 /// Writes a file with replace_file(), so a reader sees the old file or the complete new file.
