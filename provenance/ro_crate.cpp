@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr const char* kCrateSpecification = "https://w3id.org/ro/crate/1.1";
 constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// Identifier of the crate of a run. A folder whose metadata have it is an earlier export.
+/// Identifier of the crate of a run. An earlier export is recognized by this identifier.
 std::string crate_identifier(const std::string& run) {
   return "urn:x-shearcell:run:" + run;
 }

@@ -104,7 +104,7 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each place of the stage that is new or has a larger target or another checkpoint
+  /// Records each place that is new to the stage, or that has a larger target or another checkpoint
   /// interval. A larger target makes a completed stage `declared` again. Throws
   /// std::invalid_argument when the id is not a SHA-256 or belongs to other parameters, or when the
   /// parent was not declared.

@@ -91,10 +91,10 @@ class NewFile {
   Descriptor file_;
 };
 
-/// A new temporary folder that only this user can read. The destructor deletes it with its content.
-/// Its name is `prefix` + "<pid>-" + six random characters. It lies in TMPDIR (else /tmp), unless
-/// `prefix` is an absolute path. The constructor calls remove_leftovers() for the parent folder and
-/// throws std::system_error, which names the folder, when no folder can be created.
+/// A new temporary folder that only this user can read; the destructor deletes it with its content.
+/// The folder lies in TMPDIR (else /tmp), unless `prefix` is an absolute path. Its name is `prefix`
+/// + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the parent
+/// folder and throws std::system_error, which names the folder, when no folder can be created.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");
