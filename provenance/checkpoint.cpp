@@ -27,9 +27,10 @@ using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
 
-static_assert(std::endian::native == std::endian::little, "hashes and files use native numbers");
+static_assert(std::endian::native == std::endian::little, "hashes and files are little-endian");
 
-/// The numbers of /restart, then the numbers of /restart/cell, in the order of the file.
+/// restart_numbers() and cell_numbers() call field(name, value) for each number of /restart and of
+/// /restart/cell, in the order of the file.
 void restart_numbers(auto& checkpoint, auto field) {
   field("time_s", checkpoint.time_s);
   field("cycle", checkpoint.cycle);
@@ -47,7 +48,7 @@ void cell_numbers(auto& cell, auto field) {
   field("top", cell.top);
 }
 
-/// An H5MD element with one time step: {step, time, value}.
+/// Writes an H5MD element with one time step: a group with the datasets step, time and value.
 void put_element(const Handle& parent, const std::string& name, const Checkpoint& checkpoint,
                  const double* value, const Shape& shape, const std::string& unit) {
   const Handle group = make_group(parent, name);
@@ -56,7 +57,7 @@ void put_element(const Handle& parent, const std::string& name, const Checkpoint
   put_dataset(group, "value", H5T_IEEE_F64LE, value, shape, unit);
 }
 
-/// The grains and then the wall grains at their current positions, in SI units, for other programs.
+/// Writes the grains, then the wall grains at their current positions, in SI units.
 void put_particles(const Handle& file, const Checkpoint& checkpoint) {
   const Handle particles = make_group(file, "particles");
   const Handle all = make_group(particles, "all");
@@ -113,7 +114,7 @@ void put_cell(const Handle& restart, const Cell& cell) {
   put_dataset(group, "wall_grain_position", H5T_IEEE_F64LE, position.data(), {side.size(), 3});
 }
 
-/// The exact state in the engine's units, from which a run continues.
+/// Writes the exact state in the engine's units. A run continues from this state.
 void put_restart(const Handle& file, const Checkpoint& checkpoint) {
   const Handle restart = make_group(file, "restart");
   const State& state = checkpoint.state;
@@ -133,7 +134,7 @@ void require_sound(const Checkpoint& c) {
     throw std::invalid_argument("a checkpoint cannot be written: " + why);
   };
   if (c.run.size() > StoreLimits::text || c.run.find('\0') != std::string::npos)
-    reject("bad run id");
+    reject("the run id is too long or has a zero byte");
   if (c.state.position.cols() != c.state.velocity.cols()) {
     reject("the numbers of velocities and positions differ");
   }
@@ -158,7 +159,7 @@ void require_sound(const Checkpoint& c) {
   }
 }
 
-/// The bytes of the file, with an empty frame.
+/// The bytes of the file. The bytes of the frame are still zero.
 std::vector<std::byte> framed_image(const Handle& file) {
   require(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "the buffers");
   const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
@@ -196,7 +197,7 @@ Cell read_cell(const Object& group) {
   const auto side = group.bytes("wall_grain_side");
   const Eigen::Matrix3Xd position = vectors(group, "wall_grain_position");
   if (static_cast<std::size_t>(position.cols()) != side.size()) {
-    refuse("/restart/cell/wall_grain_position", "does not have the length of wall_grain_side");
+    refuse("/restart/cell/wall_grain_position", "does not have as many rows as wall_grain_side");
   }
   for (std::size_t i = 0; i < side.size(); ++i) {
     if (side[i] > 3) refuse("/restart/cell/wall_grain_side", "is not a wall");
@@ -208,7 +209,7 @@ Cell read_cell(const Object& group) {
 
 void read_restart(const Object& restart, Checkpoint& checkpoint) {
   if (restart.count("format") != hdf5::kRestartFormat) {
-    refuse("/restart/format", "unknown format; use the program version that wrote it");
+    refuse("/restart/format", "has an unknown format; use the shearcell version that wrote it");
   }
   State& state = checkpoint.state;
   checkpoint.run = restart.text("run");
@@ -218,7 +219,7 @@ void read_restart(const Object& restart, Checkpoint& checkpoint) {
   state.position = vectors(restart, "position");
   state.velocity = vectors(restart, "velocity");
   if (state.position.cols() != state.velocity.cols()) {
-    refuse("/restart/velocity", "does not have the length of position");
+    refuse("/restart/velocity", "does not have as many rows as position");
   }
   checkpoint.cell = read_cell(restart.child("cell"));
 }
@@ -229,19 +230,19 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
   require_sound(checkpoint);
   std::vector<std::byte> image;
   try {
-    constexpr std::size_t about = 3 * 256;  // bytes of each grain in three copies
+    constexpr std::size_t about = 3 * 256;  // bytes per grain: three copies of the file
     const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
-    // The oldest superblock has no checksum; HDF5 1.10 writes wrong checksums into file images.
+    // HDF5 1.10 writes wrong checksums into file images. The oldest superblock has no checksum.
     require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "version");
     const Handle creation = creation_list(H5P_FILE_CREATE);
     require(H5Pset_userblock(creation.get(), hdf5::kFrameSize), "a user block");
     const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
                               "a memory file"),
                       H5Fclose);
-    // The version of the layout, not of the program: equal states give equal bytes in every
-    // release.
+    // H5MD requires the version of the creator. The version of the layout is written, not of the
+    // program, so equal states give equal bytes in every release.
     hdf5::put_h5md(file, std::to_string(hdf5::kRestartFormat));
     put_particles(file, checkpoint);
     put_observables(file, checkpoint);
@@ -249,7 +250,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     image = framed_image(file);
   } catch (const std::runtime_error&) {
     if (const auto no_memory = std::get_new_handler()) no_memory();
-    throw std::bad_alloc();  // the file is in memory
+    throw std::bad_alloc();  // the file is in memory, so memory ran out
   }
   const std::string frame =
       hdf5::frame_text(sha256_hex(std::span(image).subspan(hdf5::kFrameSize)));
@@ -272,7 +273,7 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image) {
 }
 
 void require_plausible(const Checkpoint& checkpoint) {
-  constexpr double kFarthest = 1e9;  // [d]; grains may drift along the period
+  constexpr double kFarthest = 1e9;  // [d]; grains may drift along the periodic direction
   constexpr double kSteepest = 1.5;  // [rad]
   const Cell& cell = checkpoint.cell;
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
@@ -280,7 +281,7 @@ void require_plausible(const Checkpoint& checkpoint) {
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
     if (std::abs(length) > kLongestCell) refuse("/restart/cell", "is larger than any cell");
   }
-  // An analysis takes memory for each layer and for each periodic image that a grain may reach.
+  // An analysis needs memory for each periodic image of a grain and for each layer of the cell.
   if (cell.depth < 0.1 * cell.width) {
     refuse("/restart/cell", "has a depth of less than a tenth of its width");
   }
@@ -289,9 +290,9 @@ void require_plausible(const Checkpoint& checkpoint) {
       std::max({cell.top, cell.bottom, moving}) - std::min({cell.top, cell.bottom, moving});
   const auto grains = static_cast<double>(checkpoint.state.position.cols());
   if (cell.width * cell.depth * height > kLoosestCell * (grains + 100)) {
-    refuse("/restart/cell", "is larger than any cell of so few grains");
+    refuse("/restart/cell", "is too large for its number of grains");
   }
-  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a tilt of a cell");
+  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is too large for a tilt");
   if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
     refuse("/restart/position", "has a grain far outside of any cell");
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint as one immutable HDF5 file (H5MD 1.1 plus /restart). provenance/README.md has the
-// layout.
+// One checkpoint is one immutable HDF5 file (H5MD 1.1 plus /restart; layout in README.md).
 #pragma once
 
 #include <cstddef>
@@ -19,7 +18,7 @@ namespace shearcell {
 struct Checkpoint {
   std::string run;    ///< id of the run (stage)
   double time_s = 0;  ///< simulated time since the stage began [s]
-  double cycle = 0;   ///< cycles since the stage began; whole at the end of a cycle
+  double cycle = 0;   ///< cycles since the stage began; an integer at the end of a cycle
   double theta = 0;   ///< tilt of the side walls [rad]
   Units units;
   Cell cell;
@@ -27,25 +26,25 @@ struct Checkpoint {
   std::map<std::string, double> observables;  ///< name with unit -> value
 };
 
-/// The walls at the time of the checkpoint.
+/// Positions of the walls at the time of the checkpoint.
 inline WallPose pose_of(const Checkpoint& checkpoint) {
   return wall_pose(checkpoint.cell, checkpoint.theta, checkpoint.state.wall_height);
 }
 
-/// The bytes of the file; equal checkpoints give equal bytes. Throws std::invalid_argument for a
-/// checkpoint that could not be read again (NaN, bad names, too many observables).
+/// The bytes of the checkpoint file; equal checkpoints give equal bytes. Throws
+/// std::invalid_argument for a checkpoint that could not be read again (NaN, bad names, too many
+/// observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 
-/// Reads the bytes of a file. Throws StoreDamaged when they are not a complete, consistent
-/// checkpoint.
+/// Decodes a checkpoint file. Throws StoreDamaged unless it is complete and consistent.
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
-/// Throws StoreDamaged, naming the place in the file, when a length, position or tilt is outside
-/// the range of any cell; with such a value a run or an analysis could overflow or never end.
+/// Throws StoreDamaged, which names the HDF5 path, when no cell can have such a length, position or
+/// tilt. With such a value a run or an analysis could overflow or never end.
 void require_plausible(const Checkpoint& checkpoint);
 
-/// SHA-256 (hex) of the exact state and cell. Runs continue identically if and only if their hashes
-/// are equal.
+/// SHA-256 (hex) of the exact state and cell. Two runs continue identically if and only if these
+/// hashes of their states are equal.
 std::string state_hash(const Checkpoint& checkpoint);
 
 }  // namespace shearcell

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "shcd" in ASCII: identifies the file.
+/// SQLite's application_id of the file: "shcd" in ASCII.
 constexpr std::int64_t kApplicationId = 0x73686364;
 constexpr std::int64_t kLayout = 1;
 
@@ -30,7 +30,7 @@ CREATE TABLE derived(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// Hash of key and content, so that an object cannot be stored under another key.
+/// Hash of key and content, so that content that was moved to another key is detected.
 std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
   return Sha256()
       .add_fields("shearcell derived 1", key.checkpoint, key.measure, key.version)
@@ -38,13 +38,13 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
       .hex();
 }
 
-/// The name of the n-th damaged file.
+/// The name under which the n-th damaged file is kept.
 fs::path damaged_name(const fs::path& file, int n) {
   return fmt::format("{}.damaged-{}", file.string(), n);
 }
 
-/// Renames the file, which may hold the only measures of pruned checkpoints. A journal left behind
-/// would be played back into the new database.
+/// Renames a damaged file, which may hold the only measures of pruned checkpoints, and its journal.
+/// SQLite would play back a remaining journal into the new database.
 void set_aside(const fs::path& file) {
   std::error_code ignored;
   int n = 1;
@@ -80,7 +80,7 @@ void DerivedCache::open() {
   if (read_only_ && empty) return;
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
-  // No syncs: damage by a power cut is found by the hash, and the object is computed again.
+  // Nothing is synced. Hashes reveal damage by a power cut, and such objects are computed again.
   database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
@@ -96,12 +96,12 @@ void DerivedCache::open() {
     throw MachineError(file_.string() + ": this database belongs to another program; remove it");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
-    throw StoreDamaged(file_.string() + ": another layout");
+    throw StoreDamaged(file_.string() + ": the layout has another version");
   }
-  // A foreign trigger or view would run at every insert.
+  // A trigger that another program added would run at every insert.
   sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0",
                         kDerivedTable);
-  if (odd.step()) throw StoreDamaged(file_.string() + ": another schema");
+  if (odd.step()) throw StoreDamaged(file_.string() + ": it has tables of another program");
 }
 
 template <typename Work>
@@ -132,8 +132,8 @@ std::string DerivedCache::replaced() const {
   const fs::path kept = damaged_name(file_, 1);
   if (!fs::exists(kept, ignored)) return "";
   return fmt::format(
-      "{}: measures of pruned checkpoints are missing, since it was damaged and is kept as {}; "
-      "restore it from a backup, or recompute the files by `shearcell regenerate --all`",
+      "{}: the file was damaged and is kept as {}, so measures of pruned checkpoints are missing; "
+      "restore it from a backup, or recompute the checkpoints by `shearcell regenerate --all`",
       file_.string(), kept.filename().string());
 }
 
@@ -173,7 +173,7 @@ void DerivedCache::put(std::span<const DerivedObject> objects) {
   attempt([&](sqlite::Database& database) {
     sqlite::WriteTransaction lock(database);
     for (const DerivedObject& object : objects) {
-      if (object.content.size() > StoreLimits::value_bytes) continue;  // computed again every time
+      if (object.content.size() > StoreLimits::value_bytes) continue;  // too large to store
       const DerivedKey& key = object.key;
       sqlite::Statement(database, "INSERT OR REPLACE INTO derived VALUES(?,?,?,?,?)",
                         key.checkpoint, key.measure, key.version, digest(key, object.content),

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors, by what the caller can do about them. experiments/cli/main.cpp turns them into exit
-// codes.
+// Exceptions, by what the caller can do. experiments/cli/main.cpp maps them to exit codes.
 #pragma once
 
 #include <stdexcept>
 
 namespace shearcell {
 
-/// The user's input is wrong: an option, a manifest, an input file. Exit code 2.
+/// The user's input is wrong, for example an option, a manifest or an input file. Exit code 2.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -17,13 +16,13 @@ struct NotFound : UsageError {
   using UsageError::UsageError;
 };
 
-/// The checkpoint was pruned: its record is kept and its file was deleted on purpose.
+/// The file of the checkpoint was deleted by `prune`. The record of the checkpoint still exists.
 struct FilePruned : NotFound {
   using NotFound::NotFound;
 };
 
-/// The machine cannot do it, or another program is in the way. Exit code 1, like errors of the
-/// operating system (std::system_error).
+/// The machine cannot do what was asked, or another program blocks it. Exit code 1, as for errors
+/// of the operating system (std::system_error).
 struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -33,13 +32,13 @@ struct TooLittleMemory : MachineError {
   using MachineError::MachineError;
 };
 
-/// Another writer was faster: it holds the run, took it, or wrote what the caller has not read.
+/// Another process holds the run, has taken it over, or wrote events that the caller did not read.
 struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of the store are not what was once written: not a store, a newer schema, a truncated
-/// or altered checkpoint, a broken chain, two results for one run. Exit code 4.
+/// The store is not readable or not intact: it is not a store, or has a newer schema, a truncated
+/// or altered checkpoint, a broken hash chain, or two results for one run. Exit code 4.
 struct StoreDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

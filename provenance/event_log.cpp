@@ -25,7 +25,7 @@ namespace shearcell {
 
 namespace {
 
-/// "shcl" in ASCII: identifies a store.
+/// SQLite's application_id of a store: "shcl" in ASCII.
 constexpr std::int64_t kStoreApplicationId = 0x7368636c;
 
 constexpr const char* kEvents = R"sql(
@@ -49,7 +49,7 @@ BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
 
 void create_tables(sqlite::Database& database) {
   sqlite::WriteTransaction lock(database);
-  // Another process may have created them while this one waited for the lock.
+  // Another process may have created the tables while this process waited for the lock.
   if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
     database.execute(kEvents);
     create_projections(database);
@@ -60,8 +60,9 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
-/// Makes the log under another name, so that a kill leaves no partial log. Does nothing if another
-/// program was faster; the caller makes the log in place if the file system cannot do this.
+/// Creates the log under a temporary name, so that a killed program leaves no partial log, and
+/// renames it. Does nothing if another program has created the log. If the file system cannot
+/// rename without replacing a file, the caller creates the log in place.
 void create_whole(const std::filesystem::path& file) {
   const std::filesystem::path whole =
       file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
@@ -70,19 +71,19 @@ void create_whole(const std::filesystem::path& file) {
     database.execute("PRAGMA journal_mode=MEMORY");
     create_tables(database);
   }
-  // The first event syncs the folder.
+  // The folder is synced when the first event is written.
   if (renameat2(AT_FDCWD, whole.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) != 0) {
     unlink(whole.c_str());
   }
 }
 
-/// A forged schema could run its own statements whenever a table is read or written, so all schema
-/// statements must be ones that this program writes. Missing tables fail when they are used. The
-/// derived tables of an older schema are not read.
+/// A forged schema could contain SQL that runs whenever a table is read or written. So every schema
+/// statement must be one that this program writes. A missing table causes an error only when it is
+/// used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
-  own.execute("ANALYZE");  // its tables are allowed; they hold only estimates
+  own.execute("ANALYZE");  // makes tables of statistics, which are allowed too
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
@@ -119,13 +120,13 @@ void require_known_schema(sqlite::Database& database) {
   }
 }
 
-/// Brings an older schema to the newest, without changing the table `events`, in one transaction:
-/// an interrupted migration leaves the older version. Schema 2 added leases; schema 3 what
-/// experiments ask of a run, why it ended, and the newest manifests.
+/// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
+/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added what
+/// experiments ask of a run, why the run ended, and the newest manifests.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
-  // Another process may have migrated it while this one waited for the lock.
+  // Another process may have migrated the store while this process waited for the lock.
   const std::int64_t version = database.integer("PRAGMA user_version");
   if (version == 1) create_leases(database);
   if (version < kSchemaVersion) {
@@ -135,13 +136,13 @@ void migrate(sqlite::Database& database) {
   lock.commit();
 }
 
-/// SQLite would open it for reading only, and fail at the first event. The journal is a new file in
-/// the folder.
+/// Requires write access to the file and to its folder, where SQLite creates the journal. Otherwise
+/// SQLite would open the file for reading only and fail at the first event.
 void require_writable(const std::filesystem::path& file) {
   for (const std::filesystem::path& path : {file, file.parent_path()}) {
     if (faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0 || errno == ENOENT) continue;
     throw MachineError(fmt::format(
-        "{}: this user cannot write to it ({}), and a store is written in place; change its "
+        "{}: this user cannot write to it ({}), but this command changes the store; change the "
         "permissions, or copy the store to a folder of your own",
         path.string(), std::generic_category().message(errno)));
   }
@@ -160,7 +161,8 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// What was changed: the field whose value in the neighbouring events makes the hash valid again.
+/// Names the changed field of an event: the field whose expected value, known from the events
+/// before and after, makes the hash valid again.
 std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
                       const std::optional<Event>& next) {
   Event repaired = event;
@@ -180,14 +182,14 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
   if (access != Access::read) require_writable(file);
   if (access == Access::create && !std::filesystem::exists(file)) create_whole(file);
   sqlite::Database database(file, access);
-  // Rollback journal instead of WAL: SQLite before 3.51.3 can lose committed transactions when
-  // several connections checkpoint a WAL at once. EXTRA also syncs the folder after the journal is
-  // deleted, so that a committed event survives a power cut.
+  // A rollback journal is used instead of WAL, because SQLite before 3.51.3 can lose committed
+  // transactions when several connections checkpoint a WAL at once. EXTRA also syncs the folder
+  // after the journal is deleted, so that a committed event survives a power cut.
   database.execute(
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // A new store starts with an empty file; with objects beside it, the log was lost.
+    // A new store begins with an empty file. If there are objects beside it, the log was lost.
     if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");
@@ -225,7 +227,7 @@ std::optional<std::string> run_of(const Event& event) {
 }
 
 std::string utc_text(std::int64_t ms) {
-  const std::int64_t within = (ms % 1000 + 1000) % 1000;  // also before 1970
+  const std::int64_t within = (ms % 1000 + 1000) % 1000;  // not negative, also before 1970
   return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::time_t{(ms - within) / 1000}), within);
 }
 
@@ -238,7 +240,7 @@ Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view st
   complete.type = event.type;
   complete.schema = events::newest_schema(event.type);
   complete.recorded_at = std::max(utc_text(static_cast<std::int64_t>(now_ms())), event.not_before);
-  // Bytes that are not UTF-8, as in a path, become U+FFFD.
+  // Bytes that are not UTF-8, for example in a path, become U+FFFD.
   complete.payload = event.payload.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return append_copy(lock, std::move(complete));
 }
@@ -310,7 +312,7 @@ std::optional<ChainFault> EventLog::verify_chain() const {
     }
     if (event->prev_hash != last.hash) return fault("it does not follow the event before it");
     if (event->version != version) {
-      return fault(fmt::format("its version is {} and should be {}", event->version, version));
+      return fault(fmt::format("its version is {}, but should be {}", event->version, version));
     }
     last = {.seq = event->seq, .hash = event->hash};
     event = std::move(next);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log store.sqlite: events in streams, chained by SHA-256 so that any later change
-// is detected.
+// The append-only log store.sqlite: events in streams. A chain of SHA-256 reveals any later change.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +21,14 @@ inline constexpr std::int64_t kSchemaVersion = 3;
 /// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
 /// changing events. With Access::read the tables of an older schema are derived in memory; the file
 /// is still opened for writing if possible, so that SQLite can roll back the transaction of a
-/// crashed program. Throws StoreDamaged when the file is not a store or has a newer schema, and
-/// MachineError when this user may not write a file that is to be written.
+/// killed program. Throws StoreDamaged when the file is not a store or has a newer schema, and
+/// MachineError when the user has no permission to write and `access` requires it.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.
 struct Event {
   std::uint64_t seq = 0;      ///< 1, 2, 3, ... over the whole log
-  std::string stream;         ///< "run/<id>", "manifest/<sha256>", "figure/<name>"
+  std::string stream;         ///< such as "run/<id>", "manifest/<sha256>", "figure/<name>"
   std::uint64_t version = 0;  ///< 1, 2, 3, ... within the stream
   std::string type;
   std::uint64_t schema = 1;  ///< version of the payload's layout
@@ -54,7 +53,7 @@ std::string utc_text(std::int64_t ms);
 struct NewEvent {
   std::string type;
   nlohmann::json payload;       ///< in the newest layout of its type
-  std::string not_before = {};  ///< recorded_at is not earlier, even if the clock was set back
+  std::string not_before = {};  ///< lower limit of recorded_at, for a clock that was set back
 };
 
 /// Identifies the content of a log: equal heads mean equal logs.
@@ -66,11 +65,11 @@ struct Head {
 /// The first event at which the chain is broken.
 struct ChainFault {
   std::uint64_t seq = 0;
-  std::string message;  ///< which field was changed, as far as that can be told
+  std::string message;  ///< names the changed field if it can be determined
 };
 
-/// The hash of an event: SHA-256 over the domain tag, prev_hash and the other fields, each written
-/// as a netstring ("<length in bytes>:<bytes>,"), numbers in decimal. See provenance/README.md.
+/// The hash of an event: SHA-256 over the text "shearcell event 1", prev_hash and the other fields,
+/// each written as a netstring ("<length in bytes>:<bytes>,"). Numbers are written in decimal.
 std::string event_hash(const Event& event);
 
 /// Not thread-safe; the database must outlive the log.
@@ -83,20 +82,20 @@ class EventLog {
   Event append(const sqlite::WriteTransaction& lock, std::string_view stream,
                const NewEvent& event);
 
-  /// Appends an event of another log to its stream, with type, layout, time and payload unchanged
-  /// and a new place in the chain.
+  /// Appends an event of another log to its stream. Type, layout, time and payload stay the same;
+  /// seq, version and hashes are new.
   Event append_copy(const sqlite::WriteTransaction& lock, Event event);
 
   /// Number of events in the stream.
   std::uint64_t version(std::string_view stream) const;
   Head head() const;
-  /// Hash of the event with this number: 64 zeros for 0, "" for an unknown one.
+  /// Hash of the event with this seq: 64 zeros for seq 0, "" when there is no such event.
   std::string hash_at(std::uint64_t seq) const;
-  /// Events of one stream, or of the whole log (""), in order; of one type, or of all ("").
+  /// Events of one stream or of all streams (""), of one type or of all types (""), in order.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
-  /// Visits all events without holding the log in memory.
+  /// Calls visit(event) for all events in order, without loading the whole log into memory.
   void for_each(const std::function<void(const Event&)>& visit) const;
-  /// Recomputes every hash. Returns nothing when the chain is valid.
+  /// Recomputes every hash. Returns the first fault, or nothing when the chain is valid.
   std::optional<ChainFault> verify_chain() const;
 
  private:

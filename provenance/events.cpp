@@ -19,7 +19,7 @@ using nlohmann::json;
 namespace events {
 namespace {
 
-/// Members that layout 2 added to a type: null in payloads of layout 1, which did not record them.
+/// A member that layout 2 added to a type. In payloads of layout 1, which lack it, it is null.
 struct Added {
   std::string_view type;
   const char* member;
@@ -42,7 +42,7 @@ constexpr bool is_optional = requires(T& value) {
 template <class T>
 void read_fields(const json& from, T& value);
 
-/// Throws json::exception when a required value is missing or of another type.
+/// Throws json::exception when a required value is missing or has another type.
 template <class T>
 void read(const json& from, const char* key, T& value) {
   if constexpr (std::is_same_v<T, std::uint64_t>) {
@@ -79,7 +79,7 @@ json written(const T& value) {
   }
 }
 
-/// Fills `result` when the event is of type E.
+/// If the event has type E, decodes it into `result` and returns true.
 template <class E>
 bool decode_as(const Event& event, const json& body, Any& result) {
   if (event.type != E::kType) return false;
@@ -127,7 +127,7 @@ json Event::body() const {
   json body = parse_json(payload);
   if (!body.is_object()) {
     throw StoreDamaged(fmt::format(
-        "event {} ({} of {}): its payload is not a JSON object, or is nested too deeply; run "
+        "event {} ({} of {}): its payload is not a JSON object or is nested too deeply; run "
         "`verify`",
         seq, type, stream));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The payloads of the events that this program reads, one struct each, and their JSON.
+// One struct for the payload of each event that this program reads, and its form in JSON.
 // provenance/README.md lists all events with the streams that hold them.
 #pragma once
 
@@ -16,13 +16,13 @@
 
 namespace shearcell::events {
 
-// `fields` names each member once, for reading and for writing. All members are required in a
-// payload, except those with `true`, which are written only if they are stated; optional ones may
-// be null.
+// `fields` names each member of a payload, for reading and for writing. Members with a third
+// argument `true` may be missing, and are written only if they are not empty. All other members are
+// required. std::optional members may be null.
 
 struct ManifestRegistered {
   static constexpr std::string_view kType = "ManifestRegistered";
-  std::string sha256, path, text;  ///< the path as given; only a name
+  std::string sha256, path, text;  ///< `path` as the user gave it, for display only
   nlohmann::json info;
   static void fields(auto& e, auto field) {
     field("sha256", e.sha256), field("path", e.path), field("text", e.text);
@@ -30,7 +30,7 @@ struct ManifestRegistered {
   }
 };
 
-/// A file of grains from which a packing is made.
+/// A file of grains that was registered as the start of runs.
 struct PackingRegistered {
   static constexpr std::string_view kType = "PackingRegistered";
   std::string sha256, path, text;
@@ -41,7 +41,7 @@ struct PackingRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  Stage stage;  ///< without its id, in the state `declared`
+  Stage stage;  ///< only the members that `fields` names
   Membership membership;
   static void fields(auto& e, auto field) {
     field("parent", e.stage.parent), field("kind", e.stage.kind),
@@ -55,8 +55,8 @@ struct RunStarted {
   static constexpr std::string_view kType = "RunStarted";
   std::uint64_t attempt = 0;
   nlohmann::json host, process;
-  std::optional<std::string> parent_checkpoint;    ///< SHA-256
-  std::optional<std::uint64_t> bits_version = {};  ///< none in records of earlier versions
+  std::optional<std::string> parent_checkpoint;    ///< SHA-256 of the initial state
+  std::optional<std::uint64_t> bits_version = {};  ///< absent in events of earlier versions
   static void fields(auto& e, auto field) {
     field("attempt", e.attempt), field("host", e.host), field("process", e.process);
     field("parent_checkpoint", e.parent_checkpoint), field("bits_version", e.bits_version, true);
@@ -64,7 +64,7 @@ struct RunStarted {
 };
 
 struct StateReached {
-  std::string sha256;  ///< of the checkpoint
+  std::string sha256;  ///< SHA-256 of the checkpoint file
   std::uint64_t step = 0;
   double cycle = 0;
   static void fields(auto& e, auto field) {
@@ -77,14 +77,14 @@ struct RunResumed {
   std::uint64_t attempt = 0;
   nlohmann::json host, process;
   StateReached from;
-  std::optional<std::uint64_t> bits_version = {};  ///< none in records of earlier versions
+  std::optional<std::uint64_t> bits_version = {};  ///< absent in events of earlier versions
   static void fields(auto& e, auto field) {
     field("attempt", e.attempt), field("host", e.host), field("process", e.process);
     field("from", e.from), field("bits_version", e.bits_version, true);
   }
 };
 
-/// A checkpoint whose file was deleted or written again.
+/// Base of the events that describe a checkpoint file.
 struct CheckpointFile {
   CheckpointRecord checkpoint;
   static void fields(auto& e, auto field) {
@@ -96,7 +96,7 @@ struct CheckpointFile {
 
 struct CheckpointPruned : CheckpointFile {
   static constexpr std::string_view kType = "CheckpointPruned";
-  Digests measures = {};  ///< of the cached measures; empty in records of earlier versions
+  Digests measures = {};  ///< of cached measures; empty in events of earlier versions
   static void fields(auto& e, auto field) {
     CheckpointFile::fields(e, field);
     field("measures", e.measures, true);
@@ -161,8 +161,7 @@ struct StoreMerged {
   }
 };
 
-/// Any other event: no struct describes its payload (FigureGenerated, JobQueued, ...), or this
-/// program does not know its type.
+/// Any other event: no struct describes its payload (FigureGenerated), or its type is unknown.
 struct Other {};
 
 using Any =
@@ -170,11 +169,11 @@ using Any =
                  CheckpointRecorded, CheckpointRejected, RunInterrupted, RunFailed, RunCompleted,
                  CheckpointPruned, CheckpointRegenerated, StoreMerged>;
 
-/// Throws StoreDamaged, naming the event, when its payload lacks what its type requires.
+/// Throws StoreDamaged, which names the event, when a required member of the payload is missing.
 Any decode(const Event& event);
 NewEvent encode(const Any& event);
 
-/// The layout in which payloads of this type are written: 1 for a type that never changed.
+/// The number of the layout in which payloads of this type are written; 1 if it never changed.
 std::uint64_t newest_schema(std::string_view type);
 
 inline constexpr const char* kFigureGenerated = "FigureGenerated";

@@ -16,12 +16,12 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-static_assert(std::endian::native == std::endian::little, "files hold native numbers");
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 constexpr std::uint64_t kNowhere = ~std::uint64_t{0};  // HDF5's undefined address
-constexpr std::uint64_t kMostMessages = 4096;          // of one object
+constexpr std::uint64_t kMostMessages = 4096;          // of one object header
 
-/// Messages of an object header (section IV.A.2 of the format).
+/// Types of messages in an object header (section IV.A.2 of the format).
 enum Message : std::uint64_t {
   kNil = 0,
   kSpace = 1,
@@ -48,10 +48,10 @@ std::string text_in(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The bytes end too early.
+/// Thrown when a block of bytes ends too early.
 struct Short {};
 
-/// Reads from the front of a block. Throws Short.
+/// Reads a block of bytes from front to back. Throws Short.
 class Cursor {
  public:
   explicit Cursor(Bytes bytes) : rest_(bytes) {}
@@ -84,13 +84,13 @@ bool is_type(Bytes found, std::string_view wanted) {
          std::memcmp(found.data(), wanted.data(), wanted.size()) == 0;
 }
 
-/// Size of each dimension, empty for a single value; nothing for an unsupported message.
+/// Size of each dimension (empty for a scalar); nothing if the message is not supported.
 std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
   if (space.size() < 8) return std::nullopt;
   Cursor cursor(space);
   const std::uint64_t version = cursor.number(1), rank = cursor.number(1);
   if (version != 1 || rank > 2 || space.size() < 8 + 8 * rank) return std::nullopt;
-  cursor.take(6);  // flags; the largest sizes may follow and say nothing about what is there
+  cursor.take(6);  // flags and reserved bytes; maximum sizes may follow and are ignored
   std::vector<std::uint64_t> shape;
   for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(cursor.number(8));
   return shape;
@@ -123,15 +123,15 @@ Object Object::root(Bytes file, std::size_t user_block) {
   if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
   if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
-  const bool known =
-      cursor.number(5) == 0 && cursor.number(2) == 0x0808;  // versions, address sizes
+  const bool known = cursor.number(5) == 0 &&
+                     cursor.number(2) == 0x0808;  // versions 0, addresses and lengths of 8 bytes
   cursor.take(9);
   if (!known || cursor.number(8) != user_block) {
     refuse("file", "its superblock is not one that this program writes");
   }
   cursor.take(8);
   if (cursor.number(8) != user_block + file.size())
-    refuse("file", "it does not have the size that it states");
+    refuse("file", "its size differs from the size in its superblock");
   cursor.take(16);
   return {file, cursor.number(8), ""};
 }
@@ -148,7 +148,7 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     std::vector<Bytes> blocks = {at(address + 16, prefix.number(4))};
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       for (Cursor cursor(blocks[b]); cursor.rest().size() >= 8;) {
-        // Counted down, so that blocks that point at each other cannot loop forever.
+        // The count decreases, so blocks that point at each other cannot cause an endless loop.
         if (messages-- == 0) fail("has more messages than stated");
         const std::uint64_t type = cursor.number(2), size = cursor.number(2);
         const std::uint64_t flags = cursor.number(1);
@@ -204,7 +204,7 @@ void Object::read_message(std::uint64_t type, Bytes body) {
 
 void Object::read_link(Bytes body) {
   Cursor cursor(body);
-  if (cursor.number(1) != 1) fail("has a link of another version");
+  if (cursor.number(1) != 1) fail("has a link of an unknown version");
   const std::uint64_t flags = cursor.number(1);
   const bool hard = (flags & 8) == 0 || cursor.number(1) == 0;
   if ((flags & 4) != 0) cursor.take(8);   // creation order
@@ -219,7 +219,7 @@ void Object::read_link(Bytes body) {
 
 void Object::read_attribute(Bytes body) {
   Cursor cursor(body);
-  if (cursor.number(1) != 1) fail("has an attribute of another version");
+  if (cursor.number(1) != 1) fail("has an attribute of an unknown version");
   cursor.take(1);
   const std::uint64_t name_size = cursor.number(2);
   const std::uint64_t type_size = cursor.number(2);
@@ -255,7 +255,7 @@ std::vector<std::string> Object::names() const {
   return found;
 }
 
-/// The bytes of an attribute with one value of this type (any type when it is empty).
+/// The bytes of a scalar attribute of this data type. An empty `type` accepts every data type.
 Object::Bytes Object::attribute(const std::string& name, std::string_view type,
                                 std::size_t size) const {
   const auto found = attributes_.find(name);
@@ -264,7 +264,7 @@ Object::Bytes Object::attribute(const std::string& name, std::string_view type,
   const auto shape = shape_of(attribute.space);
   if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
   if (!type.empty() && !is_type(attribute.type, type))
-    refuse(below(name), "has another number type");
+    refuse(below(name), "has a wrong number type");
   if (attribute.data.size() < size) refuse(below(name), "is truncated");
   return attribute.data.first(size);
 }
@@ -280,7 +280,7 @@ std::uint64_t Object::count(const std::string& name) const {
 }
 
 std::string Object::text(const std::string& name) const {
-  attribute(name, "", 0);  // checks that it exists and is one value
+  attribute(name, "", 0);  // checks that the attribute exists and is a scalar
   Cursor type(attributes_.at(name).type);
   if (type.rest().size() < 8 || type.take(1).front() != kFixedText) {
     refuse(below(name), "is not a text of fixed length");
@@ -292,14 +292,14 @@ std::string Object::text(const std::string& name) const {
   return value.substr(0, value.find('\0'));
 }
 
-/// The data of a dataset, after its shape and place in this file were checked.
+/// The data of a dataset, after its type, shape, size and address were checked.
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);
   if (!dataset.layout_ || !dataset.links_.empty()) {
     dataset.fail("is not stored contiguously in this file");
   }
-  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has another number type");
+  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has a wrong number type");
   const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
   if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
       (columns != 0 && shape->back() != columns)) {
@@ -308,7 +308,7 @@ Object::Bytes Object::values(const std::string& name, std::string_view type, std
   if (shape->front() > StoreLimits::grains) dataset.fail("has too many rows");
   const std::uint64_t size = shape->front() * std::max<std::uint64_t>(columns, 1) * bytes_each;
   if (size == 0) return {};
-  if (dataset.layout_->size != size) dataset.fail("does not have the size of its shape");
+  if (dataset.layout_->size != size) dataset.fail("has a size that does not match its shape");
   return dataset.at(dataset.layout_->address, size);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the part of HDF5 that checkpoint.cpp writes, from untrusted bytes. The HDF5 library is not
+// Reads untrusted HDF5 files with the features that checkpoint.cpp uses. The HDF5 library is not
 // used because version 1.10 crashes on some forged files.
 //
-// Supported: superblock 0, object headers of version 1 with links and attributes in them,
-// contiguous data. Every address, length and count is checked before use. Everything else (soft and
-// external links, chunks, filters, dense groups, shared types) is refused. Format:
+// Supported are superblock 0, object headers of version 1 with links and attributes in them, and
+// contiguous data. Everything else (soft and external links, chunks, filters, dense groups, shared
+// types) is refused. Every address, length and count is checked before use. Format:
 // https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace shearcell::hdf5 {
 
-/// The frame of a checkpoint is the HDF5 user block: two lines of text padded with zeros. It holds
-/// the SHA-256 of all bytes after it, so damage is found before HDF5 is interpreted.
+/// The frame of a checkpoint is the HDF5 user block: two lines of text padded with zeros. The frame
+/// holds the SHA-256 of all bytes that follow, so damage is found before they are interpreted.
 inline constexpr std::size_t kFrameSize = 512;
 inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 
@@ -32,27 +32,27 @@ inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }
 
-/// Throws StoreDamaged, naming the place in the checkpoint.
+/// Throws StoreDamaged with the message "checkpoint: WHERE: WHY".
 [[noreturn]] void refuse(const std::string& where, const std::string& why);
 
-/// A group or a dataset. It refers to the file's bytes, which must outlive it. All functions throw
+/// A group or a dataset. The bytes of the file must outlive the object. All functions throw
 /// StoreDamaged, which names the path within the file.
 class Object {
  public:
   using Bytes = std::span<const std::byte>;
 
-  /// The root group; `hdf5_part` is the file after `user_block` bytes.
+  /// The root group. `hdf5_part` is the file without its first `user_block` bytes.
   static Object root(Bytes hdf5_part, std::size_t user_block);
 
   Object child(const std::string& name) const;
-  std::vector<std::string> names() const;  ///< of the members of a group, sorted
+  std::vector<std::string> names() const;  ///< names of the members of a group, sorted
 
-  // Attributes with one value.
+  // The value of a scalar attribute.
   double number(const std::string& name) const;        ///< finite
   std::uint64_t count(const std::string& name) const;  ///< 64 bits, unsigned
-  std::string text(const std::string& name) const;     ///< of fixed length, at most 4096 bytes
+  std::string text(const std::string& name) const;     ///< at most 4096 bytes
 
-  // All values of a dataset with this number of columns (0: one-dimensional), row by row.
+  // All values of a dataset, row by row. `columns` is checked; 0 means a one-dimensional dataset.
   std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;  ///< finite
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 
@@ -78,9 +78,9 @@ class Object {
 
   Bytes file_;
   std::string path_;
-  std::map<std::string, std::optional<std::uint64_t>> links_;  ///< addresses of hard links
+  std::map<std::string, std::optional<std::uint64_t>> links_;  ///< addresses, or nothing
   std::map<std::string, Attribute> attributes_;
-  std::optional<Bytes> type_, space_;  ///< of a dataset
+  std::optional<Bytes> type_, space_;  ///< data type and shape of a dataset
   std::optional<Layout> layout_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes groups, attributes and datasets with the HDF5 library; equal content gives equal bytes.
+// Writes groups, attributes and datasets with the HDF5 library. Equal content gives equal bytes.
 // Functions throw std::runtime_error, which names the object that could not be written.
 #pragma once
 
@@ -14,9 +14,10 @@
 
 namespace shearcell::hdf5 {
 
-/// Hold one around all calls of the library, which may be built without thread safety. The library
-/// then prints no errors; they are reported as exceptions. The library may crash where memory runs
-/// out, so this throws std::bad_alloc if `room` bytes cannot be allocated.
+/// A lock for the HDF5 library, which may be built without thread safety. Create a Library object
+/// before any call. The library then prints no errors; they become exceptions. The constructor
+/// throws std::bad_alloc if `room` bytes cannot be allocated, because the library may crash when
+/// memory runs out.
 class Library {
  public:
   explicit Library(std::size_t room = 0) {
@@ -29,7 +30,7 @@ class Library {
   const std::scoped_lock<std::mutex> lock_{mutex_};
 };
 
-/// Owns an HDF5 identifier; a negative one is the result of a failed call.
+/// Owns an HDF5 identifier. A negative identifier is the result of a failed call.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -48,13 +49,13 @@ class Handle {
 
 using Shape = std::vector<hsize_t>;
 
-/// Returns the result of a call; throws if it failed.
+/// Returns the result of an HDF5 call. Throws std::runtime_error if the call failed.
 inline hid_t require(hid_t result, const std::string& what) {
   if (result < 0) throw std::runtime_error("HDF5 cannot write " + what);
   return result;
 }
 
-/// Property list for creating files, groups or datasets without modification times.
+/// A property list for creating files, groups or datasets without modification times.
 inline Handle creation_list(hid_t kind) {
   Handle list(require(H5Pcreate(kind), "a property list"), H5Pclose);
   H5Pset_obj_track_times(list.get(), false);
@@ -62,12 +63,12 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
-/// `links` and `attributes`: how many it will have; needed if more than 8.
+/// Creates a group. State the number of `links` or `attributes` if it will exceed 8.
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // By default more than eight are stored in a heap. hdf5_read.cpp does not read heaps, and HDF5
-  // 1.10 writes uninitialized bytes into them.
+  // By default HDF5 stores more than eight members in a heap. hdf5_read.cpp does not read heaps,
+  // and HDF5 1.10 writes uninitialized bytes into heaps.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
@@ -75,7 +76,7 @@ inline Handle make_group(const Handle& parent, const std::string& name, std::siz
           H5Gclose};
 }
 
-/// A scalar when the shape is empty.
+/// A data space of this shape; an empty shape gives a scalar.
 inline Handle make_space(const Shape& shape) {
   if (shape.empty()) return {require(H5Screate(H5S_SCALAR), "a scalar"), H5Sclose};
   return {require(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
@@ -101,7 +102,7 @@ inline void put_attribute(const Handle& object, const std::string& name, std::ui
   put_attribute(object, name, H5T_STD_U64LE, &value);
 }
 
-/// Strings of one fixed length, cells.size() / length of them.
+/// Writes cells.size() / length strings, each of `length` bytes, as one attribute.
 inline void put_strings(const Handle& object, const std::string& name, const std::string& cells,
                         std::size_t length, const Shape& shape) {
   const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);
@@ -115,8 +116,8 @@ inline void put_attribute(const Handle& object, const std::string& name, const s
   put_strings(object, name, cell, cell.size(), {});
 }
 
-/// Contiguous; `unit` becomes its attribute `unit` unless empty. If `data` is null, the caller
-/// writes the values later.
+/// Writes a contiguous dataset and, unless `unit` is empty, its attribute `unit`. If `data` is
+/// null, the caller writes the values later.
 inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t type,
                           const void* data, const Shape& shape, const std::string& unit = "") {
   const Handle space = make_space(shape);
@@ -134,7 +135,7 @@ inline Handle put_dataset(const Handle& parent, const std::string& name, hid_t t
   return dataset;
 }
 
-/// The group `h5md` of a file of H5MD 1.1, in SI units.
+/// Writes the group `h5md` of an H5MD 1.1 file in SI units.
 inline void put_h5md(const Handle& file, const std::string& version_of_creator) {
   const Handle h5md = make_group(file, "h5md");
   const int version[2] = {1, 1};
@@ -151,7 +152,7 @@ inline void put_h5md(const Handle& file, const std::string& version_of_creator) 
   put_attribute(units, "system", std::string("SI"));
 }
 
-/// The group `box` of H5MD, without edges: periodic along z alone.
+/// Writes the H5MD group `box`, periodic along z only. The caller adds the edges.
 inline Handle put_h5md_box(const Handle& particles) {
   Handle box = make_group(particles, "box");
   const int dimension = 3;

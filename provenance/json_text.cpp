@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Stops at the first value that is nested too deeply.
+/// SAX handler that stops the parser at the first value nested deeper than the limit.
 class Depth : public json::json_sax_t {
  public:
   bool null() override { return true; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON values as text, and untrusted JSON. The library copies, compares and writes values
-// recursively, so deeply nested input would overflow the stack; these functions limit the depth.
+// Writes JSON values as text and parses untrusted JSON. The parsers limit the depth, because the
+// library handles values recursively, and deeply nested input would overflow the stack.
 #pragma once
 
 #include <cstddef>
@@ -16,29 +16,30 @@ namespace shearcell {
 
 struct Event;
 
-/// A discarded value when the text is not JSON or is nested deeper than StoreLimits::json_depth.
+/// Returns a discarded value if the text is not JSON or is deeper than StoreLimits::json_depth.
 nlohmann::json parse_json(std::string_view text);
-/// parse_json() for CBOR.
+/// Like parse_json(), but parses CBOR.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);
 
-/// The error of an event whose payload lacks a required value.
+/// The exception for an event whose payload lacks a required value or has one of a wrong type.
 StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception& problem);
 
-/// A whole number from 0 to 2^64 - 1. Throws nlohmann::json::exception when the value is missing or
-/// something else; the library's `get` would convert 1e300.
+/// The member `key`, a whole number from 0 to 2^64 - 1. Throws nlohmann::json::exception when the
+/// member is missing or is another value, even 1e300, which `get` of the library would convert.
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
-/// The number rounded to `significant` digits; null if it is not finite.
+/// `value` rounded to `significant` digits; null if `value` is not finite.
 nlohmann::json rounded(double value, int significant);
 
-/// A value as a manifest or a CSV file writes it: "still", "0.1".
+/// The value as in a manifest or a CSV file: a string without quotes, a number with all digits.
 std::string value_text(const nlohmann::json& value);
-/// For messages: a text without quotes, a fraction with six significant digits, else as JSON.
+/// The value for messages: a string without quotes, a floating-point number with six significant
+/// digits, any other value as JSON.
 std::string short_text(const nlohmann::json& value);
 
-/// Null when `object` has no such member or is not an object.
+/// The member `key`; null when `object` has no such member or is not an object.
 nlohmann::json member_of(const nlohmann::json& object, const char* key);
-/// short_text() of the member `key`; "unknown" for null.
+/// short_text() of the member `key`; "unknown" when the member is missing or null.
 std::string text_at(const nlohmann::json& object, const char* key);
 
 }  // namespace shearcell

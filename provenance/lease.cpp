@@ -53,23 +53,23 @@ Lease read_lease(const Statement& row) {
   return lease;
 }
 
-/// Boot id and process-id namespace: within both, a process id identifies one process.
+/// Boot id and process-id namespace. With both, a process id identifies one process.
 std::string this_place() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);
   std::error_code missing;
   const std::string space = std::filesystem::read_symlink("/proc/self/ns/pid", missing);
-  if (boot.empty() || missing) return {};  // no /proc: processes cannot be checked
+  if (boot.empty() || missing) return {};  // without /proc, processes cannot be checked
   return boot + " " + space;
 }
 
-/// Start time of a process [clock ticks since boot]: 0 when it has ended and was not reaped yet,
-/// nothing when it cannot be read: it has ended, or /proc hides it (hidepid).
+/// Start time of a process [clock ticks since boot], or 0 for a zombie (ended, but not yet reaped).
+/// Nothing when /proc does not show the process because it has ended or is hidden (hidepid).
 std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
-  // The second field is the program's name in brackets and may contain any character.
+  // The second field is the program's name in parentheses and may contain any character.
   const auto end_of_name = line.rfind(')');
   if (end_of_name == std::string::npos) return std::nullopt;
   std::istringstream rest(line.substr(end_of_name + 1));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Leases: which program computes a run now, so that several programs can share one store.
+// A lease says which program computes a run now, so that several programs can share one store.
 //
-// Leases are not part of the record: the log alone decides which events count, and losing the table
-// loses nothing.
+// Leases are not part of the log. The log alone decides which events are valid, so nothing that was
+// recorded is lost with the table of leases.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace shearcell {
 
-/// Identifies one process, even after another process got its process id.
+/// Identifies one process, even if another process gets the same process id later.
 struct Holder {
-  std::string host;           ///< name, for messages
+  std::string host;           ///< name of the machine, for messages
   std::string place;          ///< boot id and process-id namespace; "" when unknown
   std::uint64_t pid = 0;      ///< process id
   std::uint64_t started = 0;  ///< start time of the process [clock ticks since boot]
-  std::string token;          ///< random, one for each open store
+  std::string token;          ///< random; different for each Store object
 };
 
 struct Lease {
@@ -31,27 +31,29 @@ struct Lease {
   std::uint64_t expires_at_ms = 0;
 };
 
-/// This process, with a new token.
+/// Describes this process, with a new token.
 Holder this_process();
 
-/// The longest lease. A later end comes from a wrong clock or a forged row and is ignored.
+/// The longest duration of a lease. An expiry time further in the future comes from a wrong clock
+/// or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
-/// Whether any program may take the lease. The lease lapses when it has expired, when it is older
-/// than kLongestLeaseMs, when its holder is dead (checked only for processes of the same boot and
-/// namespace), or when its time of renewal is in the future because the clock was set back.
+/// Whether any program may take over the lease. A lease lapses when it expires, when
+/// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (checked
+/// only for the same boot and namespace). It also lapses when the clock was set back to a time
+/// before the renewal.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".
 std::string describe(const Holder& holder);
 
-/// Creates the table. Stores of schema 1 have no table and no leases.
+/// Creates the table of leases. Stores of schema 1 have no such table and no leases.
 void create_leases(sqlite::Database& database);
-/// The leases of one run, or of all (""), also lapsed ones.
+/// The leases of one run, or of all runs (""), including those that have lapsed.
 std::vector<Lease> query_leases(const sqlite::Database& database, std::string_view run = "");
-/// Writes the lease in place of the lease of any other holder.
+/// Stores the lease and replaces any other lease of the run.
 void put_lease(sqlite::Database& database, const Lease& lease);
-/// Deletes the lease if it still has this token.
+/// Deletes the lease of the run if the lease has this token.
 void drop_lease(sqlite::Database& database, std::string_view run, std::string_view token);
 
 }  // namespace shearcell

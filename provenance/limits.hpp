@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The limits of a store's content, which is untrusted.
+// Upper limits for the content of a store, its checkpoints, and the files that are made from them.
+// The content of a store is untrusted input.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +8,14 @@
 
 namespace shearcell {
 
-/// Limits of a store, its checkpoints, and the files made from them.
 struct StoreLimits {
-  static constexpr std::uint64_t grains = 100'000'000;  ///< of a checkpoint, and of its walls
-  static constexpr std::size_t observables = 1'000;     ///< of a checkpoint
-  static constexpr std::uint64_t cycles = 1'000'000;    ///< of a run, and between checkpoints
-  static constexpr std::size_t text = 4'096;            ///< [bytes] a run's id, a name
-  static constexpr std::size_t value_bytes = 64 << 20;  ///< one value of the database: a payload
-  static constexpr std::size_t json_depth = 64;         ///< of a payload or a kept measure
-  static constexpr std::uint64_t published_bytes = 1 << 30;  ///< a file given to `show`
+  static constexpr std::uint64_t grains = 100'000'000;  ///< grains or wall grains of a checkpoint
+  static constexpr std::size_t observables = 1'000;     ///< observables of a checkpoint
+  static constexpr std::uint64_t cycles = 1'000'000;    ///< length of a run or checkpoint interval
+  static constexpr std::size_t text = 4'096;            ///< length of a run id or a name [bytes]
+  static constexpr std::size_t value_bytes = 64 << 20;  ///< size of one value in the database
+  static constexpr std::size_t json_depth = 64;  ///< nesting of a payload or a stored measure
+  static constexpr std::uint64_t published_bytes = 1 << 30;  ///< size of a file given to `show`
 };
 
 }  // namespace shearcell

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Gathers the attempts of one run from its events. Other events change nothing.
+/// Collects the attempts of one run from its events. Other events are ignored.
 class LineageBuilder {
  public:
   LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
@@ -36,8 +36,8 @@ class LineageBuilder {
     const auto known = std::ranges::find(lineage_.checkpoints, sha256, &CheckpointHistory::sha256);
     if (!is_sha256_hex(sha256) || known == lineage_.checkpoints.end()) {
       throw StoreDamaged(
-          fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256, or not in the "
-                      "tables; run `verify`",
+          fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256, or the tables "
+                      "do not have it; run `verify`",
                       event_.seq, event_.type, event_.stream, sha256));
     }
     known->recorded_at = event_.recorded_at;
@@ -57,7 +57,7 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (host.is_object()) attempt.host = host;
-    // The only change of bits before the version was recorded came with layout 2 of these events.
+    // Early events have no bits_version. Their layout 1 means version 1, and layout 2 version 2.
     attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;
@@ -76,7 +76,7 @@ class LineageBuilder {
   const Event& event_;
 };
 
-/// The newest checkpoint of the attempts before event `seq`; "" without any.
+/// The newest checkpoint of the attempts that began before event `seq`; "" if there is none.
 std::string newest_before(const RunLineage& run, std::uint64_t seq) {
   const CheckpointHistory* newest = nullptr;
   for (const CheckpointHistory& c : run.checkpoints) {
@@ -112,7 +112,7 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
 
 std::vector<Stage> chain_of(const Store& store, const std::string& id) {
   std::vector<Stage> chain = {store.stage(id)};
-  std::set<std::string> seen = {id};  // a forged record may name itself
+  std::set<std::string> seen = {id};  // a forged record may name itself as parent
   while (!chain.front().parent.empty() && seen.insert(chain.front().parent).second) {
     chain.insert(chain.begin(), store.stage(chain.front().parent));
   }
@@ -131,11 +131,11 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
       std::visit(LineageBuilder(stage, event), events::decode(event));
     }
     std::erase_if(stage.checkpoints, [](const CheckpointHistory& c) {
-      return c.recorded_at.empty() && !c.attempt;  // of a forged table
+      return c.recorded_at.empty() && !c.attempt;  // only in a forged table
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // Early events lack it: the attempt began from the newest state of the stage before it.
+      // Early events do not name their initial state. It is the newest checkpoint of the parent.
       attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
       if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }
@@ -174,11 +174,11 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
     auto found = std::get<events::ManifestRegistered>(events::decode(event));
     if (sha256_hex(found.text) != sha256) {
       throw StoreDamaged(fmt::format(
-          "event {} (ManifestRegistered): its text has another SHA-256 than the manifest; run "
+          "event {} (ManifestRegistered): its text has another SHA-256 than its stream says; run "
           "`verify`",
           event.seq));
     }
-    found.sha256 = sha256;  // a forged payload may state any other
+    found.sha256 = sha256;  // a forged payload may state another SHA-256
     return ManifestText{std::move(found), event.recorded_at};
   }
   return std::nullopt;

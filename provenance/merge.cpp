@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Merges the events and checkpoints of other stores into one.
+// Merges the events and checkpoints of other stores into one store.
 //
-// The result is the union: events that the store already has (equal stream, type, layout, time and
-// payload) and checkpoints that it already has are skipped, and so are attempts that recorded
-// nothing else. Copied events keep time and payload and get a new place in the chain. The furthest
-// state of a run wins: a later step first, then completed before failed, interrupted, running,
-// declared. Merging the same store again changes nothing.
+// The result is the union of the stores. Skipped are events that the store already has (equal
+// stream, type, layout, time and payload), checkpoints that it already has, and attempts that
+// recorded nothing else. Copied events keep their time and payload; seq, version and hashes are
+// new. Of two states of a run, the state at the later step is kept; at equal steps the order is
+// completed, failed, interrupted, running, declared. Merging the same store again changes nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,8 +29,7 @@ using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-/// A snapshot of a store to merge from, whose chain and events were checked. The store itself is
-/// not changed.
+/// A snapshot of a store to merge from, whose chain and events were checked.
 struct Source {
   std::filesystem::path folder;
   Head head;
@@ -39,7 +38,7 @@ struct Source {
   ObjectStore objects;
 };
 
-/// Equal for the same event in different logs.
+/// A hash that is equal for copies of one event in different logs.
 std::string content_key(const Event& event) {
   return Sha256()
       .add_fields(event.stream, event.type, event.schema, event.recorded_at, event.payload)
@@ -68,8 +67,8 @@ void require_equal_states(const Database& a, const std::string& a_name, const Da
     };
     if (std::ranges::any_of(states, is_known)) continue;
     throw StoreDamaged(fmt::format(
-        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong: "
-        "run `shearcell verify --replay` in each. Nothing was merged",
+        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong. "
+        "Run `shearcell verify --replay` in each store. Nothing was merged",
         step.first, step.second, a_name, *same_step->second.begin(), b_name, *states.begin()));
   }
 }
@@ -79,15 +78,15 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   for (const Stage& stage : query_stages(b)) {
     const auto same = query_stage(a, stage.id);
     if (!same || same_computation(*same, stage)) continue;
-    throw StoreDamaged(fmt::format(
-        "run {}: {} and {} have different parameters for it; one of them was changed by "
-        "hand. Nothing was merged",
-        stage.id, a_name, b_name));
+    throw StoreDamaged(
+        fmt::format("run {}: {} and {} have different parameters for this run; one store was "
+                    "changed by hand. Nothing was merged",
+                    stage.id, a_name, b_name));
   }
 }
 
-/// Whether the store lacks the checkpoint or its file is damaged there. The same state in
-/// other bytes (written by another HDF5 library) is not news.
+/// Whether `into` lacks the checkpoint, or has a damaged file for it that `record` can replace. The
+/// same state in other bytes (written by another HDF5 library) is not news.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
@@ -101,7 +100,7 @@ bool is_news(const Database& into, const CheckpointRecord& record) {
   return !damaged_here || record.state == CheckpointState::recorded;
 }
 
-/// Checkpoints of the source whose files must be copied.
+/// The checkpoints of the source whose files must be copied.
 std::vector<CheckpointRecord> needed_objects(const Database& into, const Source& source) {
   auto needed = query_all_checkpoints(source.tables);
   std::erase_if(needed, [&](const CheckpointRecord& record) {
@@ -124,15 +123,15 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 
 using Stream = std::vector<const Event*>;  // in the order of the log
 
-/// Every attempt is copied when the store does not have the run. Else an attempt is copied when it
-/// recorded a checkpoint that is news, or when it ended the run in a further state than the
-/// store's.
+/// Decides which events of one run are copied. If the store does not have the run, every attempt is
+/// copied. Otherwise an attempt is copied if it recorded a checkpoint that is news. The last
+/// attempt is also copied if the run is further in the source than in the store.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
-  std::optional<Event> last_claim;   ///< the event that set its state
-  std::set<std::string> known;       ///< checkpoints that are not news
-  std::set<std::uint64_t> attempts;  ///< seq, in the source, of the events of attempts to copy
-  bool source_wins = false;          ///< the source's state is the further one
+  std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
+  std::set<std::string> known;       ///< SHA-256 of checkpoints that are not news
+  std::set<std::uint64_t> attempts;  ///< seq in the source of all events of the copied attempts
+  bool source_wins = false;          ///< the run is further in the source than in the store
 
   bool wants(const Database& into, const Event& event) const {
     if (event.type == events::RunDeclared::kType) {
@@ -143,25 +142,25 @@ struct RunMerge {
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);
     }
-    // A checkpoint was rejected, pruned or regenerated; or something else happened to the run.
+    // The event is about a rejected, pruned or regenerated checkpoint, or about something else.
     if (!event.type.starts_with("Checkpoint")) return true;
     const nlohmann::json sha256 = member_of(event.body(), "sha256");
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
   }
 
-  /// A copy of `last_claim` if the copied events changed the state of the run. Appending the copy
-  /// gives the run the state again that it had in this store.
+  /// Returns `last_claim` if the copied events changed the state of the run. Appending this event
+  /// again restores the state that the run had in this store.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    const bool more_to_do =
-        before->state == StageState::completed && now == StageState::declared;  // a longer target
+    // A larger target has made the completed run `declared`. This state is kept.
+    const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
   }
 };
 
-/// The events (by seq) of the attempts to copy.
+/// The seq of all events of the attempts to copy.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;
@@ -222,7 +221,7 @@ bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// If `runs` is not empty, only these runs and the texts.
+/// Reads and checks a source. If `runs` is not empty, reads only these runs and the texts.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -255,7 +254,7 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   return source;
 }
 
-/// Throws StoreDamaged, naming both stores, when two of them hold different states of the same run
+/// Throws StoreDamaged, which names both stores, when two stores hold different states of one run
 /// at the same step, or different runs under one id.
 void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
@@ -272,12 +271,12 @@ void require_agreement(const Database& into, const std::string& name,
 void require_idle(const Store& into) {
   for (const Lease& lease : into.leases()) {
     throw MachineError(
-        fmt::format("{}: a program computes run {:.12} ({}); merge when it has ended",
+        fmt::format("{}: a program computes run {:.12} ({}); merge when that program has ended",
                     into.folder().string(), lease.run, describe(lease.holder)));
   }
 }
 
-/// Appends the events that the store lacks, then StoreMerged, and applies them.
+/// Appends and applies the events that the store lacks, then appends StoreMerged.
 void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction& lock,
                   const Source& source, MergeReport& report) {
   std::set<std::string> known;
@@ -290,7 +289,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // texts that are known
+  std::erase_if(streams, [&log](const auto& entry) {  // texts that the store already has
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
@@ -306,8 +305,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
-  // A copied figure follows the store's own figure in the log. The figure that was made later stays
-  // the newest.
+  // The last event of a figure counts. If the store's own figure is newer than the copied one, the
+  // event of the own figure is appended again.
   for (const FigureRecord& copied : query_figures(into)) {
     const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
     if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;
@@ -360,8 +359,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // Events that both stores have were skipped, and so a rejection by this store may still
-        // count.
+        // The last event about a checkpoint may still be its rejection, but now its file is valid.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;
@@ -371,7 +369,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         reports.push_back(std::move(report));
       }
     } catch (const FilePruned&) {
-      // A program pruned a checkpoint of a source after the source was read: it is read again.
+      // A program pruned a checkpoint of a source after the source was read. The loop starts again.
     }
   }
   return reports;

@@ -21,8 +21,8 @@ namespace {
 
 constexpr const char* kFolder = "objects";
 
-/// Opens a folder below another one; with `create`, makes it if it is missing. Links are refused,
-/// so nothing outside the store is read or written.
+/// Opens the subfolder `name` of `parent`. With `create`, makes it if it is missing. Links are
+/// refused, so nothing outside the store is read or written.
 Descriptor open_folder(const Descriptor& parent, const std::string& name,
                        const std::filesystem::path& path, bool create) {
   if (create) {
@@ -45,7 +45,7 @@ Descriptor open_folder(const Descriptor& parent, const std::string& name,
   return Descriptor(number);
 }
 
-/// The folder of one object; not valid() when it does not exist.
+/// Opens the folder of one object. The result is not valid() when the folder does not exist.
 Descriptor open_object_folder(const std::filesystem::path& store, std::string_view sha256,
                               bool create) {
   Descriptor root(open(store.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -70,10 +70,10 @@ std::string ObjectStore::put(std::span<const std::byte> bytes) {
   const Descriptor folder = open_object_folder(folder_, sha256, true);
   try {
     get(sha256, bytes.size());
-    sync(folder, path);  // its writer may have been killed before this step
+    sync(folder, path);  // the program that wrote it may have been killed before its sync
     return sha256;
   } catch (const StoreDamaged&) {
-    // Missing or damaged: written below.
+    // The object is missing or damaged, so it is written below.
   }
   replace_file(folder, path, bytes, ".tmp-", Durability::synced);
   return sha256;
@@ -89,7 +89,7 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   const std::filesystem::path path = folder_ / file_of(sha256);
   const Descriptor folder = open_object_folder(folder_, sha256, false);
   if (!folder.valid()) throw damaged("the file is missing");
-  // O_NONBLOCK: opening a pipe must not wait for a writer.
+  // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
   const Descriptor file(openat(folder.get(), path.filename().c_str(),
                                O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!file.valid()) {
@@ -109,7 +109,7 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   }
   std::vector<std::byte> bytes = read_all(file, size, path);
   if (sha256_hex(bytes) != sha256) {
-    throw damaged("its SHA-256 is not the recorded one: its content was changed");
+    throw damaged("its content was changed: its SHA-256 is not the recorded one");
   }
   return bytes;
 }

@@ -14,31 +14,31 @@
 namespace shearcell {
 
 /// The objects of one store folder. Several threads and processes may use it at the same time: an
-/// object appears under its name complete or not at all. Links inside the store are not followed.
+/// object appears under its name only when it is complete. Links in the store are not followed.
 class ObjectStore {
  public:
   /// The folder must exist; the first put creates `objects` in it.
   explicit ObjectStore(std::filesystem::path store_folder);
 
-  /// Writes the bytes and returns their SHA-256; the object is then on the disk. An existing object
-  /// is kept if it is valid, else replaced. Throws std::system_error, and StoreDamaged when
-  /// `objects` or a folder in it is not a folder.
+  /// Writes the bytes to disk (with fsync) and returns their SHA-256. Keeps an existing object if
+  /// it is valid, otherwise replaces it. Throws std::system_error, and StoreDamaged when `objects`
+  /// or a folder in it is a file or a link.
   std::string put(std::span<const std::byte> bytes);
 
-  /// Throws StoreDamaged, which names the file, unless it has this size and hash.
+  /// Reads an object. Throws StoreDamaged, which names the file, unless it has this size and hash.
   std::vector<std::byte> get(std::string_view sha256, std::uint64_t size) const;
 
-  /// Whether a file of this name exists; its content is not checked.
+  /// Whether the file of the object exists; its content is not checked.
   bool contains(std::string_view sha256) const;
 
-  /// Deletes the file; false when it did not exist. Throws std::system_error.
+  /// Deletes the file of an object. Returns false when there was no file. Throws std::system_error.
   bool remove(std::string_view sha256);
 
-  /// Files below `objects` that are not in `known` (SHA-256 digests), including temporary files of
-  /// interrupted writes; relative to the store's folder, sorted.
+  /// Files in `objects` that do not belong to the digests in `known`, including temporary files of
+  /// interrupted writes. The paths are relative to the store folder and sorted.
   std::vector<std::string> strangers(const std::set<std::string>& known) const;
 
-  /// The path of an object, relative to the store's folder.
+  /// The path of an object's file, relative to the store folder.
   static std::string file_of(std::string_view sha256);
 
  private:

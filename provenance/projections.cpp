@@ -19,8 +19,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// `registered` is the seq of the last registration. `newest` has the manifest that was registered
-// last among the manifests that declared a run of the experiment at the scale.
+// `registered` is the seq of the last registration. For each experiment and scale, `newest` holds
+// the manifest that was registered last among those that declared a run.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -90,8 +90,8 @@ CREATE TABLE newest(
 ) STRICT;
 )sql";
 
-/// Throws StoreDamaged when a run is to be longer, or its checkpoints further apart, than any run
-/// of this program. Step counts could overflow.
+/// Throws StoreDamaged when the target or the checkpoint interval of a run is outside the limits.
+/// Larger values could make step counts overflow.
 void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every) {
   const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
     if (value >= low && value <= StoreLimits::cycles) return;
@@ -104,7 +104,7 @@ void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every)
   require("checkpoint_every", checkpoint_every, 1);
 }
 
-/// Applies the events of one stream to the tables.
+/// Applies one event to the tables.
 class Projector {
  public:
   Projector(Database& database, const Event& event)
@@ -120,7 +120,7 @@ class Projector {
                       event_.seq, event_.type, event_.stream));
     }
     require_cycles(ask.target_cycles, ask.checkpoint_every);
-    // A completed run may also have ended early, as other experiments asked for.
+    // A completed run may have ended before its target (`until`), so its cycles are compared too.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
@@ -140,7 +140,7 @@ class Projector {
     if (d.kind != "prepare") show_newest(place.experiment, place.scale, place.manifest);
   }
 
-  /// Of a text that was registered again, the later time.
+  /// Keeps the later time if the text was registered before.
   void register_manifest() const {
     run("INSERT INTO manifests VALUES(?,?,?) ON CONFLICT DO UPDATE SET "
         "registered_at = excluded.registered_at, registered = excluded.registered "
@@ -163,8 +163,8 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // Work is left if the target was raised while the run was computed, or if the run ended early
-    // (`until`) without considering all its experiments.
+    // The run is not complete if its target was raised during the computation, or if it ended early
+    // (`until`) and an experiment was added during the computation.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",
@@ -185,7 +185,7 @@ class Projector {
   }
 
   void operator()(const events::CheckpointRejected& e) const {
-    // A completed run that loses its last state has work left.
+    // A completed run whose last checkpoint is rejected must be continued.
     run("UPDATE runs SET state = 'declared' WHERE id = ?1 AND state = 'completed' AND "
         "step = (SELECT step FROM checkpoints WHERE run = ?1 AND sha256 = ?2)",
         id_, e.sha256);
@@ -207,7 +207,7 @@ class Projector {
         id_, event_.seq, event_.recorded_at, event_.body().dump());
   }
 
-  void operator()(const auto&) const {}  // changes no table
+  void operator()(const auto&) const {}  // other events change no table
 
  private:
   template <class... Values>
@@ -219,7 +219,7 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Makes the manifest the newest at the scale, unless another one was registered later.
+  /// Makes `manifest` the newest at the scale, unless the present one was registered later.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
@@ -237,8 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Moves the run to its furthest recorded checkpoint, unless it is further than `sha256`: if
-  /// files of last checkpoints were pruned, the run stays as far as it was.
+  /// Moves the run to its furthest recorded checkpoint. Does nothing if the run is beyond `sha256`,
+  /// so pruning its last checkpoints does not move a run back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
@@ -266,7 +266,7 @@ std::vector<double> numbers(const Database& database, const std::string& text) {
   try {
     return parse(database, text).get<std::vector<double>>();
   } catch (const json::exception&) {
-    throw damaged_table(database, "holds no list of numbers");
+    throw damaged_table(database, "has a value that is not a list of numbers");
   }
 }
 
@@ -297,7 +297,7 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
   });
 }
 
-/// `rest` follows FROM.
+/// `rest` is the part of the query after the name of the table.
 template <class... Values>
 std::vector<Stage> select_runs(const Database& database, const std::string& rest,
                                const Values&... values) {
@@ -310,7 +310,7 @@ std::vector<Stage> select_runs(const Database& database, const std::string& rest
             stage.target_cycles, stage.attempts, stage.cycle, stage.step, stage.state_hash,
             stage.wall_seconds, stage.particle_steps, stage.error, stage.updated_at, ends);
     stage.ends = parse(database, ends);
-    if (!stage.ends.is_array()) throw damaged_table(database, "holds no list of ends");
+    if (!stage.ends.is_array()) throw damaged_table(database, "has `ends` that are not a list");
     stage.resolved = parse(database, resolved);
     require_cycles(stage.target_cycles, 1);
     stage.state = state_of<StageState>(database, state);
@@ -337,7 +337,7 @@ std::vector<CheckpointRecord> select_checkpoints(const Database& database, const
   });
 }
 
-/// The record of a query that finds one at most.
+/// The result of a query that finds at most one record.
 template <class Record>
 std::optional<Record> only(std::vector<Record> found) {
   if (found.empty()) return std::nullopt;

@@ -16,58 +16,57 @@
 
 namespace shearcell {
 
-/// Schemas 1 and 2 lack the last two tables, and columns of the first two.
+/// Schemas 1 and 2 lack `manifests` and `newest`, and some columns of `runs` and `memberships`.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
 /// Creates the empty tables.
 void create_projections(sqlite::Database& database);
-/// Empty tables in memory, for the events of a log that may be damaged or forged; errors call the
-/// database `name`.
+/// Creates empty tables in memory, for the events of a log that may be damaged or forged. Error
+/// messages call the database `name`.
 sqlite::Database empty_projections(const std::string& name);
 
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
-/// nothing. Throws StoreDamaged when the payload lacks what its type requires.
+/// nothing. Throws StoreDamaged when a required member of the payload is missing.
 void apply(sqlite::Database& database, const Event& event);
 /// Applies the event, then checks its time and the SHA-256 of a registered manifest or file of
-/// grains. Returns what is wrong, or "".
+/// grains. Returns a description of what is wrong, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.
 void derive_projections(sqlite::Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& lock);
-/// Derives the tables in memory, in place of the tables of an older schema, for a connection that
-/// only reads. Events that cannot be applied are left out; `verify` names them.
+/// Derives the tables in memory for a connection that only reads; they hide the stored tables of an
+/// older schema. Events that cannot be applied are skipped; `verify` names them.
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
 /// The rows of a table in ascending order, each cell as an SQL literal.
 using TableRows = std::vector<std::vector<std::string>>;
 
-/// Every row of every table, to compare two derivations.
+/// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);
 
-// Queries. All throw StoreDamaged when a table holds a value that no event can give.
+// All queries throw StoreDamaged when a table holds a value that no event can give.
 
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether the ask is of a new place of the stage, raises its target there or has another cadence.
-/// `known`: the stage in the store, if it is there.
+/// Whether `wanted` is a new place of the stage, or has a larger target or another checkpoint
+/// interval there. `known` is the stage in the store, if it is stored.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether no other run was declared later in this place, which several packings may share.
+/// Whether `run` was declared last in this place. Runs from different packings can share a place.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
-/// The stages whose ids have this prefix, in the order of their declaration.
+/// The stages whose ids begin with `prefix`, in the order in which they were declared.
 std::vector<Stage> query_stages(const sqlite::Database& database, std::string_view prefix = "");
 std::optional<Stage> query_stage(const sqlite::Database& database, std::string_view id);
-/// The checkpoints of all runs whose SHA-256 has this prefix, in ascending order of step.
+/// All checkpoints whose SHA-256 begins with `prefix`, in ascending order of step.
 std::vector<CheckpointRecord> query_all_checkpoints(const sqlite::Database& database,
                                                     std::string_view prefix = "");
-/// In ascending order of step.
+/// The checkpoints of one run, in ascending order of step.
 std::vector<CheckpointRecord> query_checkpoints(const sqlite::Database& database,
                                                 std::string_view run);
-/// Whether the checkpoint is pruned, maybe by another program since the record was read. False if
-/// the tables cannot be read.
+/// Whether the checkpoint is now recorded as pruned. False if the tables cannot be read.
 bool is_pruned_now(const sqlite::Database& database, const CheckpointRecord& record);
 std::optional<CheckpointRecord> query_checkpoint(const sqlite::Database& database,
                                                  std::string_view run, std::string_view sha256);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain values that the store takes and returns.
+// Plain structs that the functions of the store accept and return.
 #pragma once
 
 #include <cstdint>
@@ -28,18 +28,17 @@ struct Place {
 /// What an experiment asks of a stage.
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
-  std::uint64_t target_cycles = 0;             ///< length
-  nlohmann::json until = nullptr;              ///< measure that may end the stage earlier
-  std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle, for more checkpoints
-  std::uint64_t ordinal = 0;                   ///< the event that put the stage in its place
+  std::uint64_t target_cycles = 0;             ///< number of cycles to compute
+  nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
+  std::vector<double> checkpoint_phases = {};  ///< more checkpoints at these fractions of a cycle
+  std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
 };
 
-/// A stage's place in an experiment, and what the experiment asks of the stage.
+/// The place of a stage in an experiment, and what the experiment asks of the stage.
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// Whether the manifest is the last registered version among those that declared a stage at the
-  /// scale.
+  /// Whether no manifest that was registered later declares a stage of the experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -47,7 +46,7 @@ struct Membership {
     field("experiment", place.experiment), field("scale", place.scale);
     field("variant", place.variant), field("labels", place.swept), field("seed", place.seed);
     field("manifest", place.manifest), field("checkpoint_every", ask.checkpoint_every);
-    // Recorded only if they are stated.
+    // Written only if the manifest states them.
     field("until", ask.until, true), field("checkpoint_phases", ask.checkpoint_phases, true);
   }
 };
@@ -58,15 +57,15 @@ inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
   return asks;
 }
 
-/// The name to show, also as JSON: "base" if the manifest has no scales. Events hold "".
+/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events hold "".
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
 
-/// Which checkpoints are listed: recorded ones; recorded and pruned ones; all, with rejected ones.
+/// The checkpoints to list: only recorded, recorded and pruned, or all (also rejected).
 enum class Listed { recorded, and_pruned, all };
 
-/// Ascending in the order in which a merge prefers a stage over its copy with as many steps.
+/// If two stores hold a stage at the same step, a merge keeps the state that is later in this list.
 enum class StageState { declared, running, interrupted, failed, completed };
 
 template <>
@@ -74,7 +73,7 @@ inline constexpr auto kNames<StageState> = names_in_order<StageState>("declared"
                                                                       "interrupted", "failed",
                                                                       "completed");
 
-/// Whether the stage is completed or failed: nothing more is computed unless it is asked for again.
+/// Whether the stage is completed or failed. Nothing more is computed unless a user asks for it.
 inline bool has_ended(StageState state) {
   return state == StageState::completed || state == StageState::failed;
 }
@@ -82,35 +81,36 @@ inline bool has_ended(StageState state) {
 /// A stage as a manifest states it or as its events describe it.
 struct Stage {
   std::string id;                                      ///< 64 hex digits
-  std::string parent;                                  ///< "" when there is none
+  std::string parent;                                  ///< id of the stage before it; "" if none
   std::string kind;                                    ///< "prepare", "shear", ...
-  nlohmann::json resolved = nlohmann::json::object();  ///< the record whose hash is the id
-  /// `declared`: not started, or completed and then given a longer target. `running`: started and
-  /// not ended; after a kill this remains until the run is resumed.
+  nlohmann::json resolved = nlohmann::json::object();  ///< parameters; the id is their hash
+  /// `declared`: not started, or completed and then given a larger target. `running`: started and
+  /// not ended; after a kill the stage stays `running` until it is resumed.
   StageState state = StageState::declared;
   std::uint64_t grains = 0;
   std::uint64_t target_cycles = 0;                ///< the largest declared target
   std::uint64_t attempts = 0;                     ///< number of starts and resumes
-  double cycle = 0;                               ///< of the furthest checkpoint with a file
-  std::uint64_t step = 0;                         ///< of that checkpoint
-  std::string state_hash;                         ///< of that checkpoint; "" before the first
-  double wall_seconds = 0;                        ///< sum over recorded efforts
-  double particle_steps = 0;                      ///< sum over recorded efforts
-  nlohmann::json ends = nlohmann::json::array();  ///< why each completion ended the run
+  double cycle = 0;                               ///< cycle of the furthest checkpoint
+  std::uint64_t step = 0;                         ///< step of the furthest checkpoint
+  std::string state_hash;                         ///< of the furthest checkpoint, or ""
+  double wall_seconds = 0;                        ///< sum over all checkpoints
+  double particle_steps = 0;                      ///< sum over all checkpoints
+  nlohmann::json ends = nlohmann::json::array();  ///< why it ended, one entry per completion
   std::string error;                    ///< why it failed or was interrupted; "" otherwise
   std::string updated_at;               ///< time of its last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// What a user counts, lists and averages: a stage in one of its places. A stage of two experiments
-/// is a run of each.
+/// A run is what a user counts, lists and averages: a place and its last stage. A stage that two
+/// experiments share belongs to two runs.
 struct Run {
   Place place = {};
   Ask ask = {};
-  Stage stage = {};       ///< the last one: shear or stiffening
-  std::string name = {};  ///< of its variant, for people
-  bool named = false;     ///< by a label of the manifest
-  /// Of the newest version of its manifest, which did not later put another run in its place.
+  Stage stage = {};       ///< the last stage: shear or stiffening
+  std::string name = {};  ///< name of the variant, for display
+  bool named = false;     ///< whether the name is a label of the manifest
+  /// Whether the run belongs to the newest version of the manifest and no later declaration put
+  /// another run in its place.
   bool newest = true;
 };
 
@@ -120,23 +120,24 @@ bool same_computation(const auto& a, const auto& b) {
          a.grains == b.grains;
 }
 
-/// Selects checkpoints to prune; all conditions must hold.
+/// Selects checkpoints to prune. A checkpoint must meet all conditions.
 struct PruneChoice {
-  std::vector<std::string> runs;  ///< ids; empty for all
+  std::vector<std::string> runs;  ///< run ids; empty for all runs
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
-  /// Also the files from which runs would continue and stages started, of completed stages.
+  /// Whether to prune, in completed stages, also the checkpoints from which the run would continue
+  /// or from which other stages started.
   bool last_too = false;
 };
 
-/// Work spent since the previous record of the same attempt.
+/// Work that an attempt spent since its previous record.
 struct Effort {
   double wall_seconds = 0;
   double particle_steps = 0;  ///< grains times time steps
-  /// Processor time of the steps; none where it is not known, as in records of earlier versions.
+  /// Processor time of the steps; nothing if unknown, for example in events of earlier versions.
   std::optional<double> core_seconds = {};
 };
 
-/// `rejected`: its file is damaged. `pruned`: its file was deleted to free space; the record stays.
+/// `rejected`: the file is damaged. `pruned`: the file was deleted to free space.
 enum class CheckpointState { recorded, rejected, pruned };
 template <>
 inline constexpr auto kNames<CheckpointState> = names_in_order<CheckpointState>("recorded",
@@ -154,12 +155,12 @@ struct CheckpointRecord {
   std::string state_hash;
   std::map<std::string, double> observables;
   CheckpointState state = CheckpointState::recorded;
-  std::uint64_t seq = 0;  ///< the event that recorded it
+  std::uint64_t seq = 0;  ///< of the event that recorded it
 };
 
 struct FigureRecord {
   std::string name;           ///< "drag/desk/S2"
-  std::uint64_t seq = 0;      ///< the event that recorded it
+  std::uint64_t seq = 0;      ///< of the event that recorded it
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs
 };

@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr const char* kCrateSpecification = "https://w3id.org/ro/crate/1.1";
 constexpr const char* kProfile = "https://w3id.org/ro/wfrun/process/0.5";
 
-/// Identifier of the crate of a run; it marks the folder of an earlier export.
+/// Identifier of the crate of a run. An earlier export is recognized by this identifier.
 std::string crate_identifier(const std::string& run) {
   return "urn:x-shearcell:run:" + run;
 }
@@ -34,10 +34,10 @@ json reference(const std::string& id) {
   return {{"@id", id}};
 }
 
-/// The entities of the crate, each id once.
+/// The entities of the crate; each id occurs once.
 class Graph {
  public:
-  /// Returns a reference to the entity.
+  /// Adds the entity unless its id is known, and returns a reference to it.
   json add(json entity) {
     const std::string id = entity.at("@id").get<std::string>();
     if (known_.insert(id).second) entities_.push_back(std::move(entity));
@@ -57,14 +57,14 @@ json file_entity(const std::string& path, const std::string& name, const std::st
           {"@type", "File"},
           {"name", name},
           {"encodingFormat", format},
-          {"contentSize", std::to_string(size)},  // RO-Crate asks for text, in bytes
+          {"contentSize", std::to_string(size)},  // [bytes]; RO-Crate requires text
           {"sha256", sha256},
           {"dateCreated", made},
           {"description", description}};
 }
 
 json add_manifest(Graph& graph, const ManifestText& manifest) {
-  // Only the file name: the rest of the path is private.
+  // Only the file name is written, because the rest of the path is private.
   const std::string name = fs::path(manifest.path).filename().string();
   return graph.add(file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
                                "application/yaml", manifest.text.size(), manifest.sha256,
@@ -91,7 +91,7 @@ json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   return graph.add(std::move(entity));
 }
 
-/// The program that computed the attempt.
+/// Adds the program that computed an attempt.
 json add_software(Graph& graph, const Maker& maker) {
   const std::string libraries = fmt::format("{}", fmt::join(maker.libraries, ", "));
   const std::string id = sha256_hex(maker.program + maker.flags + libraries).substr(0, 16);
@@ -114,7 +114,7 @@ json add_host(Graph& graph, const Maker& maker) {
                     {"description", machine}});
 }
 
-/// Seed, resolved parameters and number of cycles of a run.
+/// Adds the seed, the resolved parameters and the number of cycles of a run.
 json add_parameters(Graph& graph, const Stage& stage) {
   json given = json::array();
   const auto add = [&](const std::string& name, const json& value) {
@@ -124,7 +124,7 @@ json add_parameters(Graph& graph, const Stage& stage) {
                                {"value", value.is_primitive() ? value : json(value.dump())}}));
   };
   for (const auto& [key, value] : stage.resolved.items()) {
-    if (key == "parent") continue;  // its checkpoint is an object of its own
+    if (key == "parent") continue;  // the parent's checkpoint is added separately
     if (!value.is_object()) {
       add(key, value);
       continue;
@@ -137,7 +137,7 @@ json add_parameters(Graph& graph, const Stage& stage) {
 
 /// Inputs of the attempts of a run.
 struct Given {
-  std::vector<std::pair<std::string, json>> manifests;  ///< when they were registered
+  std::vector<std::pair<std::string, json>> manifests;  ///< time of registration, reference
   json parameters = json::array();
 };
 
@@ -293,13 +293,13 @@ bool is_crate_of(const fs::path& folder, const std::string& run) {
          });
 }
 
-/// Creates the folder unless it exists; a link is refused.
+/// Creates the folder unless it exists. A file or a link in its place is an error.
 void make_folder(const fs::path& path) {
   const fs::file_status status = fs::symlink_status(path);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(path.string() +
                                 ": this must be a folder, but it is a file or a link; remove "
-                                "it, or name another one");
+                                "it, or name another folder");
   }
   fs::create_directory(path);
 }
@@ -317,7 +317,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
-      // An earlier export wrote what was pruned or rejected since.
+      // An earlier export may have written checkpoints that were pruned or rejected later.
       if (!c.kept()) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
     }
   }
@@ -335,7 +335,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
     written.push_back(crate_path_of_manifest(manifest.sha256));
     write_output(folder / written.back(), manifest.text);
   }
-  // Last, because it describes the other files. Bytes that are not UTF-8 are replaced.
+  // The metadata describe the other files, so they are written last. Invalid UTF-8 is replaced.
   write_output(folder / kCrateMetadata,
                ro_crate_metadata(facts).dump(1, ' ', false, json::error_handler_t::replace) + '\n');
   written.emplace_back(kCrateMetadata);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run with its history as an RO-Crate 1.1 (https://w3id.org/ro/crate/1.1) that follows Process
-// Run Crate 0.5 (https://w3id.org/ro/wfrun/process/0.5).
+// Exports a run with its history as an RO-Crate 1.1 (https://w3id.org/ro/crate/1.1) that follows
+// Process Run Crate 0.5 (https://w3id.org/ro/wfrun/process/0.5).
 #pragma once
 
 #include <filesystem>
@@ -19,10 +19,10 @@ struct CrateFacts {
   std::string licence = {};  ///< URI of the licence of the data, or ""
 };
 
-/// Throws NotFound for an unknown run.
+/// Collects the content of a crate. Throws NotFound for an unknown run.
 CrateFacts crate_facts(const Store& store, const std::string& run);
 
-/// Paths in the crate. They consist of hashes, so recorded text cannot lead out of the folder.
+/// Paths in the crate. They contain only hashes, so a forged record cannot name a file elsewhere.
 std::string crate_path_of_checkpoint(const std::string& sha256);
 std::string crate_path_of_manifest(const std::string& sha256);
 inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
@@ -30,11 +30,11 @@ inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
 /// The content of ro-crate-metadata.json. Equal logs give equal bytes.
 nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 
-/// Writes the metadata, the manifests and every checkpoint that was neither rejected nor
-/// pruned; each checkpoint is verified. `folder` must be missing, empty, or an earlier export of
-/// the same run, which is updated: files of checkpoints that are no longer kept are deleted.
-/// Returns the files, relative to the folder. Throws std::invalid_argument for any other folder and
-/// StoreDamaged for a damaged checkpoint; then a new folder is incomplete.
+/// Writes the metadata, the manifests and every checkpoint that was neither rejected nor pruned.
+/// Each checkpoint is verified. `folder` must be missing, empty, or an earlier export of the same
+/// run, which is updated: files of checkpoints that are no longer kept are deleted. Returns the
+/// files, relative to the folder. Throws std::invalid_argument for any other folder and
+/// StoreDamaged for a damaged checkpoint. After an error a new folder is incomplete.
 std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
                                         const std::filesystem::path& folder);
 

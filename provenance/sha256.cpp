@@ -14,10 +14,10 @@ namespace shearcell {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "native numbers are hashed");
+static_assert(std::endian::native == std::endian::little, "hashes need little-endian numbers");
 
 void require_done(int result) {
-  if (result != 1) throw std::runtime_error("OpenSSL does not compute SHA-256 on this machine");
+  if (result != 1) throw std::runtime_error("OpenSSL cannot compute SHA-256 on this machine");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SHA-256, the only hash of the store. Digests are written as 64 lower-case hex digits.
+// SHA-256, the only hash function of the store. Digests are written as 64 lower-case hex digits.
 #pragma once
 
 #include <bit>
@@ -15,23 +15,23 @@ struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
 
 namespace shearcell {
 
-/// Hashes data given in parts. Throws std::runtime_error when OpenSSL has no SHA-256.
+/// Hashes data that is added in parts. Throws std::runtime_error when OpenSSL has no SHA-256.
 class Sha256 {
  public:
   Sha256();
   Sha256& add(std::span<const std::byte> data);
   Sha256& add(std::string_view text) { return add(std::as_bytes(std::span(text))); }
-  /// Adds fields as netstrings, "<length in bytes>:<text>,", so that neighbouring fields stay
-  /// apart; numbers in decimal.
+  /// Adds each field as a netstring, "<length in bytes>:<text>,", so that different fields cannot
+  /// give the same bytes. Numbers are written in decimal.
   template <class... Fields>
   Sha256& add_fields(const Fields&... fields) {
     (add_field(fields), ...);
     return *this;
   }
-  /// Eight bytes, least significant first; the bits of a double, so -0.0 and 0.0 differ.
+  /// Adds the eight bytes of a number, least significant first. 0.0 and -0.0 have different bytes.
   Sha256& add_u64(std::uint64_t value) { return add(std::as_bytes(std::span(&value, 1))); }
   Sha256& add_f64(double value) { return add_u64(std::bit_cast<std::uint64_t>(value)); }
-  /// The digest of everything added. The object cannot be used afterwards.
+  /// The digest of all added data. The object cannot be used afterwards.
   std::string hex();
 
  private:
@@ -44,7 +44,7 @@ class Sha256 {
 std::string sha256_hex(std::span<const std::byte> data);
 std::string sha256_hex(std::string_view text);
 
-/// The hash of a whole file. Throws std::runtime_error when the file cannot be read.
+/// The digest of a whole file. Throws std::runtime_error when the file cannot be read.
 std::string sha256_hex_of_file(const std::filesystem::path& file);
 
 /// Whether the text is 64 lower-case hex digits.

@@ -22,7 +22,7 @@ namespace shearcell::sqlite {
 namespace {
 
 constexpr int kBusyTimeoutMs = 30'000;
-// SQLite's 512 less the longest suffix, "-journal".
+// SQLite's limit of 512 bytes minus the longest suffix, "-journal".
 constexpr std::size_t kLongestName = 504;
 constexpr const char* kInMemory = ":memory:";
 
@@ -33,14 +33,15 @@ void require_plain_files(const std::string& name) {
     if (lstat(file.c_str(), &found) != 0) continue;
     if (!S_ISREG(found.st_mode)) {
       throw StoreDamaged(fmt::format(
-          "{}: the database is in regular files, but this is a folder, link or device; remove it "
-          "or name another store folder",
+          "{}: a database file must be a regular file, but this is a folder, link or device; "
+          "remove it or name another store folder",
           file));
     }
     if (found.st_nlink < 2) continue;
     throw StoreDamaged(fmt::format(
-        "{0}: the file has {1} names (hard links), so each use of this store would damage another; "
-        "copy stores with `cp -a`, and separate this one by `cp -p {0} {0}.own && mv {0}.own {0}`",
+        "{0}: the file has {1} names (hard links), so using this store would damage another store; "
+        "copy stores with `cp -a`, and separate this file with `cp -p {0} {0}.own && mv {0}.own "
+        "{0}`",
         file, found.st_nlink));
   }
 }
@@ -48,11 +49,11 @@ void require_plain_files(const std::string& name) {
 }  // namespace
 
 std::string full_name(const std::filesystem::path& file) {
-  // Absolute: "file:x" would be a URI.
+  // The path is made absolute because SQLite reads a relative path "file:x" as a URI.
   std::string name = std::filesystem::absolute(file).string();
   if (name.size() <= kLongestName) return name;
   throw UsageError(
-      fmt::format("{}: the full path has {} bytes, and SQLite opens at most {}; use a shorter one",
+      fmt::format("{}: the full path has {} bytes, and SQLite opens at most {}; use a shorter path",
                   file.string(), name.size(), kLongestName));
 }
 
@@ -62,7 +63,7 @@ Database::Database(const std::filesystem::path& file, Access access)
     full_name_ = sqlite::full_name(file);
     require_plain_files(full_name_);
   }
-  // With the permissions that the umask gives, for folders that a group shares. SQLite's are 0644.
+  // SQLite creates files with mode 0644. A folder that a group shares needs 0666 minus umask.
   if (access == Access::create && !full_name_.empty()) {
     Descriptor(open(full_name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   }
@@ -79,10 +80,10 @@ Database::Database(const std::filesystem::path& file, Access access)
     inode_ = opened.st_ino;
   }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
-  constexpr std::size_t beside = 64 << 10;  // the other values of a row, whose size is limited too
+  constexpr std::size_t beside = 64 << 10;  // the limit includes the other values of a row
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes + beside));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
-  // A forged schema could hold views and triggers that never end or that open other files.
+  // A forged schema could have views and triggers that run forever or that open other files.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -99,8 +100,8 @@ void Database::require_same_file() const {
   struct stat now {};
   if (stat(full_name_.c_str(), &now) == 0 && now.st_dev == device_ && now.st_ino == inode_) return;
   throw MachineError(
-      fmt::format("{}: it was moved, replaced or deleted while this program used it, so nothing "
-                  "more is written; name its new place with --store and run again",
+      fmt::format("{}: the file was moved, replaced or deleted while this program used it, so "
+                  "nothing more is written; name its new folder with --store and run again",
                   name_));
 }
 
@@ -119,11 +120,10 @@ void Database::require_journal_can_be_played_back(int code) const {
     if (faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK, AT_EACCESS) == 0) continue;
     throw MachineError(fmt::format(
         "{}: a program was writing to this store when it was killed or the disk became read-only. "
-        "Its last write is rolled back from {} by the next program that opens the store, but this "
-        "user cannot write to {} ({}). Nothing that was recorded is lost: copy the whole folder to "
-        "a disk where you can write (`cp -r`, then `chmod -R u+w` on the copy) and use the copy, "
-        "or "
-        "open it once as a user who can write to it",
+        "The next program that opens the store uses {} to undo the unfinished write, but this user "
+        "cannot write to {} ({}). Nothing that was recorded is lost. Copy the whole folder to a "
+        "disk where you can write (`cp -r`, then `chmod -R u+w` on the copy) and use the copy, or "
+        "open the store once as a user who can write to it",
         name_, journal.filename().string(), path.string(), std::generic_category().message(errno)));
   }
 }
@@ -140,7 +140,7 @@ void Database::fail(int code, std::string_view doing) const {
     if (const auto no_memory = std::get_new_handler()) no_memory();
     throw std::bad_alloc();
   }
-  require_same_file();  // SQLite would call it an I/O error
+  require_same_file();  // SQLite reports a moved or deleted file as an I/O error
   require_journal_can_be_played_back(code);
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
   switch (code & 0xff) {
@@ -151,25 +151,26 @@ void Database::fail(int code, std::string_view doing) const {
           name_));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw MachineError(fmt::format(
-          "{}: another process kept the store locked for {} s; run again when it has ended", name_,
-          kBusyTimeoutMs / 1000));
+      throw MachineError(
+          fmt::format("{}: another process kept the store locked for {} s; run again when that "
+                      "process has ended",
+                      name_, kBusyTimeoutMs / 1000));
     case SQLITE_FULL:
       throw MachineError(fmt::format(
-          "{}: the disk is full; free some space and run again: nothing that was recorded is lost",
+          "{}: the disk is full; free some space and run again. Nothing that was recorded is lost",
           name_));
     case SQLITE_TOOBIG:
       throw StoreDamaged(fmt::format(
-          "{}: a value of the database is larger than {} MiB, more than this program writes or "
-          "reads; restore it from a backup",
+          "{}: a value in the database is larger than {} MiB, the most that this program writes "
+          "or reads; restore the database from a backup",
           name_, StoreLimits::value_bytes >> 20));
     case SQLITE_CORRUPT:
     case SQLITE_CONSTRAINT:
-    case SQLITE_ERROR:  // our SQL is fixed: it fails only on tables that are not ours
+    case SQLITE_ERROR:  // our SQL fails only on tables that another program made
     case SQLITE_MISMATCH:
       throw StoreDamaged(
-          fmt::format("{}: the database is damaged ({}); restore it from a backup, or see by "
-                      "`shearcell verify` whether its log is readable",
+          fmt::format("{}: the database is damaged ({}); restore it from a backup, or check "
+                      "with `shearcell verify` whether the log is readable",
                       name_, reason));
     default:
       throw std::runtime_error(fmt::format("{}: cannot {}: {}", name_, doing, reason));
@@ -203,7 +204,7 @@ Database::Prepared Statement::prepared() const {
 Statement::~Statement() {
   constexpr std::size_t kMostIdle = 64;
   if (database_->idle_.size() >= kMostIdle) return;
-  // An unfinished statement holds a lock on the file.
+  // Without a reset, an unfinished statement would keep its lock on the file.
   sqlite3_reset(handle_.get());
   sqlite3_clear_bindings(handle_.get());
   database_->idle_.emplace(std::move(sql_), std::move(handle_));
@@ -216,7 +217,7 @@ void Statement::check(int code) const {
 void Statement::require_fits(std::size_t bytes) const {
   if (bytes <= StoreLimits::value_bytes) return;
   throw UsageError(fmt::format(
-      "{}: a record of {} MiB was not added, since a store holds at most {} MiB in one; choose "
+      "{}: a record of {} MiB was not added, because a record may have at most {} MiB; choose "
       "fewer runs or checkpoints",
       database_->name(), bytes >> 20, StoreLimits::value_bytes >> 20));
 }
@@ -237,7 +238,7 @@ void Statement::bind(int parameter, double value) {
 
 void Statement::bind(int parameter, std::span<const std::byte> blob) {
   require_fits(blob.size());
-  // A null pointer would bind NULL.
+  // SQLite binds NULL for a null pointer.
   check(sqlite3_bind_blob64(handle_.get(), parameter,
                             blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),
                             SQLITE_TRANSIENT));
@@ -280,9 +281,9 @@ std::vector<std::byte> Statement::blob(int column) const {
 std::vector<std::string> Statement::cells() const {
   std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
-    const int type = sqlite3_column_type(handle_.get(), column);  // before text() converts it
+    const int type = sqlite3_column_type(handle_.get(), column);  // text() changes the type
     if (type == SQLITE_FLOAT) {
-      row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal: every bit counts
+      row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal keeps every bit
     } else if (type == SQLITE_INTEGER) {
       row.push_back(text(column));
     } else {
@@ -298,7 +299,7 @@ Transaction::Transaction(Database& database, const std::string& begin, bool nest
 }
 
 Transaction::~Transaction() {
-  // After a failed statement SQLite may have rolled back already; then this does nothing.
+  // After a failed statement SQLite may already have rolled back. ROLLBACK then changes nothing.
   if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 

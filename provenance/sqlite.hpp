@@ -22,47 +22,46 @@ namespace shearcell {
 
 /// How a file or store is opened.
 enum class Access {
-  create,  ///< read and write; a missing one is created
-  write,   ///< read and write; it must exist
-  read     ///< it must exist; functions that write throw std::logic_error
+  create,  ///< read and write; create the file if it is missing
+  write,   ///< read and write; the file must exist
+  read     ///< the file must exist; functions that write throw std::logic_error
 };
 
 }  // namespace shearcell
 
 namespace shearcell::sqlite {
 
-/// The absolute name under which a database is opened. Throws UsageError when it is longer than
-/// SQLite's own limit.
+/// The absolute path of a database. Throws UsageError when SQLite does not allow its length.
 std::string full_name(const std::filesystem::path& file);
 
-/// One connection, for one thread at a time. Messages of exceptions name the file. All functions
+/// A connection to one database, for one thread at a time. Exceptions name the file. All functions
 /// throw StoreDamaged when the file is not a valid database; MachineError when another process kept
 /// the file locked, or when the file was moved, replaced or deleted; and std::runtime_error when
 /// the machine fails (disk full, no permission).
 ///
-/// The file and SQLite's own files beside it must be regular files without hard links: SQLite finds
-/// its journal by the name of the file, so a second name of the file would make it play back a
-/// journal of another database, or none.
+/// The database file and its journal must be regular files without hard links. SQLite derives the
+/// name of the journal from the name of the file. With a second name, SQLite would miss the journal
+/// or play back the journal of another database.
 class Database {
  public:
-  /// Even with Access::read SQLite may write: it rolls back the transaction of a crashed program.
+  /// Even with Access::read SQLite may write: it rolls back the transaction of a killed program.
   Database(const std::filesystem::path& file, Access access);
-  /// Errors name it `name`.
+  /// A new database in memory, which error messages call `name`.
   static Database in_memory(const std::string& name = ":memory:");
 
-  /// Runs statements and ignores their rows.
+  /// Runs SQL statements and ignores the rows that they return.
   void execute(const std::string& sql);
-  /// The first column of the first row of a query.
+  /// The value in the first column of the first row that a query returns.
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
   /// Throws MachineError when the file was moved, replaced or deleted. Called before each
-  /// transaction, which may play back a journal.
+  /// transaction, because a transaction may play back a journal.
   void require_in_place() const;
   /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite calls a database
   /// damaged that it cannot read.
   void require_readable(std::string_view doing) const;
-  /// Throws the exception for an SQLite result code.
+  /// Throws the exception for an SQLite result code. `doing` is the failed operation: "read".
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
  private:
@@ -73,10 +72,10 @@ class Database {
   void require_journal_can_be_played_back(int code) const;
   using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
-  std::string full_name_;  ///< "" in memory
+  std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Prepared statements that are not in use, by their text: preparing takes longer than running.
+  /// Prepared statements that are not in use, by SQL text: preparing is slower than running.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
@@ -94,12 +93,12 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  /// Moves to the next row; false when there is none.
+  /// Moves to the next row; returns false after the last row.
   bool step();
-  /// Runs a statement that gives no rows.
+  /// Runs a statement that returns no rows.
   void run();
 
-  // The current row. A value of another type is converted as SQLite does; NULL is empty or 0.
+  // Values of the current row. SQLite converts values of another type. NULL becomes "" or 0.
   std::string text(int column) const;
   std::uint64_t u64(int column) const;
   double f64(int column) const;
@@ -110,14 +109,14 @@ class Statement {
     int column = 0;
     (get_one(column++, values), ...);
   }
-  /// What read(row) returns for each row that is left.
+  /// Calls read(row) for each remaining row and returns the results.
   template <class Read>
   auto all(const Read& read) {
     std::vector<std::invoke_result_t<Read, const Statement&>> found;
     while (step()) found.push_back(read(*this));
     return found;
   }
-  /// The whole row as SQL literals with all digits, to compare rows.
+  /// The current row as SQL literals with all digits, for comparing rows.
   std::vector<std::string> cells() const;
 
  private:
@@ -136,7 +135,7 @@ class Statement {
   Database::Prepared handle_;
 };
 
-/// The destructor rolls the transaction back unless it was committed.
+/// A transaction. The destructor rolls it back unless commit() was called.
 class Transaction {
  public:
   ~Transaction();
@@ -145,7 +144,7 @@ class Transaction {
   void commit();
 
  protected:
-  /// Begins nothing if it is `nested` and within another transaction.
+  /// Runs the SQL statement `begin`. With `nested`, does nothing inside another transaction.
   Transaction(Database& database, const std::string& begin, bool nested = false);
 
  private:
@@ -153,13 +152,13 @@ class Transaction {
   bool open_;
 };
 
-/// Takes the write lock when it is constructed.
+/// A transaction whose constructor takes the write lock of the database.
 struct WriteTransaction : Transaction {
   explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
 };
 
-/// All reads within the transaction see the same state of the database. Within another transaction
-/// it does nothing.
+/// All reads within the transaction see the same state of the database. An object that is created
+/// inside another transaction does nothing.
 struct ReadTransaction : Transaction {
   explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED", true) {}
 };

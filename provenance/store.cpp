@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
-/// A file or folder that a new store should not be mixed with; "" if there is none.
+/// The name of a visible file or folder in `folder`; "" if there is none.
 std::string other_file_in(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -39,16 +39,16 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder / kLogFile);  // or says that it is too long, before anything is made
+  sqlite::full_name(folder / kLogFile);  // throws if the path is too long, before anything is made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; name another one", name));
   }
   if (fs::exists(folder / kLogFile)) return folder;
   if (fs::exists(folder / "objects")) {
-    throw StoreDamaged(
-        fmt::format("{}: there are objects but no {}: the log is lost; restore it from a backup",
-                    name, kLogFile));
+    throw StoreDamaged(fmt::format(
+        "{}: there are checkpoints but no {}: the log is lost; restore it from a backup", name,
+        kLogFile));
   }
   if (access != Access::create) {
     throw NotFound(fmt::format(
@@ -70,15 +70,16 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
-/// A program that finds no checkpoint would reject each of them and compute all runs again.
+/// Throws StoreDamaged if the folder of the checkpoints is missing or empty. Otherwise the program
+/// would reject all checkpoints and compute all runs again.
 void require_objects(const std::filesystem::path& folder, const sqlite::Database& database) {
   try {
     sqlite::Statement kept(database, "SELECT 1 FROM checkpoints WHERE state = 'recorded' LIMIT 1");
     if (!kept.step()) return;
   } catch (const StoreDamaged&) {
-    return;  // `rebuild` derives the table again
+    return;  // `rebuild` repairs the damaged table
   }
-  const std::filesystem::path objects = folder / "objects";  // made before the first event
+  const std::filesystem::path objects = folder / "objects";  // created before checkpoint events
   std::error_code unreadable;
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;
@@ -88,7 +89,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-/// Why the holder of this token lost the run of its own attempt; "" while it holds it.
+/// Why the program with this token has lost the run; "" while it holds the run.
 std::string loss_of(const sqlite::Database& database, const std::string& token,
                     const std::string& id, std::uint64_t attempt) {
   for (const Lease& lease : query_leases(database, id)) {
@@ -96,13 +97,13 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
     return fmt::format("its lease expired and another program took the run ({})",
                        describe(lease.holder));
   }
-  // Whoever continued it began an attempt, and a merge may have brought its end.
+  // If another program has continued the run, its attempt or (after a merge) its end is recorded.
   const auto run = query_stage(database, id);
   const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";
 }
 
-/// Refuses an ambiguous prefix. `id` is the member of a candidate that has the prefix.
+/// Throws NotFound if the prefix has several candidates. `id` is the member that has the prefix.
 void require_one(const char* what, std::string_view prefix, const auto& candidates, auto id) {
   constexpr std::size_t most = 10;
   if (candidates.size() < 2) return;
@@ -110,11 +111,11 @@ void require_one(const char* what, std::string_view prefix, const auto& candidat
   for (const auto& one : std::span(candidates).first(std::min(most, candidates.size()))) {
     list += "\n  " + one.*id;
   }
-  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of{}{}", what,
-                             prefix, list, candidates.size() > most ? "\n  ..." : ""));
+  throw NotFound(fmt::format("several {} begin with '{}'; give more digits of one of them:{}{}",
+                             what, prefix, list, candidates.size() > most ? "\n  ..." : ""));
 }
 
-/// Checkpoints from which other stages started.
+/// SHA-256 of the checkpoints from which other stages started.
 std::set<std::string> initial_states(const EventLog& log) {
   std::set<std::string> found;
   for (const Event& event : log.events("", events::RunStarted::kType)) {
@@ -124,13 +125,14 @@ std::set<std::string> initial_states(const EventLog& log) {
   return found;
 }
 
-/// The cycle of its parent, a shear, with whose state the stage begins.
+/// The cycle of the parent with whose state the stage begins.
 double start_cycle(const Stage& stage) {
   const json cycle = member_of(member_of(stage.resolved, "parameters"), "start_cycle");
   return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
-/// Settling has no cycles, so of its checkpoints only the first is one of cycle 0.
+/// Whether `keep_every` keeps the checkpoint. While a packing settles, all checkpoints have cycle
+/// 0, but only the first one is kept.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;
@@ -237,7 +239,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
   NewEvent event =
       encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info});
-  // The newest version of an experiment is the last one by this time.
+  // The manifest with the latest time is the newest version of the experiment.
   if (known) event.not_before = newest.text(1);
   append(stream, event, lock);
   lock.commit();
@@ -281,7 +283,7 @@ void Store::declare_stage(const Stage& declared) {
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
-    // A start that was changed, so that another run took the place, and changed back.
+    // If another start was declared in between, this stage becomes the current one again.
     if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
@@ -292,7 +294,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
                                  const std::string& parent_checkpoint, bool fill) {
   Writing lock(*this);
   if (held_.contains(id)) {
-    throw ConcurrencyConflict(fmt::format("run {}: this program computes it already", id));
+    throw ConcurrencyConflict(fmt::format("run {}: this program already computes it", id));
   }
   const auto known = query_stage(database_, id);
   if (!known) throw unknown_stage(id);
@@ -323,8 +325,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
-  held_[id] =
-      attempt;  // first, so that interrupt_stage() works if the commit only reports an error
+  held_[id] = attempt;  // set first: a commit that reports an error may have succeeded
   lock.commit();
   return attempt;
 }
@@ -352,13 +353,13 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
     throw std::invalid_argument(
         fmt::format("run {}: the checkpoint names run '{}'", id, checkpoint.run));
   }
-  // The file is written before the event: a crash in between leaves a file without an event, never
-  // an event without its file.
+  // The file is written before the event: a crash between them leaves a file without an event,
+  // never an event without its file.
   const std::string state = state_hash(checkpoint);
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   {
     const std::scoped_lock guard(mutex_);
-    database_.require_in_place();  // else the file would go to the store that is now at this place
+    database_.require_in_place();  // the file must not go to a store that replaced this one
   }
   const std::string sha256 = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
@@ -484,7 +485,7 @@ std::vector<std::byte> Store::read_file(const CheckpointRecord& record) const {
   } catch (const StoreDamaged&) {
     require_kept();
   }
-  return objects_.get(record.sha256, record.size);  // it may have been regenerated meanwhile
+  return objects_.get(record.sha256, record.size);  // the file may have been regenerated meanwhile
 }
 
 Checkpoint Store::load_checkpoint(const CheckpointRecord& record) const {
@@ -531,7 +532,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
   const std::vector<Stage> known = stages();
-  std::set<std::pair<std::string, double>> to_come;  // run and cycle where a stage will begin
+  std::set<std::pair<std::string, double>> to_come;  // run and cycle from which a stage will start
   for (const Stage& stage : known) {
     if (!stage.parent.empty() && !has_ended(stage.state))
       to_come.emplace(stage.parent, start_cycle(stage));
@@ -539,7 +540,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   std::vector<CheckpointRecord> found;
   for (const Stage& stage : known) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, stage.id) == 0) continue;
-    // Keeps the newest checkpoint that can be read, and all later ones: `resume` reports these.
+    // Keeps the newest readable checkpoint, and all later ones, whose damage `resume` reports.
     std::vector<CheckpointRecord> records = checkpoints(stage.id);
     const bool all = choice.last_too && stage.state == StageState::completed;
     bool kept = all;
@@ -568,7 +569,7 @@ std::vector<CheckpointRecord> Store::prune_leftovers() const {
 
 std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool last_too) {
   {
-    // One transaction: all checkpoints are recorded as pruned, or none.
+    // One transaction records either all checkpoints as pruned or none.
     Writing lock(*this);
     DerivedCache measures(folder_, Access::read);
     for (const CheckpointRecord& record : records) {
@@ -584,7 +585,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool la
   }
   std::uint64_t freed = 0;
   for (const CheckpointRecord& record : records) {
-    // Under the lock, so that the file is not recorded again between the check and the removal.
+    // The lock prevents a new record of the file between the check and the removal.
     const Writing lock(*this);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) continue;
@@ -599,9 +600,8 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   const std::string state = state_hash(checkpoint), sha256 = sha256_hex(bytes);
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
     throw StoreDamaged(
-        fmt::format("checkpoint {:.12} of run {:.12}: the regenerated one has state {:.12} instead "
-                    "of {:.12} and "
-                    "file {:.12}; it was not stored",
+        fmt::format("checkpoint {:.12} of run {:.12}: the regenerated checkpoint has state {:.12} "
+                    "instead of {:.12} and file {:.12}, so it was not stored",
                     record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {

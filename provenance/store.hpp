@@ -23,7 +23,7 @@
 
 namespace shearcell {
 
-/// The stream of submissions to a cluster.
+/// The stream that holds submissions to a cluster.
 inline constexpr std::string_view kSubmissions = "store/submission";
 
 struct LoadedCheckpoint {
@@ -32,8 +32,8 @@ struct LoadedCheckpoint {
 };
 
 struct Finding {
-  /// An error: a record is lost or changed. A note: everything recorded is intact. Unread: the
-  /// machine failed, so this was not checked.
+  /// `error`: a record is lost or changed. `note`: every record is intact. `unread`: the machine
+  /// failed, so this was not checked.
   enum class Severity { note, unread, error };
   Severity severity = Severity::note;
   std::string subject;  ///< file, event or table
@@ -47,7 +47,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< keep it elsewhere: it proves later that the log only grew
+  Head head;                      ///< a copy kept elsewhere can prove that the log only grew
 
   /// The number of findings of this severity.
   std::size_t count(Finding::Severity severity) const;
@@ -55,34 +55,34 @@ struct VerifyReport {
 };
 
 struct MergeReport {
-  std::string source;             ///< folder, as given
-  Head head;                      ///< of the source when it was read
+  std::string source;             ///< folder as the user gave it
+  Head head;                      ///< head of the source when it was read
   std::uint64_t events = 0;       ///< number of copied events
   std::uint64_t checkpoints = 0;  ///< number of copied files
   std::uint64_t bytes = 0;        ///< size of these files
 };
 
-/// Decodes the file of a checkpoint of this run. Throws StoreDamaged if the file is damaged or not
+/// Decodes the checkpoint file `image`. Throws StoreDamaged if the file is damaged or not
 /// plausible, or if its run, step, cycle, time, units, number of grains, observables or state
-/// differ from the record or from the run's parameters.
+/// differ from the record or from the parameters of the run.
 Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRecord& record,
                            const Stage& stage);
 
-/// Thread-safe. Several processes may open one store on a local disk; the log decides who was
-/// first. Every function may throw StoreDamaged, and std::runtime_error when the machine fails or
-/// another process keeps the store locked.
+/// Thread-safe. Several processes may open one store on a local disk; conflicting writes throw
+/// ConcurrencyConflict. Every function may throw StoreDamaged, and std::runtime_error when the
+/// machine fails or another process keeps the store locked.
 ///
-/// Between `start_stage` and the end of the attempt this object holds the run by a lease, which
-/// every record and `renew_leases` renew. Another program may take the run when the lease has
-/// expired, or at once when the holder's process is dead. The previous holder's next record then
-/// throws ConcurrencyConflict, and it must stop stepping the run. The destructor releases all
-/// leases.
+/// Between start_stage() and the end of the attempt this object holds a lease on the run. Every
+/// recorded event of the run and renew_leases() renew the lease. Another program may take over the
+/// run when the lease has expired, or at once when the process of the holder is dead. The next
+/// record of the previous holder then throws ConcurrencyConflict, and the previous holder must stop
+/// the computation. The destructor releases all leases.
 class Store {
  public:
-  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or is to be written
-  /// and has lost the folder of its checkpoints. Throws NotFound when the folder is missing and
-  /// `access` does not create it. A lease that is not renewed for `lease_seconds` (at most
-  /// kLongestLeaseMs) expires.
+  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or must be written but
+  /// lacks the folder of its checkpoints. Throws NotFound when the folder is missing and `access`
+  /// does not create it. A lease expires when it is not renewed for `lease_seconds`, which is at
+  /// most kLongestLeaseMs.
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();
@@ -93,111 +93,113 @@ class Store {
 
   // --- Recording ---
 
-  /// Stores the text and returns its SHA-256. Records nothing if the last registered text of
-  /// info["experiment"] is the same.
+  /// Stores the text and returns its SHA-256. Records nothing if this text is the one that was
+  /// registered last for info["experiment"].
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Stores the text of a file of grains, once, and returns its SHA-256.
+  /// Stores the text of a file of grains, only once, and returns its SHA-256.
   std::string register_packing(std::string_view text, std::string_view path);
-  /// The text with this SHA-256 and the path that it came from. Throws StoreDamaged if it is
-  /// missing.
+  /// The text of the file of grains with this SHA-256, and its path when it was registered. Throws
+  /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each ask of the run that is new or has a larger target. A longer target makes a
-  /// completed run `declared` again. Throws std::invalid_argument when the id is not
-  /// a SHA-256, belongs to other parameters, or the parent was never declared.
+  /// Records each place that is new to the stage, or that has a larger target or another checkpoint
+  /// interval. A larger target makes a completed stage `declared` again. Throws
+  /// std::invalid_argument when the id is not a SHA-256 or belongs to other parameters, or when the
+  /// parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
-  /// from this checkpoint of the run; `parent_checkpoint` is only recorded. Throws NotFound when
-  /// the run or the checkpoint is unknown, and ConcurrencyConflict when this object or another
-  /// program holds the run, when the run is completed, or when a later checkpoint was recorded.
-  /// With `fill` the run must be completed: the attempt records missing checkpoints before the last
-  /// one, and completes the run again.
+  /// from this checkpoint of the run. `parent_checkpoint`, the initial state, is only recorded.
+  /// Throws NotFound when the run or the checkpoint is unknown, and ConcurrencyConflict when this
+  /// object or another program holds the run, when the run is completed, or when a later checkpoint
+  /// was recorded. With `fill` the run must be completed: the attempt records missing checkpoints
+  /// before the last one, and completes the run again.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);
 
   /// Renews the leases of all held runs; call it several times within `lease_seconds`. Runs that
-  /// another program took are no longer held.
+  /// another program has taken over are no longer held.
   void renew_leases();
   double lease_seconds() const { return static_cast<double>(lease_ms_) / 1000; }
   bool holds(const std::string& id) const;
 
-  /// Writes the file, then the event. A checkpoint that is already recorded returns its record.
+  /// Writes the file, then the event. If the checkpoint is already recorded, returns its record.
   /// Throws std::invalid_argument when the checkpoint belongs to another run or holds NaN.
   CheckpointRecord record_checkpoint(const std::string& id, const Checkpoint& checkpoint,
                                      const Effort& effort = {});
   void interrupt_stage(const std::string& id, const std::string& why);
   void fail_stage(const std::string& id, const std::string& why,
                   const nlohmann::json& numbers = nlohmann::json::object());
-  /// `target_cycles` is the length that was reached. A run with a longer target becomes `declared`
-  /// again.
+  /// `target_cycles` is the number of cycles that was reached. If the target of the run is larger,
+  /// the run becomes `declared` again.
   void complete_stage(const std::string& id,
                       const nlohmann::json& summary = nlohmann::json::object(),
                       std::optional<std::uint64_t> target_cycles = std::nullopt);
 
-  /// Excludes the checkpoint from now on; its file is kept.
+  /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before a step that can be loaded. With `damage`, missing and damaged
-  /// checkpoints are rejected (with Access::read: skipped), and their errors are appended to
-  /// `damage`.
+  /// The newest checkpoint before `before_step` that can be loaded. With `damage`, rejects missing
+  /// and damaged checkpoints (with Access::read: skips them) and appends their errors to `damage`.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// Appends an event that changes no run: FigureGenerated (inputs, SHA-256 of the outputs) in
-  /// "figure/drag/desk/S2", ReplayVerified or ReplayDiverged in the stream of the run,
-  /// CampaignSubmitted or JobQueued in kSubmissions. Throws ConcurrencyConflict when the stream
-  /// does not hold exactly `seen` events.
+  /// Appends an event that changes no run: FigureGenerated to "figure/drag/desk/S2", ReplayVerified
+  /// or ReplayDiverged to the stream of the run, CampaignSubmitted or JobQueued to kSubmissions.
+  /// Throws ConcurrencyConflict unless the stream has `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);
 
   // --- Reading ---
 
-  /// While it exists, all reads through this object see one state of the log, and no other program
-  /// can write to it. Hold it only to read rows: not while files are read or anything is computed.
+  /// While a Snapshot exists, all reads through this store see one state of the log, and no other
+  /// program can write to the log. Keep it only while rows are read, not while files are read or
+  /// results are computed.
   struct Snapshot : private std::scoped_lock<std::recursive_mutex>, sqlite::ReadTransaction {
     explicit Snapshot(const Store& store);
   };
 
   std::vector<Stage> stages() const;  ///< in the order of their declaration
   Stage stage(const std::string& id) const;
-  std::vector<Lease> leases() const;  ///< leases that have not lapsed
-  /// The run with this prefix of the id. Throws NotFound, with the candidates if it is ambiguous.
+  std::vector<Lease> leases() const;  ///< only leases that have not lapsed
+  /// The stage whose id begins with `prefix`. Throws NotFound when there is none or more than one;
+  /// the message lists the candidates.
   Stage find_stage(std::string_view prefix) const;
-  /// In ascending order of step.
+  /// The checkpoints of a stage, in ascending order of step.
   std::vector<CheckpointRecord> checkpoints(const std::string& id,
                                             Listed listed = Listed::recorded) const;
-  /// The checkpoint with this prefix of the SHA-256, in any state, if there is one. Throws
-  /// NotFound, with the candidates, if it is ambiguous.
+  /// The checkpoint, in any state, whose SHA-256 begins with `prefix`; nothing when there is none.
+  /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// The bytes of the file, whose SHA-256 is the recorded one. Throws StoreDamaged, which names the
-  /// file, or FilePruned, also if another program pruned it after the record was read.
+  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
+  /// file. Throws FilePruned, even if the checkpoint was pruned after `record` was read.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
-  /// read_file(), decoded and compared with the record. Throws StoreDamaged, which names the file.
+  /// Decodes read_file() and compares it with the record. Throws StoreDamaged, which names the
+  /// file.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
-  /// load_checkpoint(); nothing when the checkpoint is damaged or was pruned.
+  /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
-  std::vector<FigureRecord> figures() const;  ///< the newest of each name, by name
-  /// Events of one stream ("run/<id>", ...), or of all (""); of one type, or of all ("").
+  std::vector<FigureRecord> figures() const;  ///< the newest figure of each name, sorted by name
+  /// Events of one stream ("run/<id>", ...) or of all (""), of one type or of all types ("").
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   Head head() const;
 
   // --- Maintenance ---
 
-  /// Derives the tables again from the events.
+  /// Drops the tables and derives them from the events.
   void rebuild();
-  /// Reports damage as findings. With `against`, an earlier head, a log that does not extend that
-  /// head is damaged. Throws only when the machine fails.
+  /// Reports damage as findings. If the log does not continue the earlier head `against`, this is
+  /// damage too. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
-  /// The checkpoints that `prune` would free: without PruneChoice::last_too never the newest
-  /// checkpoint of a run, the newest that can be read, or the initial state of another stage.
+  /// The checkpoints that prune() may delete. Without PruneChoice::last_too they exclude the newest
+  /// checkpoint of a run, its newest readable checkpoint, and initial states of other stages.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
-  /// Pruned checkpoints whose files a crash left behind.
+  /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
   /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that may no
   /// longer be pruned. Returns the number of bytes freed.
@@ -205,23 +207,23 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). With `runs` merges only the manifests and these
-  /// runs, which must include the parents of each. Throws NotFound when a source is no store and
-  /// MachineError while a program computes a run of this store. Throws StoreDamaged, before
+  /// Merges other stores into this one (merge.cpp). With `runs`, merges only the manifests and
+  /// these runs, which must include all their parents. Throws NotFound when a source is not a store
+  /// and MachineError while a program computes a run of this store. Throws StoreDamaged, before
   /// anything is written, when a source is damaged, or when two stores hold different states of one
   /// run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
  private:
-  /// Appends one event and applies it.
+  /// Appends one event to the log and applies it to the tables.
   void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
-  /// Appends an event that only the holder may write; with `release`, ends the lease.
+  /// Appends an event that only the holder of the lease may write. `release` ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);
-  /// The database. Throws std::logic_error with Access::read.
+  /// Returns the database. Throws std::logic_error with Access::read.
   sqlite::Database& must_write() const;
-  /// A transaction in which this thread alone writes.
+  /// A write transaction that also locks out other threads of this program.
   struct Writing : private std::scoped_lock<std::recursive_mutex>, sqlite::WriteTransaction {
     explicit Writing(Store& store);
   };
@@ -234,7 +236,7 @@ class Store {
   EventLog log_;
   Holder self_;
   std::uint64_t lease_ms_;
-  std::map<std::string, std::uint64_t> held_;  ///< own attempt, by run id
+  std::map<std::string, std::uint64_t> held_;  ///< run id -> attempt of this object
 };
 
 }  // namespace shearcell

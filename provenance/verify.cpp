@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Verification of a store: chain, objects, projections.
+// Verifies a store: hash chain, checkpoint files, derived tables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,8 +19,9 @@ namespace {
 
 void require_same(std::string_view what, const auto& in_file, const auto& in_log) {
   if (in_file == in_log) return;
-  throw StoreDamaged(fmt::format(
-      "its {} is {}, and the log says {}; `regenerate` computes it again", what, in_file, in_log));
+  throw StoreDamaged(
+      fmt::format("its {} is {}, but the log says {}; `regenerate` computes the file again", what,
+                  in_file, in_log));
 }
 
 void require_recorded(const Checkpoint& c, const CheckpointRecord& record, const Stage& stage) {
@@ -58,7 +59,7 @@ void add_error(VerifyReport& report, const std::string& subject, const std::stri
   report.findings.push_back({Severity::error, subject, run, message});
 }
 
-/// The message of an error about the subject, without the path of the subject at its beginning.
+/// Removes the subject and the path before it from the beginning of an error message.
 std::string without_path(const std::string& subject, const std::string& message) {
   const std::size_t at = message.find(subject + ": ");
   if (at == message.npos || (at > 0 && message[at - 1] != '/')) return message;
@@ -69,7 +70,7 @@ std::string event_name(std::uint64_t seq) {
   return fmt::format("event {}", seq);
 }
 
-/// An unchanged head proves that no event before it was changed.
+/// Checks that the log still contains the earlier head. If so, no event up to it was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
   const std::string event = event_name(earlier.seq);
   if (report.head.seq < earlier.seq) {
@@ -82,13 +83,12 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
   if (found == earlier.hash) return;
   add_error(
       report, event,
-      fmt::format("the log was rewritten, or the given head is wrong: {} has hash {}, but that "
-                  "head has {}; check it, or restore the log from a backup",
+      fmt::format("the log was rewritten, or the given head is wrong: {} has hash {}, but the "
+                  "given head has {}; check the head, or restore the log from a backup",
                   event, found, earlier.hash));
 }
 
-/// The tables derived from the events alone. Events that cannot be applied are reported and
-/// skipped.
+/// The tables derived from the events. Events that cannot be applied are reported and skipped.
 sqlite::Database derive(const EventLog& log, const std::string& name, VerifyReport& report) {
   sqlite::Database fresh = empty_projections(name);
   log.for_each([&](const Event& event) {
@@ -101,7 +101,7 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
   return fresh;
 }
 
-/// At most 60 bytes of a cell, from shortly before `place`.
+/// Part of a table cell: at most 60 bytes that begin shortly before `place`.
 std::string excerpt(const std::string& cell, std::size_t place) {
   const std::size_t begin = place > 40 ? place - 20 : 0;
   const std::string part = cell.substr(begin, 60);
@@ -109,8 +109,8 @@ std::string excerpt(const std::string& cell, std::size_t place) {
                      begin + part.size() < cell.size() ? "..." : "");
 }
 
-/// Describes the first row that differs. `expected` or `found` is null if that table has no more
-/// rows. Rows begin with their keys.
+/// Describes the first row that differs between two tables. `expected` or `found` is null if its
+/// table has no more rows. Rows begin with their keys.
 std::string row_difference(const sqlite::Database& database, const std::string& table,
                            const std::vector<std::string>* expected,
                            const std::vector<std::string>* found) {
@@ -142,7 +142,7 @@ void compare_tables(const sqlite::Database& database, const Rows& stored, const 
     const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
     if (a == rows.end() && b == found.end()) continue;
     add_error(report, "table " + table,
-              fmt::format("it is not what the events give: {}; run `rebuild`",
+              fmt::format("it differs from the events: {}; run `rebuild`",
                           row_difference(database, table, a == rows.end() ? nullptr : &*a,
                                          b == found.end() ? nullptr : &*b)));
   }
@@ -170,7 +170,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      // A forged table does not hide damage: it differs from the events, which is an error.
+      // A forged table cannot hide damage: compare_tables() reports it as an error.
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;
@@ -190,7 +190,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
   }
 }
 
-/// All attempts of a run must reach the same state at the same step.
+/// Reports a run whose attempts reached different states at the same step.
 void check_reproduced(const std::vector<CheckpointRecord>& records, VerifyReport& report) {
   std::map<std::pair<std::string, std::uint64_t>, std::string> states;
   for (const CheckpointRecord& record : records) {
@@ -226,7 +226,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   std::map<std::string, Stage> runs;
   bool log_was_read = false;
   try {
-    // One snapshot of the log; the files are read after it.
+    // The log is read in one snapshot. The files are read afterwards.
     const sqlite::ReadTransaction snapshot(database_);
     sqlite::Statement integrity(database_, "PRAGMA integrity_check(1)");
     if (integrity.step() && integrity.text(0) != "ok") {
@@ -248,11 +248,11 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   } catch (const StoreDamaged& damage) {
     add_error(report, database_.name(),
               without_path(database_.name(), damage.what()) +
-                  (log_was_read ? "; the log is readable, so `shearcell merge` copies what it "
-                                  "records into a new store"
+                  (log_was_read ? "; the log is readable, so `shearcell merge` can copy its "
+                                  "runs into a new store"
                                 : "; the rest was not read"));
   }
-  if (!log_was_read) return report;  // nothing says which files belong to the store
+  if (!log_was_read) return report;  // without the log, the files cannot be checked
   check_reproduced(records, report);
   check_objects(records, runs, database_, objects_, report);
   return report;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers in messages.
+// Formats counts and durations for messages.
 #pragma once
 
 #include <cstddef>

@@ -53,10 +53,11 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// Collects output of any length.
+// A file in memory that collects the output of a program, whatever its length.
 Descriptor memory_file() {
   Descriptor file(memfd_create("output", MFD_CLOEXEC));
-  if (!file.valid()) throw ProgramError(std::string("no room for output: ") + std::strerror(errno));
+  if (!file.valid())
+    throw ProgramError(std::string("cannot create a file in memory: ") + std::strerror(errno));
   return file;
 }
 
@@ -114,11 +115,11 @@ ChildProcess::ChildProcess(const Command& command) {
     throw ProgramError("cannot start " + name + ": " + std::strerror(errno));
   }
   pid_ = fork();
-  if (pid_ == 0) {  // from here on, only async-signal-safe calls are allowed
+  if (pid_ == 0) {  // the child may only make async-signal-safe calls
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(127);
-    // What this program ignores, its children would ignore too.
+    // A child inherits ignored signals, so their default handling is restored.
     for (const int number : {SIGCHLD, SIGPIPE}) signal(number, SIG_DFL);
     const int in = open("/dev/null", O_RDONLY);
     if (in >= 0 && dup2(in, STDIN_FILENO) >= 0 && dup2(command.output, STDOUT_FILENO) >= 0 &&

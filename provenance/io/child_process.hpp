@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other programs, run in the background or to their end. Arguments are passed as they are; no shell
-// is involved.
+// Runs other programs, in the background or until they end. No shell interprets the arguments.
 #pragma once
 
 #include <sys/types.h>
@@ -14,47 +13,47 @@
 
 namespace shearcell {
 
-/// A program is missing, cannot be started or failed; what() says what to do.
+/// Thrown when a program is missing, cannot be started or fails. what() says what to do.
 class ProgramError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The text as one word for a POSIX shell, in single quotes only if it needs them.
+/// Returns `text` as one word for a POSIX shell. Quotes are added only if `text` needs them.
 std::string shell_word(std::string_view text);
 
-/// The executable file of this name: the name itself if it has a slash, else the first on PATH.
-/// Nothing when there is no such file.
+/// Path of the program `name`: the file `name` itself if the name has a slash, otherwise the first
+/// executable file of this name on PATH. Nothing when there is no such file.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
 struct Command {
-  std::vector<std::string> words;  ///< the program (a path or a name on PATH) and arguments
-  std::filesystem::path folder;    ///< working folder
-  /// Changes of the environment: "NAME=value" sets a variable, "NAME" removes it, and "NAME*"
-  /// removes all whose names begin with NAME.
+  std::vector<std::string> words;  ///< program (a path or a name on PATH), then arguments
+  std::filesystem::path folder;    ///< working folder of the program
+  /// Changes to the environment of the program: "NAME=value" sets a variable, "NAME" removes it,
+  /// and "NAME*" removes all variables whose names begin with NAME.
   std::vector<std::string> variables;
-  int output = -1;    ///< descriptor for its standard output
-  int messages = -1;  ///< descriptor for its standard error
+  int output = -1;    ///< file descriptor that receives standard output
+  int messages = -1;  ///< file descriptor that receives standard error
 };
 
-/// A running program. Its standard input is empty. It has its own process group, so Ctrl-C on a
-/// terminal does not reach it. It gets SIGTERM when this object is destroyed or when the thread
-/// that started it ends for any reason.
+/// A running program. Its standard input is empty. The program has its own process group, so Ctrl-C
+/// on a terminal does not stop it. The program gets SIGTERM when the thread that started it ends.
+/// The destructor sends SIGTERM, and SIGKILL to a program that has not ended 5 s later.
 class ChildProcess {
  public:
-  /// Throws ProgramError when it cannot be started.
+  /// Throws ProgramError when the program cannot be started.
   explicit ChildProcess(const Command& command);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// The exit code, or 128 + the number of the signal that ended it; nothing while it runs.
+  /// Exit code, or 128 + the number of the signal that killed the program; nothing while it runs.
   std::optional<int> exit_code();
 
-  /// Waits for the end of the program and returns exit_code().
+  /// Waits until the program ends and returns exit_code().
   int wait();
 
-  /// Processor time of the program so far, without its children.
+  /// Processor time that the program has used so far [s], without its child processes.
   double core_seconds() const;
 
  private:
@@ -62,18 +61,18 @@ class ChildProcess {
 
   pid_t pid_ = 0;
   std::optional<int> exit_code_;
-  double core_seconds_ = 0;  // of the ended process
+  double core_seconds_ = 0;  // processor time of a program that has ended
 };
 
 struct ProgramOutcome {
-  int code = 0;          ///< as ChildProcess::exit_code
-  std::string output;    ///< its standard output
-  std::string messages;  ///< its standard error
+  int code = 0;          ///< see ChildProcess::exit_code()
+  std::string output;    ///< what the program wrote to standard output
+  std::string messages;  ///< what the program wrote to standard error
 };
 
-/// Runs the program `words[0]` in `folder` and waits for its end. Nothing when it is not installed.
-/// Throws ProgramError when it cannot be started, or has not ended after `seconds`; then it is
-/// killed.
+/// Runs the program `words[0]` in `folder` and waits until it ends. Returns nothing when the
+/// program is not installed. Throws ProgramError when the program cannot be started, or when it has
+/// not ended after `seconds` and is therefore killed.
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& variables = {},

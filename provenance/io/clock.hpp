@@ -8,7 +8,7 @@
 
 namespace shearcell {
 
-/// Measures the time since it was made or restarted, with the steady clock.
+/// Measures the time since construction or the last restart() with the steady clock [s].
 class Stopwatch {
  public:
   double seconds() const {
@@ -20,7 +20,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Milliseconds since 1970, UTC.
+/// The current time [ms since 1970, UTC].
 inline std::uint64_t now_ms() {
   using namespace std::chrono;
   return static_cast<std::uint64_t>(
@@ -31,7 +31,7 @@ inline double seconds_of(const timespec& time) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Processor time of this thread so far.
+/// Processor time that this thread has used so far [s].
 inline double thread_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

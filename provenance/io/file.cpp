@@ -26,9 +26,9 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-/// At most `most` bytes from the beginning of a regular file; nothing when it is not one.
+/// At most `most` bytes from the beginning of a file; nothing unless it is regular and readable.
 std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
-  // O_NONBLOCK: opening a pipe must not wait for a writer.
+  // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
   if (!file.valid() || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -114,7 +114,7 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
   } while (number < 0 && errno == EEXIST);
   if (number < 0) fail_on(path, "write");
   const Descriptor file(number);
-  flock(file.get(), LOCK_EX);  // in use, for remove_leftovers()
+  flock(file.get(), LOCK_EX);  // tells remove_leftovers() that the file is in use
   try {
     write_all(file, bytes, path);
     if (durability == Durability::synced) sync(file, path);
@@ -156,7 +156,7 @@ void require_ours(const fs::path& path, const Recognize& ours) {
 
 void write_output(const fs::path& path, std::string_view bytes) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code ignored;  // open() says what is wrong
+  std::error_code ignored;  // if this fails, the next open() reports the reason
   fs::create_directories(parent, ignored);
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");
@@ -190,16 +190,16 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
       const char* set = std::getenv("TMPDIR");
       throw std::system_error(missing, std::string(set != nullptr ? set : "/tmp") +
                                            ": cannot use the folder for temporary files; make it, "
-                                           "or name another one in TMPDIR");
+                                           "or name another folder in TMPDIR");
     }
     whole = folder / whole;
   }
   remove_leftovers(whole.parent_path());
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {
-    fail_on(whole.parent_path(), named
-                                     ? "make a temporary folder in it"
-                                     : "make a temporary folder in it (TMPDIR names another one)");
+    fail_on(whole.parent_path(),
+            named ? "make a temporary folder in it"
+                  : "make a temporary folder in it (set TMPDIR to use another folder)");
   }
   path_ = pattern;
   flock(held_.emplace(open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).get(), LOCK_EX);

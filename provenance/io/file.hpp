@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading and writing files. Output files (figures, reports, exports) are never written through a
-// link or over a file that this program did not make.
+// Reads and writes files. Output files (figures, reports, exports) are never written through a link
+// or over a file that this program did not make.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// Owns a file descriptor and closes it at the end. A negative number stands for no file.
+/// Owns a file descriptor and closes it in the destructor. It is negative if no file is open.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -29,58 +29,58 @@ class Descriptor {
   int number_;
 };
 
-/// Throws std::system_error: "PATH: cannot DOING: the reason in errno".
+/// Throws std::system_error with the message "PATH: cannot DOING: REASON"; errno gives the reason.
 [[noreturn]] void fail_on(const std::filesystem::path& path, const std::string& doing);
 
-/// Writes all bytes; throws as fail_on does. `path` is for the message.
+/// Writes all bytes. Errors are thrown by fail_on(), which names `path` in the message.
 void write_all(const Descriptor& file, std::span<const std::byte> bytes,
                const std::filesystem::path& path);
-/// The next `size` bytes, or fewer when the file ends before. Throws as fail_on does.
+/// Reads the next `size` bytes, or fewer if the file ends earlier. Errors are thrown by fail_on().
 std::vector<std::byte> read_all(const Descriptor& file, std::size_t size,
                                 const std::filesystem::path& path);
-/// fsync of a file or a folder.
+/// Calls fsync on a file or folder. Errors are thrown by fail_on().
 void sync(const Descriptor& file, const std::filesystem::path& path);
 
 enum class Durability {
-  renamed,  ///< a reader sees the old file or the whole new one
-  synced    ///< and the new file survives a power cut
+  renamed,  ///< a reader sees the old file or the complete new file
+  synced    ///< as `renamed`; the new file also survives a power cut
 };
 
-/// Deletes temporary files and folders (".*.tmp-<pid>-*") that killed programs left in the folder,
-/// with `below` also in the folders in it: the process has ended, and no process, as of another
-/// container, holds the lock.
+/// Deletes the temporary files and folders that killed programs left in `folder`; with `below` also
+/// those in its subfolders. Names: ".tmp-<pid>-*" or ".*.tmp-<pid>-*". An entry is deleted
+/// only if process <pid> has ended and no process, for example in another container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
-/// Writes a file under a temporary name in the open `folder` (`temporary` + "<pid>-<n>", mode 0666
-/// less umask). Then renames the file to the last part of `path`, in place of a file or link of
-/// that name. On any error deletes the temporary file and throws as fail_on does.
+/// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
+/// mode 0666 minus umask. Then renames it to the last component of `path`, which replaces a file or
+/// link there. After any error, deletes the temporary file and throws as fail_on().
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability);
 
-/// The output path is occupied by something that this program did not make.
+/// Thrown when the output path names a file, folder or link that this program did not make.
 class NotOurs : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of a regular file of at most `limit` bytes; nothing when it is missing, a link, a pipe
-/// or larger, or cannot be read.
+/// The content of a regular file of at most `limit` bytes. Nothing when the file is larger,
+/// missing, a link or a pipe, or cannot be read.
 std::optional<std::string> read_plain(const std::filesystem::path& path, std::size_t limit);
 
-/// Recognizes a file of this program by its first 4096 bytes.
+/// Says whether this program wrote the file that begins with these bytes (at most 4096).
 using Recognize = std::function<bool(std::string_view beginning)>;
 
-/// Throws NotOurs unless the path is free or a regular file that `ours` recognizes, and
-/// std::system_error when this user may not read the file.
+/// Throws NotOurs if `path` exists, except for a regular file that `ours` recognizes. Throws
+/// std::system_error when the type of the file cannot be determined.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
-/// Writes a whole file under a temporary name beside `path`, whose folder is created if it is
-/// missing, and renames it (replace_file).
+/// Writes a file with replace_file(), so a reader sees the old file or the complete new file.
+/// Creates the folder of `path` if it is missing.
 void write_output(const std::filesystem::path& path, std::string_view bytes);
 
-/// A new file that is written in parts; an existing file is never overwritten. If writing fails,
-/// both functions delete the file and throw std::system_error, which names it.
+/// A new file that is written in parts. The constructor throws std::system_error if the file exists
+/// or cannot be created. If writing fails, add() deletes the file and throws std::system_error.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path);
@@ -91,10 +91,10 @@ class NewFile {
   Descriptor file_;
 };
 
-/// A new folder PREFIX + "<pid>-" + six random characters, in the folder for temporary files
-/// (TMPDIR) unless the prefix is an absolute path; remove_leftovers() is called there. The folder
-/// is readable by this user only, and deleted with its content at the end of the object's life. The
-/// constructor throws std::system_error, which names the folder.
+/// A new temporary folder that only this user can read; the destructor deletes it with its content.
+/// The folder lies in TMPDIR (else /tmp), unless `prefix` is an absolute path. Its name is `prefix`
+/// + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the parent
+/// folder and throws std::system_error, which names the folder, when no folder can be created.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");
@@ -105,7 +105,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
-  std::optional<Descriptor> held_;  ///< a lock: the folder is in use
+  std::optional<Descriptor> held_;  ///< lock that marks the folder as in use
 };
 
 }  // namespace shearcell

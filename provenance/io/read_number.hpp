@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers from untrusted text, independent of the locale.
+// Reads numbers from untrusted text, independently of the locale.
 #pragma once
 
 #include <charconv>
@@ -8,7 +8,7 @@
 
 namespace shearcell {
 
-/// The number that a whole text is in decimal digits; nothing when it is anything else.
+/// The value of a text that is one decimal number in the range of the type; otherwise nothing.
 template <class Number>
 std::optional<Number> read_number(std::string_view text) {
   Number value{};

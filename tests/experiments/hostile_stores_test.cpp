@@ -146,7 +146,7 @@ std::vector<Case> damaged_tables() {
           "pressure_a_text_in_a_report", "report", 0,
           sql("UPDATE runs SET resolved = json_set(resolved, '$.parameters.pressure_Pa', 'x')")),
       reported("table_not_of_the_events", "verify", 4, sql("UPDATE runs SET grains = 7"),
-               "not what the events give", "run `rebuild`"),
+               "differs from the events", "run `rebuild`"),
       reported("leases_of_garbage", "status", 0,
                sql("INSERT INTO leases SELECT 'no-such-run', '', '', -1, -1, '', -1, -1, "
                    "9223372036854775807"),

@@ -97,7 +97,7 @@ class Churn : public testing::Test {
   /// What a program says when it ends with 1, where that is sound: a merge is refused while another
   /// program computes a run that it would change; figures leave out what is pruned.
   static std::string excuse(const std::string& name, bool beside_another) {
-    if (name == "merge" && beside_another) return "merge when it has ended";
+    if (name == "merge" && beside_another) return "merge when that program has ended";
     return name == "figures" ? "was pruned" : "";
   }
 

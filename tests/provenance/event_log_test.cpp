@@ -191,7 +191,7 @@ TEST_F(EventLogTest, SaysHowToRecoverWhatAKilledWriterLeftOnAReadOnlyDisk) {
       for (const std::string& part :
            {log.string() + ": a program was writing to this store when it was killed",
             "cannot write to " + folder_.path().string(), c.unwritable,
-            std::string("copy the whole folder to a disk where you can write")}) {
+            std::string("Copy the whole folder to a disk where you can write")}) {
         EXPECT_TRUE(test::has(error.what(), part)) << part << "\n" << error.what();
       }
     }
