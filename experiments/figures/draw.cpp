@@ -129,7 +129,6 @@ void lay_out(std::vector<Table>& tables, bool wide) {
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
-
   const auto has_columns = [](const Series& one) { return one.thin || !one.columns.x.empty(); };
   const bool all_stated = std::ranges::none_of(table.chart.series, has_columns);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
