@@ -67,7 +67,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
-  std::map<bool, Lack> lacks;  // by whether LAMMPS computed the runs
+  std::map<bool, Lack> lacks;  // key: whether LAMMPS computed the runs
   const bool last_only = figure.form == FigureForm::table;
   for (FrameRun& run : collected.runs) {
     run.end = last_only ? static_cast<double>(run.ask.target_cycles)
@@ -120,7 +120,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
   if (std::ranges::count(figure.needs, cost_provider) > 0) add_core_times(store, collected);
   for (const auto& [of_lammps, lack] : lacks) {
     collected.notes.push_back(fmt::format(
-        "never made: {} that the manifest asks for (runs {}); {}",
+        "missing: {} that the manifest asks for (runs {}); {}",
         counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
         of_lammps
             ? "`run` and `resume` cannot add these checkpoints, because LAMMPS computed the runs "
@@ -129,7 +129,6 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
   }
 }
 
-/// Sets Run::name and Run::named of the runs of this experiment.
 void name_variants(const std::vector<VariantLabel>& labels, const std::string& experiment,
                    CollectedRuns& collected) {
   std::vector<nlohmann::json> variants;
@@ -243,12 +242,10 @@ std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManif
   return (last == runs.rend() ? runs.back() : *last).place.scale;
 }
 
-/// Whether the figure uses runs of several experiments.
 bool is_across(const Figure& figure) {
   return figure.form == FigureForm::table || !figure.of.empty();
 }
 
-/// Sets WantedFigure::also.
 void share_needs(std::vector<WantedFigure>& figures) {
   std::map<std::string, std::set<std::string>> needs;  // by experiment
   for (const WantedFigure& wanted : figures) {

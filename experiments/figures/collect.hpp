@@ -31,7 +31,6 @@ struct ReadManifest : RegisteredManifest {
 };
 using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
 
-/// A figure to compute.
 struct WantedFigure {
   Figure figure;
   std::string experiment;  ///< "" for a figure of all experiments
@@ -60,8 +59,8 @@ struct WantedFigures {
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
-/// Removes the figures of experiments without a selected run. If no run at all is selected, removes
-/// no figure. Returns a note that names these experiments; "" if no figure was removed.
+/// Removes the figures of experiments without a selected run, and returns a note that names these
+/// experiments. If no run at all is selected, removes no figure and returns "".
 std::string leave_out_unselected(const Store& store, const RunSelection& runs,
                                  std::vector<WantedFigure>& figures);
 

@@ -27,8 +27,8 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure used, in the order of steps. They include the earlier
-/// checkpoints that measures of a change needed.
+/// The checkpoints of the run that the figure used, in the order of steps. The list includes the
+/// earlier checkpoints that a measure of changes needed.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FrameRun& run) {
   std::set<std::string> own;
@@ -40,7 +40,6 @@ std::vector<CheckpointRecord> used_checkpoints(const Store& store, const Compute
   return records;
 }
 
-/// The runs and states of the figure, as its record lists them under `inputs`.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
@@ -62,9 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// States which version's plots drew the figure, if the manifest states no plots for it: manifests
-/// of earlier versions list figures by name only. Returns "" if the manifest states the figure or
-/// C++ computes it.
+/// Returns a text that names the version of the plots, if the manifest does not state the figure's
+/// plots. Manifests of earlier versions list figures by name only. Returns "" if the manifest
+/// states the figure or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -114,7 +113,6 @@ std::string place_of(const ComputedFigure& figure) {
   return figure.experiment.empty() ? scale : figure.experiment + "/" + scale;
 }
 
-/// Sets the width of the panels. If there are several panels, gives each one a letter.
 void lay_out(std::vector<Table>& tables, bool wide) {
   char letter = 'a';
   for (Table& table : tables) {
@@ -286,7 +284,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   const std::string place = place_of(made);
   const std::filesystem::path folder = options.folder / place;
   if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
-    throw UsageError(fmt::format("{}: cannot create this folder: {}. Give another with --out.",
+    throw UsageError(fmt::format("{}: cannot create folder: {}. Name another folder with --out.",
                                  folder.string(), failed.message()));
   }
   for (const Table& table : made.tables) require_own_files(table, folder);

@@ -27,7 +27,7 @@ bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& 
 }
 
 /// Syncs the cache to the disk. DerivedCache itself does not sync, because lost measures can
-/// usually be computed again. After a prune they cannot.
+/// usually be computed again. After a prune this is impossible.
 void sync_cache(const Store& store) {
   const std::filesystem::path file = store.folder() / DerivedCache::kFile;
   for (const std::filesystem::path& path : {file, store.folder()}) {

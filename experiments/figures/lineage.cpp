@@ -70,7 +70,6 @@ std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cyc
   return all;
 }
 
-/// Reads the states of an input, and finds their checkpoints in the log.
 void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   std::vector<CheckpointRecord> found;
   if (entry.contains("checkpoints")) {  // a record of an earlier version

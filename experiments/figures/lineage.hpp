@@ -28,7 +28,7 @@ std::string to_text(const Cycles& cycles);
 struct States {
   Cycles cycles;           ///< of the states
   std::string state_hash;  ///< of the last state
-  std::string sha256;      ///< of a text that has one state_hash on each line
+  std::string sha256;      ///< SHA-256 of a text that has one state_hash on each line
 
   bool operator==(const States&) const = default;
 };
@@ -36,7 +36,6 @@ struct States {
 /// Returns the states of these checkpoints. `checkpoints` must be sorted by step.
 States states_of(const std::vector<CheckpointRecord>& checkpoints);
 
-/// A run that the figure uses.
 struct FigureInput {
   std::string run;
   std::string experiment;
@@ -54,15 +53,15 @@ struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::string plots;  ///< "drawn by the plots of ..." if the manifest states no plots for it
+  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest states the plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< of the inputs, without duplicates
-  RunLineages runs;                            ///< of the inputs and of the stages before them
+  RunLineages runs;                            ///< of the input runs and of their parent stages
 };
 
-/// Returns the values of the manifest that the command line replaced, or null if it replaced none.
-/// {"cycles": {"run": 8, "manifest": 5}}: the run has 8 cycles, the manifest states 5.
+/// Returns the values of the manifest that the command line replaced, or null. Example for a run of
+/// 8 cycles whose manifest states 5 cycles: {"cycles": {"run": 8, "manifest": 5}}.
 nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
                             const Ask& ask);
 /// Returns "S2" for a record named "drag/desk/S2". Records of older stores are named "drag/S2" or

@@ -54,7 +54,6 @@ Column of_checkpoint(std::string_view name, std::string_view meaning, Value valu
           }};
 }
 
-/// The column of a measure of checkpoints or of whole runs.
 Column column_of(const Measure& measure) {
   return {{std::string(measure.name), std::string(measure.meaning)},
           [&measure](const Row& row) -> TableCell {
@@ -69,7 +68,7 @@ Column column_of(const Measure& measure) {
 
 std::vector<Column> names() {
   return {
-      of_run("experiment", "name of the manifest's experiment",
+      of_run("experiment", "name of the experiment",
              [](const Run& s) { return s.place.experiment; }),
       of_run("scale", "scale of the manifest",
              [](const Run& s) { return scale_name(s.place.scale); }),
@@ -99,9 +98,8 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
   return columns;
 }
 
-/// A column with the outcome of a method that finds the onset.
 Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
-  return {{name, std::string("observed, never, before_start or unclear: outcome of ") + meaning},
+  return {{name, std::string("outcome (observed, never, before_start or unclear) of ") + meaning},
           [find](const Row& row) -> TableCell {
             if (row.history == nullptr || row.history->checkpoints.empty()) return {};
             return std::string(name_of(find(*row.history).observed));
@@ -210,7 +208,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     }
   }
   made += measure_checkpoints(store, in_rows, names, options);
-  const std::string scalars = scalars_provider;  // all that onsets need
+  const std::string scalars = scalars_provider;  // onsets need no other measures
   made += measure_checkpoints(store, others, {&scalars, 1}, options);
   note_lacking(runs, made);
   const std::vector<Column> columns = columns_for(runs, per, simulated);

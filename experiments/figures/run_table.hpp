@@ -18,11 +18,11 @@ enum class RowPer { checkpoint, run };
 template <>
 inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run");
 
-/// A table of runs, and messages on values that it lacks.
+/// A table of runs, and messages on missing values.
 struct RunTable : MeasureOutcome {
   Table table;                      ///< empty cells: the value is unknown or does not apply
   std::vector<std::string> notes;   ///< NewestRuns::notes, and a note on measures that are lacking
-  std::vector<FrameRun> histories;  ///< for RowPer::run: the run of each row, at whole cycles
+  std::vector<FrameRun> histories;  ///< for RowPer::run: run of each row, only at whole cycles
 };
 
 /// Returns the table of the selected newest_runs(), sorted by run and cycle. The checkpoints of a
@@ -45,7 +45,6 @@ std::vector<std::string> simulating_providers();
 /// All columns except those of swept parameters; includes the columns of simulated measures.
 std::vector<TableColumn> table_columns();
 
-/// The columns of one checkpoint and their values.
 std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& record,
                                                         const Measures& measures);
 
@@ -54,7 +53,7 @@ std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& 
 /// (`damage`, `pruned`).
 std::string to_json(const RunTable& made, bool notes = false);
 
-/// Whether the beginning of a file shows that it is such a table, in CSV or JSON.
+/// Whether the beginning of a file shows that the file is a table of runs, in CSV or JSON.
 bool is_table(std::string_view beginning);
 
 }  // namespace shearcell

@@ -30,7 +30,7 @@ void require_found(const char* what, const Filter& filter) {
                              did_you_mean(*missing, known)));
 }
 
-/// What identifies a run in all versions of a manifest.
+/// The values that identify a run in all versions of a manifest.
 auto in_any_version(const Place& place) {
   return std::tie(place.experiment, place.scale, place.variant, place.seed);
 }
@@ -126,7 +126,7 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
   if (!selection.variants.empty()) names.emplace(store);
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
-  std::map<Seed, std::size_t> seeds;  // index of the newest run of each seed in `selected`
+  std::map<Seed, std::size_t> seeds;  // index in `selected` of the newest run of each seed
   for (const Stage& stage : store.stages()) {
     const bool packing = stage.kind == name_of(StageKind::prepare);
     if (packing && !selection.packings) continue;

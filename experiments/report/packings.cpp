@@ -63,8 +63,8 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
   values = std::move(kept);
 }
 
-/// Returns the last run of each variant; if there are more variants than `limit`, of evenly spaced
-/// variants.
+/// Returns the last run of each variant. If there are more than `limit` variants, returns runs of
+/// `limit` evenly spaced variants.
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;

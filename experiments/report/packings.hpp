@@ -61,7 +61,7 @@ struct EncodedFrame {
 
 /// A further measure of each grain, which can colour the grains. A grain has one byte: the number
 /// of its class, or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of
-/// value, low and high enter. The byte of an unknown value is 255.
+/// value, low and high are used. The byte of an unknown value is 255.
 struct GrainField {
   const Measure* measure = nullptr;
   double low = 0, high = 0;

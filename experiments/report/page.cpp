@@ -90,7 +90,6 @@ std::string text_of(const Maker& maker) {
   return fmt::format("{}; {}, {}", maker.program, maker.host, maker.machine);
 }
 
-/// The name of a ruling, and a mark that is clear without colour.
 json ruling_json(Ruling ruling) {
   const bool good = ruling == Ruling::agrees || ruling == Ruling::supported;
   const bool open = ruling == Ruling::undecided || ruling == Ruling::undecidable;
@@ -157,13 +156,12 @@ std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
-    facts["outputs"] = json::object();  // compute_figure() leaves them empty
+    facts["outputs"] = json::object();  // figure.lineage has no outputs either
     if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;
 }
 
-/// The lineage of a figure as the page shows it.
 json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
                   const std::optional<FigureRecord>& recorded) {
   std::set<std::string> makers;
@@ -255,7 +253,6 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
           {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.store, figure))}};
 }
 
-/// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
   const Stage& run = stage.stage;
   json members = json::array(), attempts = json::array();
@@ -328,7 +325,6 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
                       {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
-/// The boxes of the workflow, from packings to figures.
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
   std::size_t left = 0;  // checkpoints that unfinished runs will still record, at most
@@ -505,7 +501,6 @@ json rows_json(const Table& table) {
   return rows;
 }
 
-/// The data that the front end reads.
 json script_data(const Content& content) {
   json experiments = json::array();
   for (const Experiment& experiment : content.experiments) {
@@ -550,7 +545,7 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   return found;
 }
 
-/// Adds a note on the scales of the experiment that its figures do not show.
+/// Adds a note on the scales of the experiment that no figure in the page shows.
 void note_other_scales(const Experiment& experiment, const std::string& shown,
                        std::set<std::string>& notes) {
   const std::string& name = experiment.manifest.experiment;
@@ -630,7 +625,6 @@ void add_runs(Content& content) {
   }
 }
 
-/// The values for the template page.html.
 json page_of(const Content& content, const Head& head) {
   const std::size_t packed = content.packings.runs.size();
   json packings = false;
@@ -684,7 +678,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
   Content content{store, options, report};
   const Head head = store.head();
   report.interactive = options.interactive && has_front_end();
-  select_runs(store, options.runs);  // throws NotFound for an unknown experiment, scale, ...
+  select_runs(store, options.runs);  // throws NotFound for unknown names
   content.experiments = experiments_of(store, options.runs);
   if (content.experiments.empty()) {
     throw NotFound(store.folder().string() +

@@ -17,7 +17,7 @@ struct ReportOptions : MeasureOptions {
   RunSelection runs;  ///< runs to show in figures, tables and packings; a figure shows one scale
   PackingChoice packings;
   bool interactive = true;    ///< false: gnuplot's drawings only, as in a build without Node
-  ReadProgress encoded = {};  ///< called as packings are encoded
+  ReadProgress encoded = {};  ///< called after each encoded packing
 };
 
 /// Whether this program was built with the front end, which needs Node.

@@ -267,7 +267,7 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   }
   const std::vector<std::string> notes = collect_runs(store_, kS2, {}).notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_TRUE(has(notes[0], "never made: 1 checkpoint that the manifest asks for (runs bbbbbbbb)"));
+  EXPECT_TRUE(has(notes[0], "missing: 1 checkpoint that the manifest asks for (runs bbbbbbbb)"));
   EXPECT_TRUE(has(notes[0], "LAMMPS"));
   EXPECT_FALSE(has(notes[0], "computes them"));
 }
