@@ -20,7 +20,7 @@ namespace shearcell {
 struct PackingChoice {
   std::vector<std::string> runs;        ///< ids; empty: the last run of each variant
   std::size_t runs_per_experiment = 6;  ///< largest number of runs if `runs` is empty
-  std::size_t frames = 40;              ///< largest number of checkpoints of a run
+  std::size_t frames = 40;              ///< largest number of checkpoints shown per run
   std::size_t budget = 9'000'000;       ///< largest size of all packings in the page [bytes]
 };
 
@@ -30,7 +30,7 @@ struct Packings : MeasureOutcome {
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
   double largest_step = 0;         ///< largest rounding step of a coordinate [d]
-  std::vector<std::string> notes;  ///< runs that were left out, one line each
+  std::vector<std::string> notes;  ///< a line on runs that were left out
 };
 
 /// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed

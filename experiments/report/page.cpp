@@ -156,7 +156,7 @@ std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
-    facts["outputs"] = json::object();  // figure.lineage has no outputs either
+    facts["outputs"] = json::object();  // as in figure.lineage
     if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;
