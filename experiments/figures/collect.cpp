@@ -27,9 +27,8 @@
 namespace shearcell {
 namespace {
 
-/// Returns the id of the stage that settled the packing from which `stage` descends. If packings
-/// were made of a file of grains, returns the SHA-256 of the file; "" for a stage without a
-/// packing.
+/// Returns the id of the stage that settled the packing of `stage`. If the packing was made from a
+/// file of grains, returns the SHA-256 of the file. Returns "" for a stage without a packing.
 std::string packing_before(const Store& store, const Stage& stage) {
   if (stage.parent.empty()) return "";
   const Stage first = chain_of(store, stage.parent).front();
@@ -52,13 +51,13 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
   }
   if (processors.size() < 2) return;
   collected.notes.push_back(
-      fmt::format("core times are of different processors: {}", some_of(processors)));
+      fmt::format("core times were measured on different processors: {}", some_of(processors)));
 }
 
-/// Adds to each run the checkpoints that the figure takes, up to the end of the run, and removes
-/// runs without such a checkpoint. A figure that measures nothing takes the last checkpoint of each
-/// run. Adds notes on removed runs, on unfinished runs, and on missing checkpoints before the last
-/// one: a manifest may ask for checkpoints more often than the runs recorded them.
+/// Adds to each run the checkpoints that the figure needs, up to the end of the run. Removes runs
+/// without a checkpoint that the figure needs. Adds notes on removed runs, on unfinished runs, and
+/// on checkpoints that the manifest asks for and the run did not record. A table needs only the
+/// last checkpoint of each run; for a table, no run is removed and no note is added.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =
@@ -68,7 +67,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
     std::size_t checkpoints = 0;
     std::set<std::string> runs;
   };
-  std::map<bool, Lack> lacks;  // true: of runs that LAMMPS computed
+  std::map<bool, Lack> lacks;  // key: whether LAMMPS computed the runs
   const bool last_only = figure.form == FigureForm::table;
   for (FrameRun& run : collected.runs) {
     run.end = last_only ? static_cast<double>(run.ask.target_cycles)
@@ -115,22 +114,21 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
   }
   if (!going_on.empty()) {
     collected.notes.push_back(
-        fmt::format("not finished, and shown up to their last checkpoint: {}: {}",
+        fmt::format("unfinished, and shown up to the last checkpoint of each run: {}: {}",
                     counted(going_on.size(), "run"), some_of(going_on)));
   }
   if (std::ranges::count(figure.needs, cost_provider) > 0) add_core_times(store, collected);
   for (const auto& [of_lammps, lack] : lacks) {
     collected.notes.push_back(fmt::format(
-        "never made: {} that the manifest asks for (runs {}); {}",
+        "missing: {} that the manifest asks for (runs {}); {}",
         counted(lack.checkpoints, "checkpoint"), some_of(lack.runs),
         of_lammps
-            ? "these runs are of LAMMPS, which does not repeat bits: `run` and `resume` leave "
-              "them out, and the checkpoints cannot be made later"
+            ? "`run` and `resume` cannot add these checkpoints, because LAMMPS computed the runs "
+              "and cannot repeat them bit for bit"
             : "`shearcell run` with the manifest, or `shearcell resume RUN`, computes them"));
   }
 }
 
-/// Sets Run::name and Run::named of the runs of this experiment.
 void name_variants(const std::vector<VariantLabel>& labels, const std::string& experiment,
                    CollectedRuns& collected) {
   std::vector<nlohmann::json> variants;
@@ -146,7 +144,7 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
   }
 }
 
-/// The planned runs of the scale. A sweep that is too large for a manifest has none.
+/// The planned runs of the scale; empty if the sweep has more variants than ManifestLimits::runs.
 PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
   PlannedRuns planned;
   for (const Scale& scale : scales_of(manifest)) {
@@ -165,7 +163,8 @@ PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
   return planned;
 }
 
-/// Sets Frame::seeds, Frame::looks, and in Frame::pending the planned runs that are not declared.
+/// Sets Frame::seeds and Frame::looks. Adds the planned runs that are not declared to
+/// Frame::pending.
 void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
   if (fresh) known->second = plan_runs(manifest.content, collected.scale);
@@ -184,7 +183,7 @@ void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   });
 }
 
-/// Makes the experiment a swept value of the run.
+/// Adds the experiment to the swept values, the variant and the name of the run.
 void add_experiment(FrameRun& run) {
   const std::string& experiment = run.place.experiment;
   run.place.swept["experiment"] = experiment;
@@ -193,8 +192,8 @@ void add_experiment(FrameRun& run) {
   run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
 }
 
-/// Joins the runs of several experiments to one list. A stage that two experiments share is a run
-/// of the first one only. Adds a note on experiments without runs.
+/// Joins the runs of several experiments into one list. If experiments share a stage, only the run
+/// of the first experiment stays in the list. Adds a note on each experiment without runs.
 void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
   std::set<std::string> known;
   std::vector<FrameRun> joined;
@@ -213,8 +212,8 @@ void join(const std::vector<std::string>& experiments, CollectedRuns& collected)
   std::ranges::for_each(collected.pending, add_experiment);
 }
 
-/// Returns the selected runs of the figure's experiments, of all versions of their manifests.
-/// Throws NotFound if there is no such run.
+/// Returns the selected runs of the figure's experiments, including runs of older manifest
+/// versions. Throws NotFound if these experiments have no selected run.
 std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
                          const RunSelection& selection) {
   std::vector<Run> found = select_runs(store, selection);
@@ -227,14 +226,14 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
   if (found.empty()) {
     throw NotFound(fmt::format(
         "no selected run belongs to figure {}; `shearcell status` lists the runs of the "
-        "store, and `shearcell run` adds the runs of a manifest",
+        "store, and `shearcell run` computes the runs of a manifest",
         wanted.path()));
   }
   return found;
 }
 
-/// The scale of the run that was declared last among the runs of the newest manifests, or among all
-/// runs if there is none.
+/// The scale of the run that was declared last. Runs of older manifest versions are considered only
+/// if there is no run of a newest version.
 std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
     return std::ranges::count(manifests, run.place.manifest, &ReadManifest::sha256) > 0;
@@ -243,14 +242,12 @@ std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManif
   return (last == runs.rend() ? runs.back() : *last).place.scale;
 }
 
-/// Whether the figure is made of the runs of several experiments.
 bool is_across(const Figure& figure) {
   return figure.form == FigureForm::table || !figure.of.empty();
 }
 
-/// Sets WantedFigure::also.
 void share_needs(std::vector<WantedFigure>& figures) {
-  std::map<std::string, std::set<std::string>> needs;  // of each experiment
+  std::map<std::string, std::set<std::string>> needs;  // by experiment
   for (const WantedFigure& wanted : figures) {
     for (const std::string& name : wanted.figure.needs) {
       const Provider& one = provider(name);
@@ -280,7 +277,7 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
   for (Run& run : newest.runs) {
     FrameRun& made = runs.emplace_back(FrameRun{std::move(run)});
     made.parameters = effective_parameters(made.stage.resolved);
-    made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // where it has no effect
+    made.parameters.emplace("pressure_at", name_of(PressureAt::top));  // absent without effect
   }
   return runs;
 }
@@ -347,8 +344,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   }
   for (const Figure& figure : all_figures()) {
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
-    // Without names, table1 is drawn if a manifest lists figures of the supplement, a comparison of
-    // several experiments if the store has two of them.
+    // If `names` is empty, table1 is drawn if a manifest lists figures of the supplement. A figure
+    // that compares experiments is drawn if the store has at least two of these experiments.
     const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)
@@ -387,7 +384,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   const std::vector<ReadManifest>& manifests = *collected.manifests;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
-  std::set<std::string> at_scale, elsewhere;  // experiments
+  std::set<std::string> at_scale, elsewhere;  // names of experiments
   std::erase_if(selected, [&](const Run& s) {
     const bool is_at_scale = s.place.scale == collected.scale;
     (is_at_scale ? at_scale : elsewhere).insert(s.place.experiment);
@@ -401,11 +398,11 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.runs = frame_runs(std::move(selected), collected.notes);
   if (collected.runs.empty()) {
     throw NotFound(fmt::format(
-        "the runs selected for figure {} are of an older version of the manifest; run the version "
-        "that states them, which computes nothing new",
+        "the runs selected for figure {} belong to an older version of the manifest; `shearcell "
+        "run` this version again to make it the newest version (this computes nothing)",
         wanted.path()));
   }
-  std::map<std::string, std::string> packings;  // by the stage before
+  std::map<std::string, std::string> packings;  // by id of the parent stage
   for (FrameRun& run : collected.runs) {
     const auto [packing, fresh] = packings.try_emplace(run.stage.parent);
     if (fresh) packing->second = packing_before(store, run.stage);

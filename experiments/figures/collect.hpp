@@ -24,21 +24,20 @@ struct PlannedRuns {
   std::vector<std::size_t> looks;
 };
 
-/// The newest version of a registered manifest, with what was read from its text.
+/// A registered manifest in its newest version. `content` is its parsed text.
 struct ReadManifest : RegisteredManifest {
   Manifest content;
   mutable std::map<std::string, PlannedRuns> planned = {};  ///< by scale; filled on demand
 };
 using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
 
-/// A figure of one experiment, or of all experiments ("").
 struct WantedFigure {
   Figure figure;
-  std::string experiment;
-  /// Derived measures that other figures of the experiment need: MeasureOptions::also.
+  std::string experiment;  ///< "" for a figure of all experiments
+  /// Providers that other figures of the experiment need, for MeasureOptions::also.
   std::vector<std::string> also = {};
-  /// The manifests of the store, shared by the figures of one command, so that each manifest is
-  /// read and its variants are expanded once. Null: collect_runs() reads them.
+  /// The manifests of the store. All figures of one command share them, so that each manifest is
+  /// read and expanded only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
 
   /// "drag/S2", for messages.
@@ -47,49 +46,50 @@ struct WantedFigure {
 
 /// The figures that registered manifests list.
 struct WantedFigures {
-  /// By experiment: figures in the order of the supplement, then plots and claims. Figures of all
-  /// experiments are last.
+  /// Sorted by experiment; figures of all experiments are last. Within an experiment, the figures
+  /// that the manifest lists by name come before the figures whose plots and claims it states.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// The figures, plots and claims of the newest manifests: all or those in `names`, of all
-/// experiments or of `experiments`. The manifests of `experiments` need not list the figures in
-/// `names`. Throws NotFound, with the nearest name, for an unknown figure or experiment.
+/// Returns the figures, plots and claims of the newest manifests that have one of `names` and
+/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, the
+/// manifests need not list the figures in `names`. Throws NotFound for an unknown figure or
+/// experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
-/// Removes the figures of experiments without a selected run, unless no figure would be left.
-/// Returns a note on them, or "".
+/// Removes the figures of experiments without a selected run, and returns a note that names these
+/// experiments. If no run at all is selected, removes no figure and returns "".
 std::string leave_out_unselected(const Store& store, const RunSelection& runs,
                                  std::vector<WantedFigure>& figures);
 
-/// Returns the newest_runs() of `selected`, without checkpoints, and adds a line to `notes` for
-/// what is left out. Where P acts equally on both walls, the parameters of a run say `pressure_at:
-/// top`.
+/// Returns the newest_runs() of `selected`, without checkpoints. Adds lines on the runs that are
+/// left out to `notes`. In runs on which the key `pressure_at` has no effect, the key is set to
+/// `top`.
 std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes);
 
-/// Removes the checkpoints without a result of scalars_provider, and limits the end of the run to
-/// the cycle that its stage has reached.
+/// Removes the checkpoints for which scalars_provider has no result. Limits FrameRun::end to the
+/// cycle that the run's stage has reached.
 void leave_out_unmeasured(FrameRun& run);
 
-/// Measures the checkpoints of the runs, with the cadence that each run's experiment asks for. Adds
-/// what could not be read to the outcome.
+/// Measures the checkpoints of the runs. A measure over two checkpoints uses checkpoints at the
+/// cadence that the run's experiment asks for. Adds unreadable checkpoints to `outcome`.
 void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
-  ReadManifests manifests;  ///< WantedFigure::manifests, read if that is null
-  std::string scale;        ///< one figure never mixes scales
-  /// Lines on runs that were left out or are not finished, and on checkpoints that were never made.
+  ReadManifests manifests;  ///< WantedFigure::manifests; if those are null, read from the store
+  std::string scale;        ///< the scale of all runs: a figure never mixes scales
+  /// Messages on runs that were left out, on unfinished runs and on missing checkpoints.
   std::vector<std::string> notes;
 };
 
-/// Returns the selected newest_runs() of the figure's experiment at one scale: the scale of the run
-/// that was declared last. Each run has its checkpoints up to end_for(). In a figure of all
-/// experiments, a run occurs once for each of its experiments. Throws NotFound if no run is
-/// selected.
+/// Returns the newest_runs() of the figure's experiment that `selection` selects, at the scale of
+/// the run that was declared last. Each run has its checkpoints up to end_for(). In a figure of all
+/// experiments, a run that belongs to several experiments occurs once for each experiment. Throws
+/// NotFound if no run is selected.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

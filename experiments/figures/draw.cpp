@@ -27,8 +27,8 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure used, by step, including the earlier checkpoints from
-/// which it measured changes.
+/// The checkpoints of the run that the figure used, in the order of steps. The list includes the
+/// earlier checkpoints that a measure of changes needed.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FrameRun& run) {
   std::set<std::string> own;
@@ -40,7 +40,6 @@ std::vector<CheckpointRecord> used_checkpoints(const Store& store, const Compute
   return records;
 }
 
-/// The runs of the figure and their states, as its record names them.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
@@ -62,8 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// Whose plots drew a figure that its manifest does not state, as in stores of earlier versions,
-/// whose manifests list figures by name; "" for a figure that the manifest states or C++ computes.
+/// Returns a text that names the version of the plots, if the manifest does not state the figure's
+/// plots. Manifests of earlier versions list figures by name only. Returns "" if the manifest
+/// states the figure or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -77,7 +77,7 @@ std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>
                      lists ? "lists " + name + " only" : "does not name " + name);
 }
 
-/// The figure's record, without facts that depend on the time or the host.
+/// The figure's record, without the facts that depend on time or host.
 nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots,
                           nlohmann::json inputs) {
   nlohmann::json facts = {{"figure", figure.name},
@@ -90,7 +90,7 @@ nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots
   return facts;
 }
 
-/// Records the figure, unless its newest record differs in host and build only.
+/// Records the figure, unless its newest record differs only in host and build.
 void record(Store& store, const std::string& name, nlohmann::json facts) {
   for (const FigureRecord& known : store.figures()) {
     if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;
@@ -99,8 +99,9 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record("figure/" + name, {events::kFigureGenerated, facts});
 }
 
-/// "drag/desk", or "desk" for a figure of all experiments: the path of its files in the folder for
-/// figures, and of its record. Checks both names, since the store is not trusted.
+/// Returns "drag/desk", or "desk" for a figure of all experiments. This is the path of the figure's
+/// files in the output folder, and the beginning of its record's name. Throws StoreDamaged if a
+/// name in the store cannot name a folder.
 std::string place_of(const ComputedFigure& figure) {
   const std::string scale = scale_name(figure.scale);
   for (const auto& [what, name] :
@@ -112,7 +113,6 @@ std::string place_of(const ComputedFigure& figure) {
   return figure.experiment.empty() ? scale : figure.experiment + "/" + scale;
 }
 
-/// Gives letters to the panels of a figure, if it has several.
 void lay_out(std::vector<Table>& tables, bool wide) {
   char letter = 'a';
   for (Table& table : tables) {
@@ -122,12 +122,11 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether the runs have no value that the table can draw. Series that are neither traces nor
-/// columns of the table hold published points.
+/// Whether the table has no drawable value of a run. A series without columns of the table holds
+/// published points, unless it is a trace (`thin`) or no other series has columns.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
-  // If other series have columns, stated points are published values.
   const auto has_columns = [](const Series& one) { return one.thin || !one.columns.x.empty(); };
   const bool all_stated = std::ranges::none_of(table.chart.series, has_columns);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
@@ -136,8 +135,8 @@ bool has_no_value(const Table& table) {
   });
 }
 
-/// What the panels show, the number of runs, which runs were selected and what was left out; "" if
-/// nothing is drawn.
+/// The caption: what the panels show, the number of runs, which runs were selected, and what was
+/// left out. It is "" if nothing is drawn.
 std::string caption_of(const ComputedFigure& figure, const RunSelection& selected) {
   if (figure.tables.empty() || figure.tables.front().chart.series.empty()) return "";
   const std::map<std::string, std::size_t>& runs = figure.runs_by_variant;
@@ -153,7 +152,7 @@ std::string caption_of(const ComputedFigure& figure, const RunSelection& selecte
                           runs.size() > 6 ? fmt::format("{} variants", runs.size())
                                           : fmt::format("{}", fmt::join(variants, "; ")))};
   }
-  // The title of an own plot says what its axes say.
+  // The title of a plot from a user's manifest only repeats the labels of the axes.
   const std::string title = find_figure(figure.name) == nullptr ? "" : ". " + figure.title;
   std::string text =
       fmt::format("{} Runs: {}. {}cale {}.",
@@ -168,7 +167,7 @@ std::string caption_of(const ComputedFigure& figure, const RunSelection& selecte
   for (const auto& [lines, what] :
        {std::pair(&figure.damage, "damaged"), {&figure.pruned, "pruned"}}) {
     if (lines->empty()) continue;
-    text += fmt::format(" Left out: what needs {}.",
+    text += fmt::format(" Left out: values that need {}.",
                         counted(lines->size(), fmt::format("{} checkpoint", what)));
   }
   if (!figure.why_empty.empty()) text += " " + figure.why_empty;
@@ -195,9 +194,10 @@ std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
-/// Sets ComputedFigure::primary and Verdict::primary from `primary` in the experiment's manifest at
-/// this scale; for a figure of all experiments, from all manifests. A manifest names a claim by its
-/// id, or by its id without the value of `for_each`; older manifests name it by its statement.
+/// Sets ComputedFigure::primary and Verdict::primary from the key `primary` of the experiment's
+/// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
+/// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
+/// statement.
 void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& figure) {
   for (const ReadManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
@@ -214,7 +214,7 @@ void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& fi
   }
 }
 
-/// Makes the figure of these runs.
+/// Measures the runs in `frame`, and sets the lineage, tables and verdicts of `made`.
 void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOptions& options,
                   CollectedRuns frame, ComputedFigure& made) {
   const Figure& figure = wanted.figure;
@@ -222,7 +222,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   MeasureOptions measuring = options;
   measuring.also = wanted.also;
   measuring.simulated = figure.simulated;
-  std::vector<std::string> providers;  // none of a table, which is not measured
+  std::vector<std::string> providers;  // empty for a table, which needs no measures
   if (figure.form != FigureForm::table) {
     providers = figure.needs;
     providers.insert(providers.begin(), scalars_provider);
@@ -231,9 +231,9 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   std::ranges::for_each(runs, leave_out_unmeasured);
   made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
-    require_told_apart(
-        figure.name, runs, figure.keys,
-        "give each an experiment of its own, or state a plot in the manifest (`plots`)");
+    require_told_apart(figure.name, runs, figure.keys,
+                       "make a separate experiment for each value, or state a plot in the manifest "
+                       "(`plots`)");
   }
   made.title = title_of(figure, runs);
   made.runs = runs.size();
@@ -257,7 +257,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   made.why_empty = fmt::format(
       "Nothing is drawn{}{}: no run has {}.", made.empty.empty() ? "" : " in ",
       fmt::join(made.empty, ", "),
-      runs.empty() ? "a checkpoint of the cycles that it shows" : "the values that it shows");
+      runs.empty() ? "a checkpoint at the cycles to be shown" : "the values to be shown");
 }
 
 }  // namespace
@@ -284,7 +284,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   const std::string place = place_of(made);
   const std::filesystem::path folder = options.folder / place;
   if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
-    throw UsageError(fmt::format("{}: cannot make this folder: {}. Name another with --out.",
+    throw UsageError(fmt::format("{}: cannot create folder: {}. Name another folder with --out.",
                                  folder.string(), failed.message()));
   }
   for (const Table& table : made.tables) require_own_files(table, folder);
@@ -295,7 +295,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     });
   };
   require(".verdict.json", "{\n \"claims\": [", "");
-  require(".verdict.csv", "claim", "");  // the only column if no run has a value
+  require(".verdict.csv", "claim", "");  // always the first column
   require(".caption.txt", "Figure " + made.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + made.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {

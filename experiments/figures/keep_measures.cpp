@@ -16,18 +16,18 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kAtOnce = 500;  // checkpoints whose results are in memory at a time
+constexpr std::size_t kAtOnce = 500;  // largest number of checkpoints with results in memory
 
 /// Whether the provider needs the file of an earlier checkpoint that is already pruned, for example
-/// because a pruned run was continued. The measure was lost when that file was pruned.
+/// because a pruned run was continued. In this case the measure was lost with the earlier file.
 bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
                          std::uint64_t every, const Provider& provider) {
   const CheckpointRecord* earlier = sources.earlier(record, provider, every);
   return earlier != nullptr && earlier->state == CheckpointState::pruned;
 }
 
-/// Syncs the cache to the disk. DerivedCache itself does not sync, because measures can usually be
-/// computed again; after a prune they cannot.
+/// Syncs the cache to the disk. DerivedCache itself does not sync, because lost measures can
+/// usually be computed again. After a prune this is impossible.
 void sync_cache(const Store& store) {
   const std::filesystem::path file = store.folder() / DerivedCache::kFile;
   for (const std::filesystem::path& path : {file, store.folder()}) {
@@ -73,7 +73,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
     if (stage.memberships.empty())
-      stage.memberships.emplace_back();  // in a damaged store: declared by no experiment
+      stage.memberships.emplace_back();  // damaged store: no experiment declared the stage
     for (const auto& [place, ask, newest] : stage.memberships) {
       FrameRun run{{place, ask, stage}};
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
@@ -83,7 +83,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       batch.push_back(run);
       for (const auto& [figure, experiment, also, manifests] : simulating) {
         if (experiment != place.experiment) continue;
-        // Only cycles that figures take are simulated: a simulation takes longer than an analysis.
+        // Simulations are slow, so only the cycles that figures show are simulated.
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;

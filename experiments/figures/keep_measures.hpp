@@ -9,14 +9,15 @@
 
 namespace shearcell {
 
-/// Computes and caches the measures that tables and figures may ask for and that need the files of
-/// these checkpoints: all derived measures of all checkpoints of their runs, since a measure of a
-/// later checkpoint may need an earlier file, at each cadence that an experiment asks for.
-/// Simulated measures are computed if a figure of a registered manifest needs them.
+/// Computes and caches the measures that tables and figures may need and that need the files of
+/// `records`. These are all derived measures of all checkpoints of the runs, because a measure of a
+/// later checkpoint may need an earlier file. They are computed at each checkpoint cadence that an
+/// experiment asks for. Simulated measures are computed if a figure of a manifest needs them.
 ///
 /// Removes from `records` each checkpoint with a measure that could not be computed; the outcome
-/// says why. A checkpoint stays if the measure needs another file, which was pruned before. Removes
-/// all records if measures cannot be cached. The cache is on disk when the function returns.
+/// gives the reason. A checkpoint stays in `records` if the measure also needs the file of an
+/// earlier checkpoint that is already pruned. If measures cannot be cached, removes all records.
+/// The cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the record says of a run, without its states.
+/// Reads an input of the figure's record, except the states.
 FigureInput read_input(const json& input) {
   FigureInput result;
   input.at("run").get_to(result.run);
@@ -30,7 +30,8 @@ FigureInput read_input(const json& input) {
   return result;
 }
 
-/// How far two numbers of one cycle may differ: a cycle has many fewer than 1e9 time steps.
+/// Numbers of cycles that differ by less than this are equal. A cycle has far fewer than 1e9 time
+/// steps.
 constexpr double kSameCycle = 1e-9;
 
 Cycles cycles_of(const std::vector<CheckpointRecord>& checkpoints) {
@@ -49,8 +50,8 @@ Cycles cycles_of(const std::vector<CheckpointRecord>& checkpoints) {
   return ranges;
 }
 
-/// The checkpoints at these cycles. A rejected checkpoint is one of them only if no other
-/// checkpoint has its cycle.
+/// The checkpoints of the run at these cycles. A rejected checkpoint is returned only if the run
+/// has no other checkpoint at the same cycle.
 std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cycles) {
   std::map<double, CheckpointRecord> found;
   for (const CheckpointHistory& c : run.checkpoints) {
@@ -69,7 +70,6 @@ std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cyc
   return all;
 }
 
-/// Reads the states of an input and finds them in the log.
 void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   std::vector<CheckpointRecord> found;
   if (entry.contains("checkpoints")) {  // a record of an earlier version
@@ -78,7 +78,7 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
       if (const CheckpointHistory* known = run.find(sha256)) found.push_back(known->record);
     }
     input.states = states_of(found);
-    if (found.size() < input.checkpoints.size()) input.fault = "the log lacks some of them";
+    if (found.size() < input.checkpoints.size()) input.fault = "the log lacks some checkpoints";
     return;
   }
   input.states = {entry.at("cycles"), entry.at("state_hash"), entry.at("states_sha256")};
@@ -87,10 +87,10 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   if (states_of(found) != input.states) input.fault = "the log has other states at these cycles";
 }
 
-// The swept values of the run, in the place that the figure used.
+// The swept values of the run in the manifest version and variant that the figure used.
 json swept_values_of(const Stage& stage, const FigureInput& input) {
   for (const auto& [place, ask, newest] : stage.memberships) {
-    // Earlier programs called a variant of an older manifest "VARIANT,manifest=VERSION".
+    // Earlier programs named a variant of an older manifest "VARIANT,manifest=VERSION".
     const bool same =
         input.variant == place.variant || input.variant.starts_with(place.variant + ",manifest=");
     if (place.manifest == input.manifest && same) return place.swept;
@@ -146,7 +146,7 @@ json stage_json(const RunLineage& stage) {
           {"attempts", attempts}};
 }
 
-// File name -> SHA-256, from JSON that is not trusted.
+// The outputs in a record, as file name -> SHA-256. The record may be malformed.
 std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
   const json found = provenance.is_object() ? provenance.value("outputs", json()) : json();
@@ -157,7 +157,7 @@ std::map<std::string, std::string> outputs_of(const json& provenance) {
   return outputs;
 }
 
-// The SHA-256 of the file in the lineage file beside it, or "".
+// The SHA-256 that the lineage file in the same folder states for the file, or "".
 std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
   const auto text =
       read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);
@@ -243,7 +243,7 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
     }
   } catch (const json::exception& problem) {
     throw StoreDamaged(
-        fmt::format("event {} (FigureGenerated of {}): its payload is malformed: {}; run `verify`",
+        fmt::format("event {} (FigureGenerated of {}): the payload is malformed: {}; run `verify`",
                     record.seq, record.name, problem.what()));
   } catch (const NotFound& problem) {
     throw StoreDamaged(fmt::format("event {} (FigureGenerated of {}): {}", record.seq, record.name,
@@ -333,7 +333,7 @@ std::vector<Finding> check_inputs(const Store& store, const FigureLineage& linea
     for (const std::string& sha256 : input.checkpoints) {
       const CheckpointHistory* known = run.find(sha256);
       if (known == nullptr) {
-        faults.push_back({error, sha256, input.run, "the log does not have it"});
+        faults.push_back({error, sha256, input.run, "the log lacks this checkpoint"});
         continue;
       }
       try {

@@ -23,83 +23,87 @@ using Cycles = std::vector<std::array<double, 3>>;
 /// "0:120:1, 133.5:133.5:1".
 std::string to_text(const Cycles& cycles);
 
-/// States of a run, as a published lineage file names them. Unlike the hashes of files, the hashes
-/// of states do not depend on the version of HDF5.
+/// States of a run, as a published lineage file lists them. Hashes of states do not depend on the
+/// version of HDF5; hashes of files do.
 struct States {
   Cycles cycles;           ///< of the states
   std::string state_hash;  ///< of the last state
-  std::string sha256;      ///< of the text with one line for each state: its state_hash
+  std::string sha256;      ///< SHA-256 of a text that has one state_hash on each line
 
   bool operator==(const States&) const = default;
 };
 
-/// The states of checkpoints in the order of their steps.
+/// Returns the states of these checkpoints. `checkpoints` must be sorted by step.
 States states_of(const std::vector<CheckpointRecord>& checkpoints);
 
-/// A run of the figure.
 struct FigureInput {
   std::string run;
   std::string experiment;
   std::string variant;
   std::uint64_t seed = 0;
   std::string manifest;                  ///< SHA-256
-  std::vector<ManifestLine> lines;       ///< of that manifest
-  nlohmann::json overrides;              ///< key -> {"run", "manifest"}; null without any
-  States states;                         ///< as recorded
+  std::vector<ManifestLine> lines;       ///< lines of the manifest that apply to the run
+  nlohmann::json overrides;              ///< as overrides_of() returns them
+  States states;                         ///< as the figure's record states them
   std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
-  std::string fault;                     ///< how the log differs from `states`; "" if it does not
+  std::string fault;                     ///< how the log differs from `states`; "" if both agree
 };
 
 struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::string plots;  ///< "drawn by the plots of ..." if its manifest states none of its plots
+  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest states the plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
-  std::vector<ManifestText> manifests;         ///< each once
-  RunLineages runs;                            ///< of the inputs and of the stages before them
+  std::vector<ManifestText> manifests;         ///< of the inputs, without duplicates
+  RunLineages runs;                            ///< of the input runs and of their parent stages
 };
 
-/// Values that the command line gave instead of values of the manifest, as {"cycles": {"run": 8,
-/// "manifest": 5}}; null if there are none.
+/// Returns the values of the manifest that the command line replaced, or null. Example for a run of
+/// 8 cycles whose manifest states 5 cycles: {"cycles": {"run": 8, "manifest": 5}}.
 nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
                             const Ask& ask);
-/// "S2" for a record named "drag/desk/S2", or "drag/S2" or "S2" as in older stores.
+/// Returns "S2" for a record named "drag/desk/S2". Records of older stores are named "drag/S2" or
+/// "S2".
 std::string figure_name(const FigureRecord& record);
 
-/// "drag/desk/S2" also where an older version named the record "drag/S2"; "desk/table1" for a
-/// figure of all experiments.
+/// Returns "drag/desk/S2", also for a record that an older version named "drag/S2". Returns
+/// "desk/table1" for a figure of all experiments.
 std::string figure_path(const FigureRecord& record);
 
-/// The text of a figure's lineage file: the payload of its record without host and build.
+/// The text of a figure's lineage file, which is the payload of the figure's record without host
+/// and build.
 std::string lineage_text(nlohmann::json provenance);
 
-/// Every record of every figure, oldest first.
+/// All records of all figures, from the oldest to the newest.
 std::vector<FigureRecord> figure_records(const Store& store);
 
 /// Collects the lineage from the log. Throws StoreDamaged if the record is malformed or names an
-/// unknown run. Records of earlier versions list the SHA-256 of every file in place of `states`.
+/// unknown run. Also reads records of earlier versions, which list the SHA-256 of every checkpoint
+/// file instead of states.
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
 nlohmann::json to_json(const FigureLineage& lineage);
 
 /// A file on disk that a figure's record names.
 struct PublishedFile {
-  std::string sha256;    ///< of its bytes
+  std::string sha256;    ///< of the file's bytes
   std::string recorded;  ///< SHA-256 in the record
   FigureRecord record;
 
   bool matches() const { return sha256 == recorded; }
 };
 
-/// Finds the record of a file by the SHA-256 of the bytes, else by the lineage file beside it, else
-/// by its name. Nothing if the store has no such record. Throws NotFound if the path is not a
-/// regular file.
+/// Finds the record of the figure to which a file belongs: by the SHA-256 of the file's bytes, else
+/// by the lineage file in the same folder, else by the file's name. Returns nothing if the store
+/// has no such record. Throws NotFound if the path is not a regular file, and UsageError if the
+/// file is larger than any file of a figure.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 
-/// Reads and hashes every input checkpoint. Returns those that are not as recorded: the subject is
-/// the SHA-256, or "" for the run as a whole. A pruned file is a note.
+/// Reads and hashes every input checkpoint. Returns a finding for each checkpoint or run that
+/// differs from the record. The subject of a finding is the SHA-256 of the checkpoint, or "" for a
+/// whole run. A pruned file is a finding of severity `note`.
 std::vector<Finding> check_inputs(const Store& store, const FigureLineage& lineage);
 
 }  // namespace shearcell

@@ -26,11 +26,11 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/// The source of the cells of a row.
+/// The run and the checkpoint that a row describes.
 struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  const FrameRun* history = nullptr;               // for onsets; null for a run that is not a shear
+  const FrameRun* history = nullptr;               // shear at whole cycles, for onsets; may be null
 };
 
 struct Column : TableColumn {
@@ -54,7 +54,6 @@ Column of_checkpoint(std::string_view name, std::string_view meaning, Value valu
           }};
 }
 
-/// A number of a checkpoint, or of a whole run.
 Column column_of(const Measure& measure) {
   return {{std::string(measure.name), std::string(measure.meaning)},
           [&measure](const Row& row) -> TableCell {
@@ -69,11 +68,11 @@ Column column_of(const Measure& measure) {
 
 std::vector<Column> names() {
   return {
-      of_run("experiment", "name of the manifest's experiment",
+      of_run("experiment", "name of the experiment",
              [](const Run& s) { return s.place.experiment; }),
       of_run("scale", "scale of the manifest",
              [](const Run& s) { return scale_name(s.place.scale); }),
-      of_run("variant", "its label in the manifest, or what varies in it",
+      of_run("variant", "label of the variant in the manifest, or its swept values",
              [](const Run& s) { return s.name; }),
       of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
       of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
@@ -87,7 +86,8 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// The numbers of a checkpoint; simulated ones only of the providers that `simulated` names.
+/// The columns of a checkpoint. They include simulated measures only of the providers that
+/// `simulated` names.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
   for (const Measure* measure : all_measures(MeasureKind::number)) {
@@ -98,9 +98,8 @@ std::vector<Column> measures(std::span<const std::string> simulated) {
   return columns;
 }
 
-/// The outcome of a method that finds the onset.
 Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
-  return {{name, std::string("observed, never, before_start or unclear: outcome of ") + meaning},
+  return {{name, std::string("outcome (observed, never, before_start or unclear) of ") + meaning},
           [find](const Row& row) -> TableCell {
             if (row.history == nullptr || row.history->checkpoints.empty()) return {};
             return std::string(name_of(find(*row.history).observed));
@@ -118,18 +117,18 @@ std::vector<Column> ends() {
               [](const Run& s) { return std::string(name_of(s.stage.state)); }),
        of_checkpoint("state_hash", "hash of this state; equal states have equal hashes",
                      [](const CheckpointRecord& c) { return c.state_hash; }),
-       of_run("target_cycles", "length that the experiment asks for",
+       of_run("target_cycles", "number of cycles that the experiment asks for",
               [](const Run& s) { return s.ask.target_cycles; }),
-       of_run("wall_time_s", "time that the run took to compute, over all attempts",
+       of_run("wall_time_s", "wall-clock time of the computation, summed over all attempts",
               [](const Run& s) { return number(s.stage.wall_seconds); }),
        of_run("particle_steps_per_s", "mean speed of the computation, in particle-steps per second",
               [](const Run& s) { return number(s.stage.particle_steps / s.stage.wall_seconds); })});
   return columns;
 }
 
-/// The columns that distinguish runs.
+/// The columns that identify a run: names, seed and swept parameters.
 std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs) {
-  std::set<std::string> swept = {"grains"};  // a column of every table
+  std::set<std::string> swept = {"grains"};  // every table has this column
   for (const FrameRun& run : runs) {
     for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
@@ -164,8 +163,8 @@ std::vector<FrameRun> select(const Store& store, const RunSelection& selection,
   return runs;
 }
 
-/// Adds a note on checkpoints whose own file exists, but with measures that need the file of an
-/// earlier checkpoint, which does not exist.
+/// Adds a note on checkpoints that lack a measure because the file of an earlier checkpoint does
+/// not exist. Checkpoints whose own file was pruned are not counted.
 void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
   for (const FrameRun& run : runs) {
@@ -177,8 +176,8 @@ void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   for (const auto& [name, count] : lacking) {
     if (provider(name).cycles_back == 0) continue;
     table.notes.push_back(
-        fmt::format("{} with a file: no {}, since a checkpoint before {} is pruned or damaged; "
-                    "`shearcell regenerate` restores it",
+        fmt::format("{} with a file but without {}, because a checkpoint before {} is pruned or "
+                    "damaged; `shearcell regenerate` restores the pruned or damaged file",
                     counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
   }
 }
@@ -209,7 +208,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     }
   }
   made += measure_checkpoints(store, in_rows, names, options);
-  const std::string scalars = scalars_provider;  // all that onsets need
+  const std::string scalars = scalars_provider;  // onsets need no other measures
   made += measure_checkpoints(store, others, {&scalars, 1}, options);
   note_lacking(runs, made);
   const std::vector<Column> columns = columns_for(runs, per, simulated);

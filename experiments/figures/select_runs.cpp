@@ -30,7 +30,7 @@ void require_found(const char* what, const Filter& filter) {
                              did_you_mean(*missing, known)));
 }
 
-/// What identifies a run in all versions of a manifest.
+/// The values that identify a run in all versions of a manifest.
 auto in_any_version(const Place& place) {
   return std::tie(place.experiment, place.scale, place.variant, place.seed);
 }
@@ -40,8 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
   return {run.place.experiment, run.place.scale};
 }
 
-/// The places of the run in each experiment at each scale: those in the newest version of the
-/// manifest or, if that does not have the run, the place that was declared last.
+/// The places of the stage in the newest manifest version of each experiment, at each scale. If the
+/// newest version does not have the stage, the place that was declared last is returned instead.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {
@@ -56,8 +56,8 @@ std::vector<Membership> places_of(const Stage& stage) {
   return places;
 }
 
-/// By experiment, scale, variant and seed, so that the order does not depend on the store's
-/// history.
+/// Orders runs by experiment, scale, swept values and seed. This order does not depend on the
+/// history of the store.
 bool in_order(const Run& a, const Run& b) {
   const auto key = [](const Place& place) {
     return std::tie(place.experiment, place.scale, place.swept, place.seed);
@@ -86,7 +86,7 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   for (const auto& [where, found] : shortened) {
     notes.push_back(fmt::format(
         "experiment {}: {} shown shorter than stored (up to cycle {}), because the newest version "
-        "of its manifest asks for fewer cycles; raise its `cycles` to show more",
+        "of its manifest asks for fewer cycles; raise `cycles` in the manifest to show more",
         where.first, found.runs == 1 ? "1 run is" : fmt::format("{} runs are", found.runs),
         found.had));
   }
@@ -100,7 +100,7 @@ Place first_place(const Stage& stage) {
 
 namespace {
 
-/// Replaces each experiment without runs of its own (`of`) by the experiments that it compares.
+/// Replaces each experiment whose manifest has the key `of` by the experiments that `of` names.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
@@ -126,12 +126,12 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
   if (!selection.variants.empty()) names.emplace(store);
   std::vector<Run> selected;
   using Seed = std::tuple<ExperimentScale, std::string, std::uint64_t>;
-  std::map<Seed, std::size_t> seeds;  // of each variant, in `selected`
+  std::map<Seed, std::size_t> seeds;  // index in `selected` of the newest run of each seed
   for (const Stage& stage : store.stages()) {
     const bool packing = stage.kind == name_of(StageKind::prepare);
     if (packing && !selection.packings) continue;
     for (const auto& [place, ask, newest] : places_of(stage)) {
-      // Without &&, because each filter must see every value.
+      // `&=` evaluates every filter, and each filter must see every value.
       bool passes = experiment.passes(place.experiment);
       passes &= scale.passes(scale_name(place.scale));
       passes &= variant.passes(place.variant, names ? names->of(stage, place) : "");
@@ -141,8 +141,8 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
       if (!passes) continue;
       selected.push_back({.place = place, .ask = ask, .stage = stage, .newest = newest});
       if (packing || !newest) continue;
-      // A manifest may have declared two runs for one seed: its file of grains has changed, or the
-      // version of the program.
+      // A manifest may have declared two runs for one seed, because its file of grains or the
+      // version of the program has changed. Only the run that was declared last counts as newest.
       const Seed same = {experiment_scale(selected.back()), place.variant, place.seed};
       const std::size_t first = seeds.try_emplace(same, selected.size() - 1).first->second;
       if (first == selected.size() - 1) continue;
@@ -177,8 +177,8 @@ NewestRuns newest_runs(std::vector<Run> selected) {
       left[{experiment_scale(one), one.place.manifest}].push_back(one.place.variant);
     } else {
       chosen.notes.push_back(fmt::format(
-          "experiment {}: run {:.8} ({}, seed {}) is left out: the manifest was later declared "
-          "with run {:.8} in its place",
+          "experiment {}: run {:.8} ({}, seed {}) is left out, because the manifest later declared "
+          "run {:.8} for this seed",
           one.place.experiment, one.stage.id, one.place.variant, one.place.seed,
           instead->stage.id));
     }
@@ -190,7 +190,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     chosen.notes.push_back(fmt::format(
         "experiment {} at scale {}: left out: {} of another version of its manifest, {:.8}: {}; "
         "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
-        "that states the runs of both: it computes only what neither has",
+        "that states the runs of both versions; this computes only runs that neither version has",
         where.first, scale_name(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Replaces invalid UTF-8, by means of the JSON library.
+/// Replaces invalid UTF-8 by U+FFFD. The JSON library does this when it writes a string.
 std::string valid_utf8(std::string_view text) {
   const std::string dumped =
       nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -80,7 +80,7 @@ std::string filled(const std::string& page, const nlohmann::json& values) {
 }
 
 std::string script_json(const nlohmann::json& value) {
-  // In JSON these characters occur only within strings, where an escape means the same.
+  // In JSON these characters occur only in strings, where an escape has the same meaning.
   static const Escapes escapes = {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}};
   return escaped(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), escapes);
 }

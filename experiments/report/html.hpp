@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Escapes foreign text for HTML and JSON; fills a template.
+// Escapes untrusted text for HTML and JSON, and fills a template.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,18 @@ std::string escape_html(std::string_view text);
 
 std::string text_html(const Text& text);
 
-/// The Mustache template `page` with these values. Tags in double braces are escaped by
-/// escape_html(), those in triple braces are markup. A section is shown for true, a number, a text
-/// that is not empty, an object, and for each item of an array. A name that the innermost object
-/// lacks is looked up in the objects around it. Throws std::logic_error for a malformed template.
+/// Fills the Mustache template `page` with these values. escape_html() escapes values in double
+/// braces; values in triple braces are markup. A section is shown once if its value is true, a
+/// number, an object or a text that is not empty. A section whose value is an array is shown for
+/// each item. A name that the innermost object lacks is looked up in the objects around it. Throws
+/// std::logic_error for a malformed template.
 std::string filled(const std::string& page, const nlohmann::json& values);
 
-/// JSON for a <script> element. It contains no '<', '>' or '&', so that no text can end the element
-/// or begin a comment.
+/// Returns JSON for a <script> element. The JSON contains no '<', '>' or '&', so that no text can
+/// end the element or begin a comment.
 std::string script_json(const nlohmann::json& value);
 
-/// RFC 4648, padded.
+/// Returns the bytes in base64 (RFC 4648, with padding).
 std::string base64(std::span<const std::byte> bytes);
 
 }  // namespace shearcell

@@ -48,15 +48,14 @@ std::byte byte_of(const GrainField& field, double value) {
   return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
 }
 
-constexpr std::size_t kFactsInPage = 2500;  // facts, profiles and braces of a frame [bytes]
+constexpr std::size_t kFactsInPage = 2500;  // facts and profiles of a frame, as JSON [bytes]
 
 struct ChosenRun : Run {
-  std::vector<CheckpointRecord> checkpoints = {};  // fit() keeps those that the page shows
-  std::size_t bytes = 0;                           // of one checkpoint in the page
+  std::vector<CheckpointRecord> checkpoints = {};  // after fit() only those that the page shows
+  std::size_t bytes = 0;                           // size of one checkpoint in the page
   std::size_t wall_grains = 0;
 };
 
-/// Keeps `count` of the values, evenly spaced.
 template <class Value>
 void thin_out(std::vector<Value>& values, std::size_t count) {
   std::vector<Value> kept;
@@ -64,7 +63,8 @@ void thin_out(std::vector<Value>& values, std::size_t count) {
   values = std::move(kept);
 }
 
-/// The last run of each variant. If there are more than `limit` variants, they are chosen evenly.
+/// Returns the last run of each variant. If there are more than `limit` variants, returns runs of
+/// `limit` evenly spaced variants.
 std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
                                           const std::string& experiment, std::size_t limit) {
   std::vector<ChosenRun> last;
@@ -102,14 +102,14 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
-/// Whether encode_frame() stores the measure in an array of its own, with more digits than others.
+/// Whether encode_frame() stores the measure in a separate array instead of a GrainField.
 bool has_more_digits(const Measure& measure) {
   return measure.name == "phi_local" || measure.name == "q6" || measure.name == "structure" ||
          measure.name == "crystallite";
 }
 
-/// Sets the sizes of each run from its newest readable checkpoint. Removes runs that have no
-/// readable checkpoint.
+/// Sets the sizes of each run from its newest readable checkpoint. Removes runs without a readable
+/// checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   const auto all = all_measures(MeasureKind::grains);
   const auto fields = static_cast<std::size_t>(
@@ -146,7 +146,7 @@ void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& pa
   }
   if (!left_out.empty()) {
     packings.notes.push_back(
-        fmt::format("no room for the packings of {} ({}); a larger --packings-mb has room for them",
+        fmt::format("no room for the packings of {} ({}); raise --packings-mb to show more",
                     counted(left_out.size(), "run"), some_of(left_out)));
   }
   std::size_t frames = std::max<std::size_t>(1, choice.frames);
@@ -174,7 +174,7 @@ json facts_of(const PackingMeasures& measures, double theta) {
   return facts;
 }
 
-/// Ranges are the same for all packings of a run, so that their colours are comparable.
+/// All packings of a run have the same ranges, so that colours can be compared between packings.
 std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains,
                                     const RunFacts& run) {
   std::vector<GrainField> fields;

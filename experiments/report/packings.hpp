@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the checkpoints that a report shows as packings, and packs positions and measures of each
-// grain into 8 or 16 bits.
+// Selects the checkpoints that a report shows in 3D, and encodes each coordinate and each measure
+// of a grain in 8 or 16 bits.
 #pragma once
 
 #include <cstddef>
@@ -20,47 +20,48 @@ namespace shearcell {
 struct PackingChoice {
   std::vector<std::string> runs;        ///< ids; empty: the last run of each variant
   std::size_t runs_per_experiment = 6;  ///< largest number of runs if `runs` is empty
-  std::size_t frames = 40;              ///< largest number of checkpoints of a run
-  std::size_t budget = 9'000'000;       ///< bytes of all packings in the page
+  std::size_t frames = 40;              ///< largest number of checkpoints shown per run
+  std::size_t budget = 9'000'000;       ///< largest size of all packings in the page [bytes]
 };
 
 struct Packings : MeasureOutcome {
   /// [{id, label, experiment, grains, wall_grains, frames: [{name, sha256, facts, cell, fields,
-  /// profiles, origin, step, data}]}]; the front end reads it (web/src/viewer.js).
+  /// profiles, origin, step, data}]}], read by the front end (web/src/viewer.js).
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
-  double largest_step = 0;         ///< coordinates are rounded to multiples of this [d]
-  std::vector<std::string> notes;  ///< runs that were left out, one line each
+  double largest_step = 0;         ///< largest rounding step of a coordinate [d]
+  std::vector<std::string> notes;  ///< a line on runs that were left out
 };
 
-/// Packs checkpoints of the experiments, in their order. If the chosen checkpoints exceed the
-/// budget, each run shows fewer checkpoints, evenly spaced, with the first and the last. If the
-/// last checkpoints alone exceed the budget, the last runs are left out. The same store gives the
-/// same value.
+/// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed
+/// the budget, each run shows fewer of them, evenly spaced, with the first and the last. If the
+/// last checkpoints of all runs exceed the budget, the last runs are left out. The same store gives
+/// the same result.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers, const ReadProgress& report);
 
-/// `count` evenly spaced indices of 0 .. size - 1, including the first and the last index; one
-/// index is the last.
+/// Returns `count` evenly spaced indices from 0 to size - 1, including the first and the last. If
+/// `count` is 1, returns the last index.
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 
 /// `bytes` holds arrays of little-endian 16-bit words, or of bytes, for N grains and M wall grains:
 ///
-///     x, y, z       N + M each: coordinate = origin + step * word [d]; z within the period
-///     phi_local     N: word / 65535
-///     q6            N: word / 65535
-///     crystallite   N: its number from 1 on, at most 65535; 0 for none
+///     x, y, z       N + M words each: coordinate = origin + step * word [d]; z within the period
+///     phi_local     N words: phi_local = word / 65535
+///     q6            N words: q6 = word / 65535
+///     crystallite   N words: number of the crystallite, from 1 to 65535; 0 outside crystallites
 ///     structure     N bytes: 0 disordered, 1 FCC, 2 HCP; 4 is added for interior grains
 ///     each field    N bytes, see GrainField
 struct EncodedFrame {
   Eigen::Vector3d origin;
-  Eigen::Vector3d step;  ///< the error of a coordinate is at most half of it [d]
+  Eigen::Vector3d step;  ///< the error of a coordinate is at most step / 2 [d]
   std::vector<std::byte> bytes;
 };
 
-/// A further measure of each grain, by which a packing can be coloured. Its byte is a class, or
-/// 254 (value - low) / (high - low), with logarithms if its scale says so; 255 if it is unknown.
+/// A further measure of each grain, which can colour the grains. A grain has one byte: the number
+/// of its class, or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of
+/// value, low and high are used. The byte of an unknown value is 255.
 struct GrainField {
   const Measure* measure = nullptr;
   double low = 0, high = 0;

@@ -51,24 +51,23 @@ std::string_view front_end_script() {
   return {shearcell_script, shearcell_script_end};
 }
 
-/// An experiment of the store.
 struct Experiment {
-  RegisteredManifest manifest;           ///< its newest version
-  json figures = json::array();          ///< as figure_json() gives them
-  std::vector<Verdict> verdicts = {};    ///< of the figures
-  std::vector<std::string> unmade = {};  ///< figures that cannot be made of its runs
+  RegisteredManifest manifest;           ///< the newest version
+  json figures = json::array();          ///< results of figure_json()
+  std::vector<Verdict> verdicts = {};    ///< verdicts of all figures
+  std::vector<std::string> unmade = {};  ///< names of figures that could not be computed
   std::vector<Stage> runs = {};
-  RunTable table = {};  ///< a row for each run, without those that settle packings
+  RunTable table = {};  ///< a row for each run, except runs that settle packings
 };
 
-/// What the store holds.
+/// The contents of the page, from the store.
 struct Content {
   const Store& store;
   const ReportOptions& options;
   Report& report;
   std::vector<Experiment> experiments = {};
   json across = json::array();   ///< figures of all experiments together
-  json charts = json::object();  ///< by the id of their panel
+  json charts = json::object();  ///< by id of the panel
   RunLineages runs = {};
   std::map<std::string, ManifestText> manifests = {};
   Packings packings = {};
@@ -81,7 +80,7 @@ std::string script_hash(std::string_view script) {
   return "sha256-" + base64(std::as_bytes(std::span(digest)));
 }
 
-/// The beginning of an id, by which the page links to it.
+/// The beginning of an id, which the page shows and uses in links.
 std::string brief(const std::string& id) {
   return id.substr(0, 12);
 }
@@ -91,7 +90,6 @@ std::string text_of(const Maker& maker) {
   return fmt::format("{}; {}, {}", maker.program, maker.host, maker.machine);
 }
 
-/// A ruling with a mark that needs no colour.
 json ruling_json(Ruling ruling) {
   const bool good = ruling == Ruling::agrees || ruling == Ruling::supported;
   const bool open = ruling == Ruling::undecided || ruling == Ruling::undecidable;
@@ -125,7 +123,7 @@ std::string draw(const Table& table) {
   return std::move(*svg);
 }
 
-/// `id`: in the page, "drag.S2a".
+/// Describes a panel of a figure. `id`: id of the panel in the page, such as "drag.S2a".
 json panel_json(const Table& table, const std::string& id, const ComputedFigure& figure,
                 Content& content) {
   const bool interactive = content.report.interactive;
@@ -151,20 +149,19 @@ json panel_json(const Table& table, const std::string& id, const ComputedFigure&
           {"csv", to_csv(table)}};
 }
 
-/// The newest record of the figure with the same scale, states and analysis version.
+/// The newest record that has the same scale, states and analysis version as the figure.
 std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
   std::optional<FigureRecord> newest;
   for (FigureRecord& record : figure_records(store)) {
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
-    facts["outputs"] = json::object();  // of draw_figure()
+    facts["outputs"] = json::object();  // as in figure.lineage
     if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;
 }
 
-/// Where a figure comes from.
 json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
                   const std::optional<FigureRecord>& recorded) {
   std::set<std::string> makers;
@@ -216,7 +213,8 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
           {"inputs", inputs}};
 }
 
-/// The figure as JSON. Adds its manifests, its notes and what was left out to `content`.
+/// The figure as JSON. Adds to `content` the manifests, charts and notes of the figure, and
+/// messages on checkpoints that the figure leaves out.
 json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Content& content) {
   const std::string prefix = wanted.experiment.empty() ? "" : wanted.experiment + ".";
   const FigureLineage lineage =
@@ -255,7 +253,6 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
           {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.store, figure))}};
 }
 
-/// A stage with its attempts and checkpoints.
 json stage_json(const RunLineage& stage) {
   const Stage& run = stage.stage;
   json members = json::array(), attempts = json::array();
@@ -305,8 +302,7 @@ struct Count {
   std::size_t number;
 };
 
-/// A box of the workflow: its title, and the number of stages, checkpoints or figures in each
-/// state.
+/// A box of the workflow: a title, and the number of stages, checkpoints or figures in each state.
 json step(const char* title, std::initializer_list<Count> counts) {
   json list = json::array();
   for (const Count& one : counts) {
@@ -329,13 +325,12 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
                       {"waiting", "·", "waiting", in[StageState::declared]}});
 }
 
-/// The boxes of the workflow, from packings to figures.
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
-  std::size_t left = 0;  // checkpoints of unfinished runs if nothing ends them early
+  std::size_t left = 0;  // checkpoints that unfinished runs will still record, at most
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
-    // How long a packing takes to settle is not known.
+    // The number of checkpoints that a packing needs to settle is unknown.
     if (stage.kind == name_of(StageKind::prepare)) continue;
     std::vector<Ask> asks;
     for (const Membership& m : stage.memberships) {
@@ -356,8 +351,8 @@ json workflow(const Content& content, const Experiment& experiment) {
           figures};
 }
 
-/// The columns that the page shows at first: what distinguishes the runs, their state, their
-/// results. `at` is the index of a column in the experiment's table.
+/// The columns that the page shows before a reader adds others: identifiers, swept parameters,
+/// states and results of the runs. `at` is the index of a column in the experiment's table.
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();
@@ -375,7 +370,7 @@ json columns_of(const Experiment& experiment) {
   const bool differ = std::ranges::any_of(
       table.rows, [&](const TableRow& row) { return row[scale] != table.rows.front()[scale]; });
   if (differ) add(scale, "scale", false);
-  // Swept parameters stand between the seed and the cycle; the grains are among them.
+  // The columns between `seed` and `cycle` are `grains` and the swept parameters.
   const bool labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
   if (labelled || cycle - seed == 2) add(table.place("variant"), "variant", false);
   for (std::size_t at = seed + 1; at < cycle; ++at) {
@@ -474,8 +469,8 @@ json parts_of(const Content& content) {
   return parts;
 }
 
-/// The runs in the order of the rows: [{id, kind, scale, variant, seed, cycle, phi, ...}]. The
-/// cycle and each scalar measure are arrays over the checkpoints, null where a value is unknown.
+/// The runs in the order of the table's rows: [{id, kind, scale, variant, seed, cycle, phi, ...}].
+/// `cycle` and each scalar measure are arrays over the checkpoints, with null for unknown values.
 json traces_of(const RunTable& made) {
   const Table& runs = made.table;
   constexpr int significant = 6;
@@ -506,7 +501,6 @@ json rows_json(const Table& table) {
   return rows;
 }
 
-/// What the front end reads.
 json script_data(const Content& content) {
   json experiments = json::array();
   for (const Experiment& experiment : content.experiments) {
@@ -527,8 +521,8 @@ json script_data(const Content& content) {
           {"experiments", std::move(experiments)}};
 }
 
-/// The chosen experiments (default: all) in the order of their first registration, each with its
-/// newest manifest.
+/// The chosen experiments (default: all) in the order of first registration, each with its newest
+/// manifest.
 std::vector<Experiment> experiments_of(const Store& store, const RunSelection& chosen) {
   Filter names(chosen.experiments), scales(chosen.scales);
   std::vector<Experiment> found;
@@ -551,7 +545,7 @@ std::vector<Experiment> experiments_of(const Store& store, const RunSelection& c
   return found;
 }
 
-/// Notes the scales of the experiment that its figures do not show.
+/// Adds a note on the scales of the experiment that no figure in the page shows.
 void note_other_scales(const Experiment& experiment, const std::string& shown,
                        std::set<std::string>& notes) {
   const std::string& name = experiment.manifest.experiment;
@@ -565,7 +559,7 @@ void note_other_scales(const Experiment& experiment, const std::string& shown,
   }
   if (others.empty()) return;
   notes.insert(
-      fmt::format("experiment {}: the figures are of scale {}; --scale chooses another: {}", name,
+      fmt::format("experiment {}: the figures show scale {}; choose another with --scale: {}", name,
                   scale_name(shown), some_of(others)));
 }
 
@@ -580,7 +574,7 @@ void add_figures(Content& content) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    std::set<std::string>* said = nullptr;  // where the reason goes
+    std::set<std::string>* said = nullptr;  // messages to which the reason is added
     std::string why;
     try {
       const ComputedFigure made =
@@ -605,8 +599,8 @@ void add_figures(Content& content) {
   }
 }
 
-/// Adds the stages, manifests and results of each experiment's runs. An experiment without results
-/// is named in Report::notes.
+/// Adds the stages, manifests and table of each experiment's runs. Adds a note on each experiment
+/// without a selected run.
 void add_runs(Content& content) {
   for (Experiment& experiment : content.experiments) {
     const RegisteredManifest& manifest = experiment.manifest;
@@ -618,7 +612,7 @@ void add_runs(Content& content) {
     selection.experiments = {manifest.experiment};
     try {
       experiment.table = run_table(content.store, selection, RowPer::run, content.options);
-      // Another program may have declared runs since they were listed.
+      // Another program may have declared runs after experiments_of() listed the runs.
       for (const FrameRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
       content.report += experiment.table;
@@ -631,7 +625,6 @@ void add_runs(Content& content) {
   }
 }
 
-/// The values of the template.
 json page_of(const Content& content, const Head& head) {
   const std::size_t packed = content.packings.runs.size();
   json packings = false;
@@ -685,7 +678,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
   Content content{store, options, report};
   const Head head = store.head();
   report.interactive = options.interactive && has_front_end();
-  select_runs(store, options.runs);  // refuses a name that the store does not have
+  select_runs(store, options.runs);  // throws NotFound for unknown names
   content.experiments = experiments_of(store, options.runs);
   if (content.experiments.empty()) {
     throw NotFound(store.folder().string() +

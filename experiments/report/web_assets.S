@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files themselves. Their paths are defined by the build.
+// Puts the files of the page into the program. The build defines the paths of the files.
 .section .rodata
 
 .globl shearcell_page, shearcell_page_end

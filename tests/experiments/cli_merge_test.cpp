@@ -38,7 +38,7 @@ class Split : public ProgramTest {
          {"experiment tiny at scale " + scale + ": left out: " + lost +
               " of another version of its manifest, " + sha256_hex(older).substr(0, 8),
           "shown: " + shown + " of the version registered last, " + sha256_hex(newest).substr(0, 8),
-          std::string("computes only what neither has")}) {
+          std::string("computes only runs that neither version has")}) {
       EXPECT_TRUE(has(text, part)) << part << "\n" << text;
     }
   }

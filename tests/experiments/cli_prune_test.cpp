@@ -264,11 +264,11 @@ TEST_F(Prune, ATableSaysWhichSimulatedMeasuresLackAFile) {
   campaign(tiny_manifest(), {"--cycles", "6"}, "own");
   expect(0, {"prune", "--keep-every", "3", "--yes", "--store", "own"});
   const Outcome table = expect(0, {"table", "--ledger", "--store", "own"});
-  EXPECT_TRUE(
-      has(table.err, "2 checkpoints with a file: no ledger, since a checkpoint before them"))
+  EXPECT_TRUE(has(table.err,
+                  "2 checkpoints with a file but without ledger, because a checkpoint before them"))
       << table.err;
   expect(0, {"regenerate", "--all", "--store", "own"});
-  EXPECT_FALSE(has(expect(0, {"table", "--ledger", "--store", "own"}).err, "no ledger"));
+  EXPECT_FALSE(has(expect(0, {"table", "--ledger", "--store", "own"}).err, "without ledger"));
 }
 
 TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {

@@ -61,10 +61,10 @@ TEST_F(Scales, AReportNamesTheScalesThatItsFiguresDoNotShow) {
     expect(0, {"run", manifest, "--scale", scale, "-q"});
   }
   expect(0, {"report", "--drawings", "--out", "all.html"},
-         {"the figures are of scale large; --scale chooses another: small"});
+         {"the figures show scale large; choose another with --scale: small"});
   const Outcome of_one =
       expect(0, {"report", "--drawings", "--scale", "large", "--out", "one.html"});
-  EXPECT_FALSE(has(of_one.out + of_one.err, "chooses another"));
+  EXPECT_FALSE(has(of_one.out + of_one.err, "choose another"));
   EXPECT_TRUE(has(read_bytes(path("one.html")), "(large scale)"));
 }
 

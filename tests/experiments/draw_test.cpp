@@ -267,7 +267,7 @@ TEST_F(DrawFigure, NamesRunsWhoseMissingCheckpointsCannotBeComputed) {
   }
   const std::vector<std::string> notes = collect_runs(store_, kS2, {}).notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_TRUE(has(notes[0], "never made: 1 checkpoint that the manifest asks for (runs bbbbbbbb)"));
+  EXPECT_TRUE(has(notes[0], "missing: 1 checkpoint that the manifest asks for (runs bbbbbbbb)"));
   EXPECT_TRUE(has(notes[0], "LAMMPS"));
   EXPECT_FALSE(has(notes[0], "computes them"));
 }
@@ -471,7 +471,7 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
   const ComputedFigure figure = compute_figure(store_, made_up, {});
   EXPECT_EQ(figure.empty, (std::vector<std::string>{"none", "unknown"}));
   EXPECT_EQ(figure.why_empty,
-            "Nothing is drawn in none, unknown: no run has the values that it shows.");
+            "Nothing is drawn in none, unknown: no run has the values to be shown.");
   EXPECT_TRUE(has(figure.caption, figure.why_empty));
 }
 
@@ -480,8 +480,7 @@ TEST_F(DrawFigure, SaysWhyAFigureOfLaterCyclesIsEmpty) {
       store_,
       tiny_manifest("", "plots: [{name: late, y: phi, x: cycle, cycles: [7, 9], show: traces}]\n"));
   const ComputedFigure late = draw("out", "late");
-  EXPECT_EQ(late.why_empty,
-            "Nothing is drawn: no run has a checkpoint of the cycles that it shows.");
+  EXPECT_EQ(late.why_empty, "Nothing is drawn: no run has a checkpoint at the cycles to be shown.");
   EXPECT_TRUE(has(late.notes.at(0), "left out: 1 run without a checkpoint in cycles 7 to 9"));
 }
 

@@ -142,7 +142,7 @@ TEST_F(Measure, EarlierCheckpointsAreInTheLineageAndMissedIfTheyAreGone) {
     const ComputedFigure result = draw("own", name);
     EXPECT_EQ(result.damage.size(), 2U) << name;
     EXPECT_TRUE(has(contents("own").at(std::string(name) + ".caption.txt"),
-                    "Left out: what needs 2 damaged checkpoints."));
+                    "Left out: values that need 2 damaged checkpoints."));
   }
 }
 

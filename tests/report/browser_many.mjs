@@ -100,13 +100,13 @@ export function manyChecks({open, expect, report, shots, drawAllPlots}) {
         expect(caption.startsWith(`Figure ${id.split(".").pop()}`) && /Experiment many, scale base\./.test(caption),
           `captions: ${id}: '${caption}'`);
       }
-      const why = "Nothing is drawn in zero: no run has the values that it shows.";
+      const why = "Nothing is drawn in zero: no run has the values to be shown.";
       const empty = page.locator('[data-chart="many.zero"] .annotation-text');
       expect((await empty.textContent()).replace(/\s+/g, "") === why.replace(/\s+/g, ""),
         "captions: an empty plot does not say why");
       expect(figures.find(({id}) => id.endsWith("zero")).caption.includes(why), "captions: the caption does not say why");
       const nothing = await page.locator('[id="figure-many.nothing"]').textContent();
-      expect(/Nothing is drawn: no run has a checkpoint of the cycles/.test(nothing), `captions: ${nothing}`);
+      expect(/Nothing is drawn: no run has a checkpoint at the cycles/.test(nothing), `captions: ${nothing}`);
     },
 
     async filter() {

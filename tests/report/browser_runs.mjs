@@ -245,9 +245,9 @@ export function runChecks({open, expect, shots}) {
         ['variant="P=954 Pa, walls=smooth"', "1"], ["aa,bb", "0,1"], ["phi!=0.61", "1,2"],
         ["phii>0.6", "0,1,2", /There is no key 'phii'\. Did you mean phi\?/], ["phii>0.6 seed=1", "0", keys],
         ["wals=rough", "0,1,2", /Did you mean walls\?/], ["zzzzzz=1", "0,1,2", keys],
-        ["phi>abc", "0,1,2", /phi is a number, and 'abc' is none/], ["phi=", "0,1,2", /lacks a value/],
+        ["phi>abc", "0,1,2", /phi is a number, but 'abc' is not a number/], ["phi=", "0,1,2", /lacks a value/],
         ["walls<rough", "0,1,2", /walls is a text: compare it with = or !=/], ["phi>0.6,0.7", "0,1,2", /takes one number/],
-        ["seed=99", "", /No run has seed = 99\. It is 1, 2, 3\./], ["seed=1,99", "0", /No run has seed = 99/],
+        ["seed=99", "", /No run has seed = 99\. The values are 1, 2, 3\./], ["seed=1,99", "0", /No run has seed = 99/],
         ["nothing", "", /No run has the text 'nothing'/], ["nothing", "", keys], ["!=", "", keys], ['seed="1', "0"]
       ]) {
         const {passes, problems} = readFilter(text, columns, words);

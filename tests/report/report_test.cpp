@@ -110,9 +110,9 @@ TEST_F(ReportOf, SaysWhyAFigureOrAPlotIsEmpty) {
                         "plots: [{name: late, y: phi, x: cycle, cycles: [7, 9], show: traces},\n"
                         "        {name: zero, y: crystalline_percent, x: cycle, log: y}]\n"));
   const std::string html = make();
-  EXPECT_EQ(count(html, "Nothing is drawn: no run has a checkpoint of the cycles that it shows."),
+  EXPECT_EQ(count(html, "Nothing is drawn: no run has a checkpoint at the cycles to be shown."),
             1U);
-  const std::string why = "Nothing is drawn in zero: no run has the values that it shows.";
+  const std::string why = "Nothing is drawn in zero: no run has the values to be shown.";
   EXPECT_TRUE(has(html, why));
   if (!has_front_end()) return;
   EXPECT_EQ(data_of(html)["charts"]["tiny.zero"]["empty"], why);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bundles the front end into report.js, the licences of what it holds into licences.txt, and their names
-// and hashes into packages.json:
+// Bundles the front end into report.js. Writes the licences of the bundled packages into licences.txt, and the names
+// and hashes of the packages into packages.json:
 //   node build.mjs FOLDER_WITH_NODE_MODULES OUT_FOLDER
 import {mkdirSync, readdirSync, readFileSync, writeFileSync} from "node:fs";
 import {createRequire} from "node:module";
@@ -20,7 +20,7 @@ const result = await build({
   format: "iife",
   target: "es2021",
   charset: "utf8",
-  legalComments: "none",  // licences.txt has them whole
+  legalComments: "none",  // licences.txt has the whole licences
   write: false
 });
 
@@ -42,7 +42,7 @@ const licences = list.map(({name, version, license}) =>
   `${name} ${version} (${license})\n\n${licenceOf(join(modulesParent, "node_modules", name))}\n`);
 
 const script = result.outputFiles[0].text.trim();
-// It is put into a page as it stands.
+// The script is put into a page without escaping.
 if (/<\/script|<!--/i.test(script)) throw new Error("the bundle would end its own script element");
 mkdirSync(out, {recursive: true});
 writeFileSync(join(out, "report.js"), script);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Bundles the front end, at build time: cmake -DNPM= -DNODE= -DSOURCE= -DOUT= -DSTAMP= -P bundle.cmake
-# Where that fails (no network) the program is built without it, and the next build tries again.
+# If bundling fails (no network), the program is built without the front end, and the next build tries again.
 
 file(MAKE_DIRECTORY ${OUT})
 file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json DESTINATION ${OUT})
@@ -14,7 +14,7 @@ if(NOT failed)
 endif()
 if(failed)
   message("The report will have drawings instead of interactive plots and packings: its front end "
-          "could not be bundled (${failed}). The next build tries again; -DSHEARCELL_WEB=OFF never does.\n"
+          "could not be bundled (${failed}). The next build tries again, unless -DSHEARCELL_WEB=OFF is set.\n"
           "${said}")
   file(WRITE ${OUT}/bundle/report.js "")
   file(WRITE ${OUT}/bundle/licences.txt "")

@@ -14,18 +14,18 @@ const colours = [
 const points = [7, 5, 9, 11, 13, 6, 4, 8, 10, 12];
 const grey = {colour: "#8f98a3", point: 0, dashed: false};
 
-// The k-th style of a colour. There are twenty: ten markers with a solid line, then with a dashed line.
+// The k-th style of a colour. A colour has twenty styles: ten markers with a solid line, then ten with a dashed line.
 const styleOf = (colour, k) => ({
   colour, point: points[k % points.length], dashed: Math.floor(k / points.length) % 2 === 1
 });
 
-// The values of a curve: {walls: "rough", pressure_Pa: "954"} of "walls=rough;pressure_Pa=954".
+// Reads the values of a curve: "walls=rough;pressure_Pa=954" becomes {walls: "rough", pressure_Pa: "954"}.
 const valuesOf = (text) => Object.fromEntries(text.split(";").map((pair) => pair.trim().split("="))
   .filter(([key, value]) => key && value !== undefined));
 
-// Gives each run {colour, k}: the colour of its variant in the figures of the experiment, so that a variant has one
-// colour on the whole page. A variant without a curve gets a colour that no other variant has, as long as there is
-// one. k counts the variants of one colour before this variant.
+// Returns a function that gives {colour, k} for a run. The colour is the colour of the run's variant in the figures of
+// the experiment, so that a variant has one colour on the whole page. A variant without a curve gets a colour that no
+// other variant has, if one is left. k is the number of earlier variants with the same colour.
 export function variantLooks({columns, rows, runs}, charts) {
   const curves = charts.flatMap(({series}) => series).filter(({of}) => of)
     .map(({of, colour}) => ({values: Object.entries(valuesOf(of)), colour}))
@@ -46,7 +46,7 @@ export function variantLooks({columns, rows, runs}, charts) {
   return ({variant}) => looks.get(variant);
 }
 
-// The checkpoints of a stiffening are counted, and have no cycles.
+// The checkpoints of a stiffening have no cycles, so they are numbered.
 const axisOf = (key, runs) => ({
   label: plain(key.replaceAll("_", " ")), unit: [], log: false, low: null, high: null, ...labels[key],
   ...(key === "cycle" && runs.every(({kind}) => kind === "stiffen") && {label: plain("state of the stiffening")})
@@ -69,23 +69,23 @@ const overCycles = (listFor) => ["phi", "crystalline_percent"].map((key) => ({
     listFor().map((one) => ({...one, points: overCheckpoints(one.run, "cycle", key), line: true})))
 }));
 
-// One run in the colour of its variant, and behind it the other runs of the variant.
+// The run in the colour of its variant, and the other runs of the variant in grey behind it.
 export const chartsOfRun = (run, others, colour) => overCycles(() => [
   ...others.map((one, k) => ({run: one, style: grey, title: k === 0 ? "other seeds" : ""})),
   {run, style: styleOf(colour, 0), title: `seed ${run.seed}`}
 ]);
 
-// Every seed of one or two variants, each with its colour; a marker for each seed. Where both variants have one
-// colour, the markers of the second one are those that the first one leaves.
+// All seeds of one or two variants. Each variant has its colour, and each seed has its own marker. If both variants
+// have the same colour, the second variant uses markers that the first variant does not use.
 export const chartsOfVariants = (variants) => overCycles(() => variants.flatMap(({runs, colour}, v) => {
   const first = v > 0 && colour === variants[0].colour ? variants[0].runs.length : 0;
   return runs.map((run, k) =>
     ({run, style: styleOf(colour, first + k), title: `${["first", "second"][v]}, seed ${run.seed}`}));
 }));
 
-// One measure against another. If the runs have both at each checkpoint: a curve for each run; else a point for the
-// end of each run. `rows`: {run, value(key)}. Each variant has its colour, and a marker of its own among the variants
-// of that colour.
+// One measure against another. If the runs have both measures at each checkpoint, each run is a curve; otherwise each
+// run is one point, for the end of the run. `rows`: {run, value(key)}. Each variant has its colour. Variants with the
+// same colour have different markers.
 export function chartOfMeasures(rows, x, y, lookOf) {
   const line = rows.every(({run}) => !run.cycle || (run[x] && run[y]));
   const titled = new Set();

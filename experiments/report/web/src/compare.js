@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two variants: every seed over the cycles in one plot, and a packing of each side by side.
+// Compares two variants: plots all seeds of both over the cycles, and shows a packing of each variant side by side.
 import {chartsOfVariants} from "./charts.js";
 import {addOptions, element, whenNear} from "./dom.js";
 import {addPlots} from "./plot.js";
 import {Viewer} from "./viewer.js";
 
-// The variants of all experiments, each with its runs, which differ in their seed alone, and its colour.
+// The variants of all experiments. Each variant has a colour, and runs that differ only in the seed.
 function variantsOf(experiments, looks) {
   return experiments.flatMap(({experiment, runs: all}) => {
     const scales = new Set(all.map((run) => run.scale));
@@ -22,11 +22,11 @@ function factsOf({experiment, name, runs}) {
     if (last.length === 0) return "–";
     return (last.reduce((sum, value) => sum + value, 0) / last.length).toFixed(digits);
   };
-  return `${experiment}, ${name}: ${runs.length} ${runs.length === 1 ? "run" : "runs"}; at their ends on average ` +
+  return `${experiment}, ${name}: ${runs.length} ${runs.length === 1 ? "run" : "runs"}; mean over the last checkpoints: ` +
     `ϕ = ${mean("phi", 4)} and ${mean("crystalline_percent", 1)} % of the interior grains crystalline`;
 }
 
-// `looks`: by experiment, what gives the colour of a run's variant (variantLooks in charts.js).
+// `looks`: for each experiment, the function that gives the colour of a run's variant (variantLooks in charts.js).
 export function addComparison(host, experiments, packings, looks) {
   const variants = variantsOf(experiments, looks);
   const panels = element("div", {className: "panels"});
@@ -48,8 +48,8 @@ export function addComparison(host, experiments, packings, looks) {
     panels.replaceChildren();
     addPlots(panels, chartsOfVariants([...new Set(chosen)]));
     const without = chosen.filter((_, k) => !found[k]).map(({name}) => name);
-    note.textContent = without.length === 0 ? "" : `No packing of ${without.join(", ")} is in this file; ` +
-      "--runs-per-experiment and --packings-mb of shearcell report add more.";
+    note.textContent = without.length === 0 ? "" : `This file has no packing of ${without.join(", ")}. ` +
+      "To add packings, use the options --runs-per-experiment and --packings-mb of shearcell report.";
     view.hidden = found.every((packing) => !packing);
     viewer?.showRuns(found);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elements of the page, downloads, and the theme.
 
-// element("p", {className: "small", "aria-label": "it"}, "text", other): properties of the DOM, or
-// attributes.
+// Makes an element: element("p", {className: "small", "aria-label": "it"}, "text", other). The second argument has
+// properties of the DOM, or attributes.
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -20,11 +20,11 @@ export const sub = (text) => [[text, "sub"]];
 export const written = (label) =>
   label.map(([text, style]) => ["i", "sub", "sup"].includes(style) ? element(style, {}, text) : text);
 
-// The least and the greatest value. (Math.min(...values) fails for some 100,000 values.)
+// The smallest and the largest value. (Math.min(...values) fails for about 100,000 values.)
 export const extentOf = (values) =>
   values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 
-// Fills a <select> with an option for each item, in groups. The value of an option is the index of its item.
+// Fills a <select> with an option for each item, in groups. The value of an option is the index of the item.
 export function addOptions(select, items, groupOf, textOf) {
   for (const [label, members] of Map.groupBy(items, groupOf)) {
     const options = members.map((item) => element("option", {value: String(items.indexOf(item))}, textOf(item)));
@@ -32,7 +32,7 @@ export function addOptions(select, items, groupOf, textOf) {
   }
 }
 
-// Calls `action` once, when the element is scrolled near the window.
+// Calls `action` once, when scrolling brings the element near the visible part of the page.
 export function whenNear(target, action) {
   const watcher = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
@@ -48,8 +48,8 @@ export function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-// Keeps the reader's choice if the browser allows it for files, else until the page is closed. Parts with colours of
-// their own listen to the event "themechange" of the window.
+// Stores the reader's choice of colours. If the browser does not allow a file to store it, the choice is lost when the
+// page is closed. Plots and packings listen to the event "themechange" of the window, because they set their own colours.
 export function addThemeSwitch(select) {
   const key = "shearcell-theme";
   const apply = () => {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filter of a table of runs. A filter is a list of conditions and texts; a run passes if it meets all of
-// them. Blanks or commas stand between them; quotes hold a value with blanks together:
+// The filter of a table of runs. A filter is a list of conditions and texts, separated by blanks or commas. A run passes
+// the filter if the run meets all conditions and has all texts. A value that contains blanks needs quotes:
 //
 //     walls=rough phi>0.63        both conditions
-//     walls=rough, phi>0.63       the same
+//     walls=rough, phi>0.63       also both conditions
 //     seed=1,2,5                  one of these values
 //     state!=completed,failed     none of these values
 //     variant="low P"             a value with a blank
@@ -13,18 +13,18 @@
 const operators = {"==": "=", "≠": "!=", "<>": "!=", "≤": "<=", "≥": ">="};
 const condition = /^([^\s"=<>!≠≤≥]+)(<=|>=|!=|==|<>|=|<|>|≠|≤|≥)(.*)$/su;
 
-// Splits at characters that the pattern names, except within quotes.
+// Splits a text at the characters in `pattern`, except within quotes.
 const split = (text, pattern) =>
   text.match(new RegExp(`(?:"[^"]*"?|[^"${pattern}])+`, "gu"))?.map((part) => part.trim()).filter(Boolean) ?? [];
 const unquoted = (text) => text.replaceAll('"', "");
 
 const isNumber = (text) => text.trim() !== "" && Number.isFinite(Number(text));
-// A number also equals its text of four digits, which the table shows.
+// A number also equals the number rounded to four digits, which the table shows.
 const equal = (value, wanted) => typeof value === "number"
   ? isNumber(wanted) && (value === Number(wanted) || Number(value.toPrecision(4)) === Number(wanted))
   : String(value).toLowerCase() === wanted.toLowerCase();
 
-// The number of letters to change, insert or delete.
+// The number of letters that must be changed, inserted or deleted to turn `a` into `b`.
 function distance(a, b) {
   let row = [...Array(b.length + 1).keys()];
   for (let i = 0; i < a.length; ++i) {
@@ -41,9 +41,10 @@ function nearest(word, names) {
   return best && best[0] <= Math.max(1, word.length / 3) ? ` Did you mean ${best[1]}?` : "";
 }
 
-// `columns`: [{key, symbol, values}] with every value of the column, null where it is unknown; `words`: the text
-// of each row in lower case. Returns {passes(k), problems}: whether row k passes, and a sentence for each part
-// that is no condition, or that no row meets. A part that is no condition hides no row.
+// `columns`: [{key, symbol, values}]; `values` has one value for each row, null if it is unknown. `words`: the text of
+// each row in lower case. Returns {passes(k), problems}. passes(k): whether row k passes the filter. `problems`: a
+// sentence for each part of the filter that is not a valid condition or that no row meets. An invalid condition hides
+// no row.
 export function readFilter(text, columns, words) {
   const problems = [], tests = [];
   const known = columns.filter(({values}) => values.some((value) => value !== null));
@@ -60,13 +61,13 @@ export function readFilter(text, columns, words) {
     if (wanted.length === 0) return add(`'${name}${sign}' lacks a value: ${key}${sign}VALUE.`);
     const numeric = values.every((value) => value === null || typeof value === "number");
     const odd = wanted.find((one) => numeric && !isNumber(one));
-    if (odd !== undefined) return add(`${key} is a number, and '${odd}' is none.`);
+    if (odd !== undefined) return add(`${key} is a number, but '${odd}' is not a number.`);
     if (sign === "=" || sign === "!=") {
       const meets = (value) => value !== null && wanted.some((one) => equal(value, one));
       const all = [...new Set(values)].filter((value) => value !== null);
       const absent = wanted.filter((one) => !all.some((value) => equal(value, one)));
       const shown = all.length > 12 ? `${all.slice(0, 12).join(", ")} and ${all.length - 12} more` : all.join(", ");
-      const unseen = absent.length === 0 ? "" : `No run has ${key} = ${absent.join(" or ")}. It is ${shown}.`;
+      const unseen = absent.length === 0 ? "" : `No run has ${key} = ${absent.join(" or ")}. The values are ${shown}.`;
       if (unseen) problems.push(unseen);
       return add("", (k) => meets(values[k]) === (sign === "="));
     }
@@ -87,11 +88,11 @@ export function readFilter(text, columns, words) {
     tests.push((k) => found.some((one) => words[k].includes(one.toLowerCase())));
   }
 
-  // Blanks around an operator and behind a comma end no condition.
+  // Removes blanks around operators and after commas, because these blanks do not separate conditions.
   const joined = text.split('"').map((part, k) => k % 2 === 1 ? part
     : part.replace(/\s*(<=|>=|!=|==|<>|[=<>≠≤≥])\s*/gu, "$1").replace(/,\s+/gu, ",")).join('"');
   for (const word of split(joined, "\\s")) {
-    // A comma stands before another value, or before another condition.
+    // After a comma follows another value of the same condition, or the next condition.
     const parts = [];
     for (const part of split(word, ",")) {
       if (parts.length === 0 || condition.test(part)) parts.push(part);

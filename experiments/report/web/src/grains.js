@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes the frames of experiments/report/packings.cpp and chooses the colours of grains. Structures have
-// colours of Okabe and Ito, which readers with any colour vision can tell apart; quantities have those of viridis.
+// Decodes the frames of experiments/report/packings.cpp and chooses the colours of grains. The colours of structures are
+// by Okabe and Ito; readers with any colour vision can distinguish them. Quantities have the colours of viridis.
 import {italic, plain, sub} from "./dom.js";
 
 export const structureNames = ["disordered", "FCC", "HCP"];
@@ -20,16 +20,16 @@ export function decodeFrame(frame, grains, wallGrains) {
   const bytes = Uint8Array.from(atob(frame.data), (c) => c.charCodeAt(0));
   const all = grains + wallGrains;
   if (bytes.length !== 6 * all + (7 + frame.fields.length) * grains) {
-    throw new Error(`a packing of ${bytes.length} bytes is not one of ${all} spheres`);
+    throw new Error(`a packing of ${bytes.length} bytes does not have the size for ${all} spheres`);
   }
   const words = new Uint16Array(bytes.buffer, 0, 3 * all + 3 * grains);  // all browsers are little-endian
   const position = Float32Array.from({length: 3 * all}, (_, n) =>
     frame.origin[n % 3] + frame.step[n % 3] * words[(n % 3) * all + Math.floor(n / 3)]);
   const measure = (k) => words.subarray(3 * all + k * grains, 3 * all + (k + 1) * grains);
   const [phi, q6] = [0, 1].map((k) => Float32Array.from(measure(k), (word) => word / 65535));
-  const crystallite = measure(2);  // 0 for none
+  const crystallite = measure(2);  // 0: the grain is in no crystallite
   const part = (k) => bytes.subarray(6 * all + (6 + k) * grains, 6 * all + (7 + k) * grains);
-  // A byte for each grain: a class, or 254 times its share of the range; 255 if it is unknown.
+  // A field has one byte for each grain: a class, or 254 (value - low) / (high - low), or 255 if the value is unknown.
   const fields = Object.fromEntries(frame.fields.map((field, k) => [field.key, {...field, bytes: part(k + 1)}]));
   const flags = part(0);
   return {
@@ -52,8 +52,8 @@ export function viridis(fraction) {
   return from.map((c, k) => Math.round(c + (to[k] - c) * (place - below)));
 }
 
-// How this mode shows grains: `paint` gives the colour of a grain. Its key is [{colour, text}] in
-// `entries`, with a `note` on what they count, or a `bar` with {label, low, high}.
+// How this mode shows grains. `paint` gives the colour of a grain. The colour key is either `entries`, a list of
+// {colour, text}, with a `note` that says which grains are counted, or a `bar` with {label, low, high}.
 export function lookOf(grains, mode) {
   if (mode === "crystallite") return ofCrystallites(grains.crystallite);
   if (mode === "phi") return ofQuantity(labels.phi, (i) => (grains.phi[i] - 0.55) / 0.19, "0.55", "0.74");
@@ -81,7 +81,7 @@ function ofCrystallites(crystallite) {
   return {paint: (i) => colour.get(crystallite[i]) ?? classColours[0], entries, note: "of interior grains"};
 }
 
-// The key counts all grains; the percentage crystalline counts interior grains only.
+// The colour key counts all grains, but the percentage crystalline counts only interior grains.
 function ofClasses(values, names) {
   const counts = names.map(() => 0);
   for (const value of values) ++counts[value];

@@ -9,7 +9,7 @@ import {showPacking, Viewer} from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("report-data").textContent);
 
-// A plot is drawn when it is scrolled near the window, or before printing.
+// A plot is drawn when it comes near the visible part of the page, or before the page is printed.
 function addPlots() {
   const waiting = new Set();
   const draw = (host) => {
@@ -80,5 +80,5 @@ function openTarget() {
 window.addEventListener("hashchange", openTarget);
 openTarget();
 
-// Until here, where JavaScript has run, the page says that plots need it.
+// All parts have been added, so the messages that plots need JavaScript are removed.
 for (const sentence of document.querySelectorAll(".unscripted")) sentence.remove();

@@ -3,10 +3,10 @@
 import Plotly from "plotly.js-basic-dist-min";
 import {coloursOf, element, extentOf, plain, save} from "./dom.js";
 
-const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's 4 to 13
+const symbols = ["square", "circle", "triangle-up", "triangle-down", "diamond"];  // gnuplot's point types 4 to 13
 const font = {family: '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif', size: 13};
 
-// Plotly reads a label as markup.
+// Plotly interprets a label as markup, so the text is escaped.
 const markup = (label) => label.map(([text, style]) => {
   const safe = text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
   return style ? `<${style}>${safe}</${style}>` : safe;
@@ -23,8 +23,9 @@ function onDark(colour) {
   return `rgb(${channels.map((c) => Math.round(c + (235 - c) * mix)).join()})`;
 }
 
-// The index of the series whose entry of the legend shows and hides this series: its own if it has a title, else
-// that of the last titled series of its colour before it, or of the first one after it.
+// The legend entry of one series may show and hide other series too. Returns the index of the series whose entry shows
+// and hides series `index`. This is the series itself if it has a title. Otherwise it is the last titled series of the
+// same colour before the series, or else the first one after it.
 function ownerOf(series, index) {
   const fits = (one, at) => one.title.length > 0 && (at === index || one.colour === series[index].colour);
   const before = series.slice(0, index + 1).findLastIndex(fits);
@@ -38,7 +39,7 @@ function valuesAt(chart, one, [x, y, xError, yError]) {
     `${line(chart.x, x - one.shift, xError)}<br>${line(chart.y, y, yError)}`;
 }
 
-// Entries of the legend are broken at spaces to fit the width.
+// Long entries of the legend are broken into lines at spaces, to fit the width of the plot.
 const lettersIn = (width) => Math.max(12, Math.floor((width - 60) / 7.4));
 const broken = (label, letters) => plainText(label).length <= letters ? markup(label)
   : markup(label).replace(new RegExp(`((?:<[^>]*>|[^<]){12,${letters}}) `, "g"), "$1<br>");
@@ -46,7 +47,7 @@ const broken = (label, letters) => plainText(label).length <= letters ? markup(l
 function tracesOf(chart, width, dark) {
   return chart.series.flatMap((one, index) => {
     const color = dark ? onDark(one.colour) : one.colour;
-    // Plotly leaves a series without points out of the legend.
+    // The legend of Plotly leaves out a series without points, so an empty series gets one null point.
     const points = one.points.length > 0 ? one.points : [[null, null, null, null]];
     const [x, y, xError, yError] = [0, 1, 2, 3].map((k) => points.map((point) => point[k]));
     const legendgroup = String(ownerOf(chart.series, index));
@@ -93,7 +94,7 @@ function layoutOf(chart, width, color) {
   const titles = chart.series.map(({title}) => plainText(title)).filter(Boolean);
   const letters = Math.max(0, ...titles.map((title) => title.length));
   const entry = 7.4 * Math.min(letters, lettersIn(width));
-  // Plotly gives the legend the width of the frame.
+  // In Plotly the legend is as wide as the frame of the plot.
   const rows = Math.ceil(titles.length / Math.max(1, Math.floor((width - left - right) / (entry + 45))));
   const key = 20 * rows * Math.ceil(letters / lettersIn(width)) + 6;
   const points = chart.series.flatMap((one) => one.points);
@@ -113,7 +114,7 @@ function layoutOf(chart, width, color) {
     xaxis: axisOf(chart.x, points.map(([x]) => x), color),
     yaxis: axisOf(chart.y, [...points.map((point) => point[1]), ...flat], color),
     shapes: chart.lines.map(shape), uirevision: "kept",
-    dragmode: window.matchMedia("(pointer: coarse)").matches ? false : "zoom",  // a finger scrolls the page
+    dragmode: window.matchMedia("(pointer: coarse)").matches ? false : "zoom",  // on a touch screen, a finger scrolls the page
     annotations: points.length > 0 && !chart.empty ? [] : [{
       text: broken(plain(chart.empty ?? "no data yet"), lettersIn(width - left - right)), xref: "paper", yref: "paper", x: 0.5, y: 0.5, showarrow: false
     }]
@@ -157,7 +158,7 @@ export class Plot {
       }).then(() => this.nameEntries());
   }
 
-  // Makes the entries of the legend buttons for the keyboard.
+  // Makes each legend entry a button that the keyboard can reach.
   nameEntries() {
     for (const entry of this.canvas.querySelectorAll(".legendtoggle")) {
       const name = entry.parentElement.querySelector(".legendtext").textContent;
@@ -167,7 +168,7 @@ export class Plot {
     }
   }
 
-  // The plot as shown, in the colours for paper.
+  // Saves the plot as it is shown, but in the colours for paper.
   saveSvg() {
     const {data, layout} = this.canvas;
     const onPaper = layoutOf(this.chart, this.width, "#1a1a1a");
@@ -175,7 +176,7 @@ export class Plot {
     Plotly.toImage({
       data: tracesOf(this.chart, this.width, false).map((trace, k) => ({...trace, visible: data[k].visible})), layout: onPaper
     }, {format: "svg", width: onPaper.width, height: onPaper.height}).then((url) => {
-      // Plotly writes powers of ten on a logarithmic axis larger than other labels.
+      // On a logarithmic axis, Plotly writes powers of ten in a larger font than other labels.
       const text = decodeURIComponent(url.slice(url.indexOf(",") + 1));
       const even = text.replaceAll(`font-size: ${1.25 * font.size}px`, `font-size: ${font.size}px`);
       save(`${this.name}.svg`, new Blob([even], {type: "image/svg+xml"}));
@@ -212,7 +213,7 @@ export class Plot {
   }
 }
 
-// Appends a plot for each of {name, chart}.
+// Appends a plot for each chart. `charts`: a list of {name, chart}.
 export function addPlots(parent, charts) {
   for (const {name, chart} of charts) {
     const host = element("div", {className: "plot"});

@@ -6,7 +6,7 @@ import {element} from "./dom.js";
 import {readFilter} from "./filter.js";
 import {addPlots, Plot} from "./plot.js";
 
-const foldedFrom = 20;  // rows
+const foldedFrom = 20;  // tables with more rows are folded at first
 
 const shortText = (value) => value === null ? "–"
   : Number.isFinite(value) ? String(Number(value.toPrecision(4))) : String(value);
@@ -65,7 +65,7 @@ export class RunTable {
     const variants = new Set(this.runs.map((run) => run.variant)).size;
     this.input = element("input", {
       type: "search", placeholder: "seed=1,2 phi>0.63 state!=failed",
-      title: `Texts of a row, or conditions on ${this.columns.map(({key}) => key).join(", ")}`
+      title: `Texts that a row contains, or conditions on ${this.columns.map(({key}) => key).join(", ")}`
     });
     this.problem = element("p", {className: "warning", role: "status", hidden: true});
     this.fold = element("input", {
@@ -134,7 +134,8 @@ export class RunTable {
     else this.plot = new Plot(this.plotHost, chart, "measures");
   }
 
-  // Shows the rows that fit the filter, in order, below a line for each variant if they are folded.
+  // Shows the rows that pass the filter, sorted. If the table is folded, each variant has one line, and the rows of
+  // unfolded variants are below this line.
   arrange() {
     const columns = this.columns.map(({key, symbol}, k) => ({key, symbol, values: this.rows.map(({values}) => values[k])}));
     const {passes, problems} = readFilter(this.input.value, columns, this.rows.map(({words}) => words));
@@ -152,7 +153,7 @@ export class RunTable {
     this.drawMeasures();
   }
 
-  // Runs without the value come last, whichever way the others are sorted.
+  // Runs without a value come last, in ascending and in descending order.
   sorted(rows) {
     if (!this.sortKey) return rows;
     const sign = this.down ? -1 : 1;
@@ -164,7 +165,7 @@ export class RunTable {
     });
   }
 
-  // The line of a variant: the values that its runs have in common, and the means of their numbers.
+  // The line of a variant. A cell shows the value that all runs have in common, or the mean of their numbers.
   variantLine(name, rows) {
     const label = `${name} (${rows.length} ${rows.length === 1 ? "run" : "runs"})`;
     const button = opener(label, () => {
@@ -175,7 +176,7 @@ export class RunTable {
     button.setAttribute("aria-expanded", String(this.open.has(name)));
     const named = [...this.heads.cells].some((head) => head.dataset.key === "variant" && !head.hidden);
     const cells = [...this.heads.cells].map((head, k) => {
-      // Where a column names the variant, the first cell does not repeat the name.
+      // If a column names the variant, the first cell does not repeat the name.
       if (k === 0) return element("td", {className: named ? "brief" : ""}, button, named ? label.slice(name.length + 1) : label);
       const values = rows.map((row) => row.value(head.dataset.key)).filter((value) => value !== null);
       const same = values.every((value) => value === values[0]);
@@ -197,7 +198,7 @@ export class RunTable {
     else {
       const panels = element("div", {className: "panels"});
       row.trace = element("tr", {className: "trace"}, element("td", {colSpan: 99}, panels));
-      row.body.append(row.trace);  // plots need their width
+      row.body.append(row.trace);  // before the plots are made, because they need the width of the trace
       const {run} = row;
       addPlots(panels, chartsOfRun(run, this.runs.filter((one) =>
         one !== run && one.scale === run.scale && one.variant === run.variant), this.lookOf(run).colour));

@@ -8,8 +8,8 @@ import {
 } from "three";
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
 
-// Spheres are squares that face the camera, with the sphere's depth and shade in each pixel: exact
-// without perspective, and fast for 18200 grains.
+// A sphere is drawn as a square that faces the camera, with the depth and shade of the sphere in each pixel. This is
+// exact for a camera without perspective, and fast for 18200 grains.
 const vertexShader = `
 precision highp float;
 uniform mat4 viewMatrix, projectionMatrix;
@@ -51,7 +51,7 @@ void main() {
 
 const firstDirection = new Vector3(0.5, 0.28, 1).normalize();
 
-// Edges of the sheared box: side walls tilt about the height of the top wall.
+// Edges of the sheared box. The side walls tilt about axes at the height of the top wall.
 function cellEdges({width, depth, bottom, top, tan_theta: tilt}) {
   const box = new BoxGeometry(width, top - bottom, depth);
   box.translate(width / 2, (bottom + top) / 2, depth / 2);
@@ -60,7 +60,7 @@ function cellEdges({width, depth, bottom, top, tan_theta: tilt}) {
 }
 
 export class PackingScene {
-  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns, moves or zooms it.
+  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns, moves or zooms the view.
   constructor(canvas, turned) {
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: false});
@@ -75,7 +75,8 @@ export class PackingScene {
     this.scene.add(this.spheres, this.frameLines);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, {minZoom: 0.2, maxZoom: 40});
-    // Without the focus the wheel scrolls the page, and so does a finger that moves up or down.
+    // If the canvas does not have the focus, the wheel scrolls the page. A finger that moves up or down always scrolls
+    // the page.
     this.controls.enableZoom = false;
     canvas.addEventListener("focus", () => (this.controls.enableZoom = true));
     canvas.addEventListener("blur", () => (this.controls.enableZoom = false));
@@ -94,14 +95,15 @@ export class PackingScene {
     if (!keepView) this.resetView();
   }
 
-  // x, y, z and radius of each sphere, and three bytes of its colour. A sphere of radius 0 is invisible.
+  // `spheres`: x, y, z and radius of each sphere. `colours`: three bytes for each sphere. A sphere of radius 0 is
+  // invisible.
   setSpheres(spheres, colours) {
     const geometry = new InstancedBufferGeometry();
     const corners = new Float32Array([-1, -1, 1, -1, 1, 1, -1, -1, 1, 1, -1, 1]);
     geometry.setAttribute("corner", new BufferAttribute(corners, 2));
     geometry.setAttribute("sphere", new InstancedBufferAttribute(spheres, 4));
     geometry.setAttribute("colour", new InstancedBufferAttribute(colours, 3, true));
-    geometry.setDrawRange(0, 6);  // else three looks for an attribute "position" to count
+    geometry.setDrawRange(0, 6);  // otherwise three.js counts the vertices in an attribute "position"
     this.spheres.geometry.dispose();
     this.spheres.geometry = geometry;
     this.data = spheres;
@@ -119,7 +121,7 @@ export class PackingScene {
     this.fit();
   }
 
-  // The packing fills the canvas whatever its shape.
+  // Scales the view so that the packing fills a canvas of any shape.
   fit() {
     const {clientWidth: wide, clientHeight: high} = this.canvas;
     if (!this.cell || wide === 0 || high === 0) return;
@@ -144,7 +146,7 @@ export class PackingScene {
     this.controls.dollyIn(1 / factor);
   }
 
-  // Takes the direction, the zoom and the shift of another view.
+  // Copies the direction, the zoom and the shift of another view.
   lookAs(other) {
     const away = other.camera.position.clone().sub(other.controls.target);
     this.controls.target.copy(other.controls.target).sub(other.centre).add(this.centre);
@@ -178,7 +180,8 @@ export class PackingScene {
     this.renderer.render(this.scene, this.camera);
   }
 
-  // The frontmost visible sphere at a point of the canvas [CSS pixels from its corner], or -1.
+  // The index of the front visible sphere at a point of the canvas, or -1. The point is in CSS pixels from the top left
+  // corner.
   pick(px, py) {
     const {clientWidth: wide, clientHeight: high} = this.canvas;
     const caster = new Raycaster();

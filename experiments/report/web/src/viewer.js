@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The viewer of packings: one packing, or two side by side with one set of controls. The template elements
-// viewer-parts and pane-parts (page.html) hold its parts, which are found by `data-part`.
+// The viewer of packings shows one packing, or two packings side by side with one set of controls. Its elements come
+// from the templates viewer-parts and pane-parts (page.html), and are found by `data-part`.
 import {addOptions, coloursOf, element, extentOf, plain, save, written} from "./dom.js";
 import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
 import {Plot} from "./plot.js";
@@ -14,7 +14,7 @@ function partsIn(host, template) {
   return (name) => host.querySelector(`[data-part="${name}"]`);
 }
 
-// Where the clip plane is and which grains it hides. `side` is -1 for its other side.
+// The position of the clip plane, and the grains that it hides. `side`: 1 or -1, the side on which grains are hidden.
 function cutOf({axis, at, side}, {width, depth, bottom, top}) {
   const ends = {x: [-1, width + 1], y: [bottom - 1, top + 1], z: [-0.5, depth + 0.5]}[axis];
   if (!ends) return {place: null, hides: () => false};
@@ -23,9 +23,9 @@ function cutOf({axis, at, side}, {width, depth, bottom, top}) {
   return {place, hides: (centre) => side * centre[k] > side * place};
 }
 
-// One packing: its picture, the key of its colours, its values.
+// Shows one packing: the picture, the colour key and the values.
 class Pane {
-  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns or zooms it.
+  // Throws if the browser has no WebGL 2. `turned` is called when the reader turns or zooms the view.
   constructor(parent, turned) {
     this.host = element("div", {className: "pane"});
     parent.append(this.host);
@@ -44,7 +44,7 @@ class Pane {
     this.stored = null;
   }
 
-  // The checkpoint at this cycle, or the last one before it.
+  // Shows the checkpoint at this cycle, or the last checkpoint before the cycle.
   showCycle(cycle, choices) {
     const {grains, wall_grains: wallGrains, frames} = this.packing;
     const stored = frames.findLast((frame) => frame.cycle <= cycle) ?? frames[0];
@@ -67,7 +67,7 @@ class Pane {
     const [spheres, colours] = [new Float32Array(4 * count), new Uint8Array(3 * count)];
     for (let i = 0; i < count; ++i) {
       const place = frame.position.subarray(3 * i, 3 * i + 3);
-      // Side walls extend beyond the moving wall; that part is not shown.
+      // The side walls extend beyond the moving wall. Their outer parts are not shown.
       const walled = choices.walls && place[1] > stored.cell.bottom - 1 && place[1] < stored.cell.top + 1;
       const radius = i >= grains ? 0.5 * walled : frame.structure[i] === 0 ? choices.disordered : 0.5;
       spheres.set([...place, hides(place) ? 0 : radius], 4 * i);
@@ -92,7 +92,7 @@ class Pane {
       element("span", {}, coloured("dot", css(colour)), text)), element("span", {}, note));
   }
 
-  // A measure of layers against their height, with the same range for all checkpoints of the run.
+  // Plots the height of layers against a measure. The measure has the same range for all checkpoints of the run.
   showProfile(key, name) {
     const host = this.part("profile-plot");
     const {height} = this.stored.profiles;
@@ -154,7 +154,7 @@ export function showPacking(host, packing) {
     window.addEventListener("themechange", colour);
     colour();
     pane.show(packing);
-    // Small disordered grains leave the view free on the crystallites, if there are any.
+    // If there are crystallites, disordered grains are drawn small, so that they do not hide the crystallites.
     pane.showCycle(last.cycle, {
       colour: "class", profile: "none", disordered: last.crystalline > 5 ? 0.17 : 0.5, walls: true, box: true, axis: "none"
     });
@@ -180,7 +180,7 @@ export class Viewer {
     }
     this.part("run").parentElement.hidden = count > 1;
     addOptions(this.part("run"), packings, ({experiment}) => experiment, ({label}) => label);
-    // Every packing of a page has the same fields.
+    // All packings of a page have the same fields.
     for (const {key, label} of packings[0].frames[0].fields) {
       this.part("colour").append(new Option(label, key));
     }
@@ -191,7 +191,7 @@ export class Viewer {
     for (const name of looks) on(name, "input", () => this.apply());
     on("reset", "click", () => this.shown().forEach((pane) => pane.scene.resetView()));
     on("save", "click", () => this.shown().forEach((pane) => {
-      pane.scene.drawNow();  // the browser keeps no picture that it has shown
+      pane.scene.drawNow();  // needed because the browser discards a picture after showing it
       pane.canvas.toBlob((blob) => save(`${pane.packing.id.slice(0, 8)}.png`, blob));
     }));
     const recolour = () => this.panes.forEach((pane) => pane.scene.setColours(coloursOf(pane.part("stage"))));
@@ -253,7 +253,7 @@ export class Viewer {
     this.part("cut-text").textContent = place === null ? "" : `${choices.axis} = ${place.toFixed(1)} d`;
   }
 
-  // Shows the other pane from the same side.
+  // Turns the other pane to the same view.
   follow(from) {
     for (const pane of this.shown()) if (pane !== from && pane.stored) pane.scene.lookAs(from.scene);
   }
