@@ -170,7 +170,6 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
   return "";
 }
 
-/// Checkpoints that have a cached measure.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
                                                    MeasureSources& sources) {
   std::vector<CheckpointRecord> found;
@@ -182,7 +181,6 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   return found;
 }
 
-/// Compares the measures of pruned checkpoints with the log.
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
   const auto note = [&](const std::string& run, const std::string& what) {

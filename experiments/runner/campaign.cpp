@@ -383,7 +383,6 @@ std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNam
   return jobs;
 }
 
-// The manifest's values of `max_overlap_diameters`, by scale.
 nlohmann::json overlap_limits(const Manifest& manifest) {
   nlohmann::json limits = nlohmann::json::object();
   for (const Scale& scale : scales_of(manifest)) {

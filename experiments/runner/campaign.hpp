@@ -13,7 +13,6 @@
 
 namespace shearcell {
 
-/// A stage to compute up to its target.
 struct StageJob {
   std::string id;
   std::string parent;  ///< id of the parent stage, or ""

@@ -380,8 +380,6 @@ class LammpsEngine final : public Engine {
   std::optional<LammpsRun> run_;
 };
 
-// --- Computing ---
-
 class StageAttempt {
  public:
   StageAttempt(Store& store, Stage stage, const StageOptions& options)
@@ -467,7 +465,8 @@ class StageAttempt {
       RunLineages known;
       const bool own = plan_.inputs.parameters.engine == EngineKind::shearcell;
       const auto other = own && first ? why_not_again(store_, *first, known) : std::nullopt;
-      if (other && options_.continuing) options_.continuing("cannot repeat its start: " + *other);
+      if (other && options_.continuing)
+        options_.continuing("the starting state cannot be repeated bit for bit: " + *other);
       return compute();
     } catch (const ConcurrencyConflict& conflict) {
       if (started) release(conflict);
@@ -511,7 +510,6 @@ class StageAttempt {
         complete({{"by", plan_.inputs.stage == StageKind::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
-      // `until` is checked at whole cycles only.
       const bool whole = progress.cycle == std::floor(progress.cycle);
       if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();

@@ -16,7 +16,6 @@
 
 namespace shearcell {
 
-/// Threads and processes of one stage.
 struct Parallel {
   std::size_t threads = 1;  ///< of this program's engine; the results do not depend on it
   std::size_t ranks = 1;    ///< processes of LAMMPS; more than one run under mpirun

@@ -16,7 +16,6 @@ void catch_stop_signals();
 /// effect.
 void catch_batch_signals();
 
-/// Whether a signal has requested a stop.
 bool stop_requested();
 
 /// Thrown when a stop is requested before there is a state to record.
