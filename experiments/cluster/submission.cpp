@@ -32,8 +32,8 @@ constexpr std::size_t kIdDigits = 12;
 // Slurm sends USR1 some time before the limit (with B: only to the shell), and TERM to all
 // processes if a job is cancelled or preempted. After both signals the program records its states
 // and ends with 85. After USR1 the script queues the task again, by array number and task number,
-// because the job number of a task may be the number of the whole array. The script starts a
-// program that was killed (out of memory) again.
+// because the job number of a task may be the number of the whole array. If the
+// program is killed (out of memory), the script starts it again.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
@@ -56,7 +56,7 @@ for start in 1 2 3 4; do
   leave=--leave-failed
 done
 if [ -n "$again" ] && [ "$code" -ge 85 ]; then
-  echo "The time is over; the task is queued again."
+  echo "The time limit is near; the task is queued again."
   env -u SLURM_CLUSTERS scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 fi
 exit "$code"
@@ -147,7 +147,7 @@ void Share::add(const Share& other) {
 
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
-  std::map<std::string, std::string> packing_of;  // of each stage, by id
+  std::map<std::string, std::string> packing_of;  // by stage id
   std::map<std::string, Share> packings;          // what settling costs
   std::vector<Share> shares;
   std::map<std::string, std::size_t> places;  // index in shares, by packing
@@ -174,7 +174,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
   std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
   std::vector<Share> shares(std::min(tasks, packings.size()));
   for (const Share& packing : packings) {
-    // At equal cost, the share with fewer packings is first, so that no share stays empty.
+    // At equal cost, the share with fewer packings is chosen, so that no share stays empty.
     const auto load = [](const Share& share) {
       return std::pair(share.core_seconds, share.packings.size());
     };
@@ -355,7 +355,7 @@ QueueView view_queue(const Store& store) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
       for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
-        QueuedRun& run = view.runs[id] = {queued, {}};  // the newest submission counts
+        QueuedRun& run = view.runs[id] = {queued, {}};  // replaces an older submission
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
       }
@@ -367,7 +367,7 @@ QueueView view_queue(const Store& store) {
 std::string describe(const Submission& s) {
   if (s.queue.empty()) {
     return fmt::format(
-        "submission {}: its jobs have ended, but runs are unfinished; `submit` again", s.id);
+        "submission {}: its jobs have ended, but runs are unfinished; call `submit` again", s.id);
   }
   std::map<std::string, std::size_t> count;
   std::string merge_job;

@@ -26,8 +26,8 @@ namespace shearcell {
 struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
-  double particle_steps = 0;          ///< remaining, with the packings
-  double core_seconds = 0;            ///< remaining, at the rates of the engines
+  double particle_steps = 0;          ///< remaining work, including the packings
+  double core_seconds = 0;            ///< remaining time, at the rates of the engines
 
   void add(const Share& other);
 };
@@ -56,7 +56,7 @@ struct JobOptions {
 struct Proposal {
   std::vector<Share> shares;
   std::size_t left_out = 0;  ///< runs that are already queued or being computed
-  JobOptions job;            ///< the options, with cpus chosen
+  JobOptions job;            ///< the options with the chosen `cpus`
 
   /// Expected wall time [s] of a task for this share.
   double seconds(const Share& share) const;
@@ -75,7 +75,7 @@ struct Submission {
   std::string merge_job;                        ///< number of the merge job; in the log "fold_job"
   std::vector<QueuedTask> queue;                ///< its jobs in the queue, from view_queue()
 
-  std::string name() const { return "shearcell-" + id; }  ///< of the array job
+  std::string name() const { return "shearcell-" + id; }  ///< name of the array job
   std::string merge_name() const { return name() + "-fold"; }
   std::filesystem::path folder(const std::filesystem::path& store) const {
     return store / "submissions" / id;
@@ -104,10 +104,10 @@ Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::
 /// All submissions of the store, oldest first. Throws StoreDamaged if an event is invalid.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Submissions that have a folder in this store, and runs that are not done (Outlook::done).
+/// Submissions with a folder in this store and at least one run that is not done (Outlook).
 std::vector<Submission> unfinished_submissions(const Store& store);
 
-/// Merges the task stores of a submission that exist into `store`. Returns the number of new
+/// Merges the existing task stores of a submission into `store`. Returns the number of new
 /// checkpoints.
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
@@ -119,7 +119,7 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
 /// read this file while the task runs, because SQLite's locks may not work between machines.
 void write_task_report(const std::filesystem::path& folder, const std::vector<Stage>& runs);
 
-/// The state and cycle of each run from this file, by id. Empty if the file is missing or invalid.
+/// Reads the state and cycle of each run from FOLDER.progress.json, by id; empty if impossible.
 std::map<std::string, Stage> read_task_report(const std::filesystem::path& folder);
 
 struct QueuedRun {
@@ -133,7 +133,7 @@ struct QueuedRun {
 struct QueueView {
   std::vector<Submission> submissions;    ///< unfinished submissions
   std::map<std::string, QueuedRun> runs;  ///< their runs and packings, by id
-  std::string problem;                    ///< why the queue could not be read; "" if it was
+  std::string problem;                    ///< why the queue could not be read, or ""
 };
 
 /// Reads Slurm's queue if the store has unfinished submissions.

@@ -23,9 +23,9 @@ struct ExportedColumn {
   std::vector<double> values;
 };
 
-/// Particles in SI units. Wall grains have 0 as measure, and -1 as class. Velocities of grains and
-/// of the moving wall belong to half a time step before the state's step; velocities of tilting
-/// walls belong to the state's step.
+/// Particles in SI units. Measures of wall grains are 0; classes of wall grains are -1. Velocities
+/// of grains and of the moving wall belong to half a time step before the state's step; velocities
+/// of tilting walls belong to the state's step.
 struct ExportedState : Particles {
   Checkpoint checkpoint;
   std::string sha256;  ///< SHA-256 of the checkpoint's file
@@ -36,16 +36,16 @@ struct ExportedState : Particles {
   /// The frame's scalar measures, by their names in `shearcell table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// Measures of each particle (analysis/measures.hpp). Unknown values are NaN, or -1 if whole.
+  /// Measures of each particle (analysis/measures.hpp). Unknown numbers are NaN, whole ones -1.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
-  MeasureOutcome unread;                    ///< earlier checkpoints; their measures are NaN
+  MeasureOutcome unread;                    ///< earlier checkpoints that could not be read
 
   /// What LAMMPS must compute to continue the run. Empty for a stiffening or an unreadable stage.
   std::optional<LammpsTask> continued;
 };
 
-/// How file names call a frame: by its cycle or, in a packing, which has no cycles, "step45600".
+/// The name of a frame in file names: its cycle, or "step45600" in a packing without cycles.
 std::string frame_name(const ExportedState& frame);
 
 /// Makes a frame from a checkpoint. `sources` must have read the run; if null, measures that need

@@ -12,7 +12,7 @@
 
 namespace shearcell {
 
-/// Writes a frame. Throws std::runtime_error if it cannot be written.
+/// Writes a frame, or throws std::runtime_error.
 using FrameWriter = std::function<void(const ExportedState&)>;
 
 /// H5MD 1.1 in one file: particles/all with box, position, velocity, id, species

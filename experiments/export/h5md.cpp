@@ -43,13 +43,13 @@ class Trajectory {
     if (frame.particles() != particles_) {
       throw std::runtime_error("the number of particles changes between checkpoints of one run");
     }
-    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // its columns are rows in the file
+    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns become rows in the file
     const Eigen::Vector3d origin = frame.origin * nm_per_m;
     const Eigen::Matrix3Xd position = frame.position * nm_per_m;
     put("particles/all/step", H5T_STD_U64LE, {}, &frame.checkpoint.state.step);
     put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.checkpoint.time_s, "s");
     element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
-    // The origin is an addition to H5MD.
+    // H5MD does not define the origin of a box.
     element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
     element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
     element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),
@@ -170,8 +170,8 @@ class Trajectory {
 }  // namespace
 
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
-  // Must precede other calls of HDF5. Without it, HDF5 would repeat a write at exit that failed
-  // because the disk was full, and crash.
+  // Must precede other calls of HDF5. Otherwise, if a write fails because the disk is full, HDF5
+  // repeats the write at exit and crashes.
   H5dont_atexit();
   return
       [out = std::make_shared<Trajectory>(file, frames)](const ExportedState& f) { out->add(f); };

@@ -64,7 +64,7 @@ void check_stage(const Stage& stage) {
 }
 
 /// Steps at which the run was completed. Each completion gives the last step of its attempt and the
-/// furthest step so far; these differ if attempts of several stores were merged.
+/// furthest step so far; the two differ if attempts of several stores were merged.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
@@ -81,8 +81,8 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// Throws StoreDamaged if a run started from a state of its parent at none of these `steps`. Skips
-/// states that a merged store lacks: a merge leaves out files that another HDF5 library wrote.
+/// Throws StoreDamaged if the stage started from a state of its parent that is at none of `steps`.
+/// A merged store may lack this state: a merge leaves out files that another HDF5 library wrote.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
@@ -111,7 +111,7 @@ bool nearly_equal(const json& cached, const json& computed) {
 std::string difference(const json& cached, const json& computed, const std::string& measure) {
   const json a = cached.flatten(), b = computed.flatten();
   for (const auto& [path, value] : b.items()) {
-    if (!a.contains(path)) return measure + path + ": it is not cached";
+    if (!a.contains(path)) return measure + path + ": this value is not cached";
     if (nearly_equal(a.at(path), value)) continue;
     return fmt::format("{}{}: the cached value is {}, the computed value is {}", measure, path,
                        a.at(path).dump(), value.dump());
@@ -314,7 +314,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // the author of a source cannot predict it
+  const std::uint64_t seed = seed_of(store.head());  // sources cannot predict this seed
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

@@ -37,7 +37,7 @@ enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// A stage that nobody holds is given up after this many failed starts.
+// A stage that no program holds counts as blocked after this many failed starts.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -178,7 +178,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that is not computed was done before. Measures nothing: the user waits.
+  // Whether a job that is not started any more was done before. Measures nothing: the user waits.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;
@@ -190,7 +190,7 @@ class Campaign {
   JobState parent_state(const Job& job) const {
     const auto parent = std::ranges::find(jobs_, job.parent, &Job::id);
     if (parent != jobs_.end()) return parent->state;
-    return JobState::done;  // no parent, or not in this campaign
+    return JobState::done;  // no parent, or the parent is not in this campaign
   }
 
   std::size_t count(JobState state) const {

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Results = std::vector<json>;
 
-// Results are cached in batches: one transaction takes longer than a small analysis.
+// Results are cached in batches, because a transaction takes longer than a small analysis.
 constexpr std::size_t kBatch = 64;
 
 class Measuring {
@@ -116,7 +116,7 @@ class Measuring {
       try {
         result = decode_result(*found[k]);
       } catch (const AnalysisError&) {
-        // The hash is correct, but the bytes are not a result. They are recomputed and replaced.
+        // The hash matches, but the bytes are not a result: the result is recomputed and replaced.
       }
     }
   }
@@ -174,7 +174,7 @@ class Measuring {
   std::vector<std::size_t> place_;  // index in distinct_ of each checkpoint
   std::vector<DerivedKey> keys_;    // for each of distinct_: one per provider
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // for each of distinct_; written by one thread
+  std::vector<Results> results_;  // for each of distinct_; threads write different ones
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;

@@ -44,14 +44,14 @@ struct MeasureOutcome {
 };
 
 /// A checkpoint to measure, for an experiment with a checkpoint after every `every` cycles.
-/// Measures over two checkpoints use only checkpoints with this interval.
+/// Measures that compare two checkpoints use only whole cycles that `every` divides.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;
 };
 
 /// Sets the measures of the checkpoints: those of the providers, and those that follow from the log
-/// (ComputedFrom::record). Lists providers without a result as lacking. Results are cached under
+/// (ComputedFrom::record). `lacking` lists providers without a result. Results are cached under
 /// the checkpoint's recorded SHA-256; if a result is cached, the file is not read and may be
 /// missing. Cached and computed results are the same bytes. Throws StoreDamaged, with a remedy, if
 /// a cached result does not match its key.
@@ -59,8 +59,8 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);
 
-/// Analyses a stored checkpoint. Throws StoreDamaged, with checkpoint and run, if the analysis is
-/// impossible, because this program records no such state.
+/// Analyses a stored checkpoint. If the state cannot be analysed, throws StoreDamaged, which names
+/// checkpoint and run, because this program never records such a state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

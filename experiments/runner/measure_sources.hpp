@@ -33,7 +33,7 @@ class MeasureSources {
                                   std::uint64_t every) const;
 
   /// The key under which a result is cached. If the provider needs an earlier checkpoint, the key
-  /// names it.
+  /// includes the SHA-256 of that checkpoint.
   DerivedKey key(const CheckpointRecord& record, const Provider& provider,
                  std::uint64_t every) const;
 
@@ -44,7 +44,7 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< measures in the log; of these, not cached
+    std::size_t named = 0, absent = 0;  ///< number of logged measures; of these, not cached
     std::string altered;                ///< message on a measure that differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the log.

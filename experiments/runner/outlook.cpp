@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // in one list; the store is not trusted
+constexpr std::size_t kMostListed = 1'000'000;  // checkpoints in a list; the store is not trusted
 constexpr double kMostCounted = 10'000;         // one by one; larger numbers are extrapolated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
@@ -66,7 +66,7 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
 struct End {
   double cycle = 0;                             ///< the ask's number of cycles, or fewer
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
-  const CheckpointRecord* undecided = nullptr;  ///< the first that may have reached `until`
+  const CheckpointRecord* undecided = nullptr;  ///< first checkpoint that may reach `until`
 };
 
 End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // For more cycles than the stage was computed for, no end is known yet.
+      // If the ask has more cycles than the stage's target, no recorded end is for this ask.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -114,7 +114,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1, known = 0, at_most = 0;  // last known end, last possible end
+  double latest = -1, known = 0, at_most = 0;  // ends: `known`, or `at_most` if unknown
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
@@ -236,7 +236,7 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
       throw StoreDamaged(fmt::format("run {:.8}: too many recorded checkpoint_phases: {}", stage.id,
                                      ask.checkpoint_phases.size()));
     }
-    if (ask.target_cycles == 0) continue;  // it needs only cycle 0, which each shear records
+    if (ask.target_cycles == 0) continue;  // the ask needs only cycle 0, which each shear records
     cadences.push_back(
         {ask.checkpoint_every, steps_at(ask.checkpoint_phases, drive), ask.target_cycles});
   }
@@ -337,8 +337,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The largest number of cycles that the stage has and that an experiment without this `until` had
-/// asked for when the stage ended; 0 if there is no such experiment.
+/// Among asks without this `until` that were recorded when the stage ended: the largest number of
+/// cycles that the stage has reached; else 0.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;

@@ -45,12 +45,12 @@ struct Outlook {
   nlohmann::json ended = nullptr;
   /// The first checkpoint that may have reached an `until`, but whose measures are unknown.
   std::optional<CheckpointRecord> undecided = {};
-  // Upper bounds of the remaining work. Estimates for settling, from 600 to 18200 grains.
+  // Upper bounds of the remaining work. For settling: estimates, from 600 to 18200 grains.
   double checkpoints = 0;
   double particle_steps = 0;
   double bytes = 0;  ///< estimated size of the checkpoint files
-  /// Why this program cannot read the stage's parameters; "" if it can. If it cannot, the remaining
-  /// work is unknown.
+  /// Why this program cannot read the stage's parameters, so that the remaining work is unknown; ""
+  /// if it can read them.
   std::string unreadable = {};
 };
 
@@ -123,15 +123,14 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that at least one ask wants. Each ask counts up to its
-/// end_for().
+/// The recorded and pruned checkpoints that at least one ask wants, for each ask up to end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
-/// The recorded Outlook::ended if `until` completed the stage before its last cycle, else null.
-/// "cycles_asked" is added if another experiment asked for more cycles than this `until`, and the
-/// stage has these cycles.
+/// The recorded Outlook::ended if an `until` completed the stage before its largest number of
+/// cycles; else null. "cycles_asked" is added if the stage continued beyond this `until` because
+/// another experiment asked for more cycles.
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.

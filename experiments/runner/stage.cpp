@@ -73,8 +73,8 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
-// The watchdog's largest overlap [d] that a manifest of the stage states. `otherwise` holds for
-// manifests that state none. The limit is not part of the run's id (see campaign.cpp).
+// The watchdog's overlap limit [d]: the largest limit of the stage's manifests. `otherwise` is the
+// limit of manifests that state none. It is not part of the run's id (see campaign.cpp).
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {
@@ -98,7 +98,7 @@ struct ReadyStage {
   Protocol protocol;
 };
 
-/// Throws StoreDamaged if the id is not the hash of the parameters.
+/// Throws StoreDamaged if the stage's id is not the hash of the recorded parameters.
 ReadyStage ready_stage(const Store& store, Stage stage) {
   if (stage_key(stage.resolved) != stage.id) {
     throw StoreDamaged("run " + stage.id.substr(0, 12) +
@@ -113,12 +113,12 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
   return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
-/// The state from which a stage is computed further.
+/// The state from which an attempt computes a stage.
 struct Beginning {
   Cell cell;
   State state;
-  std::optional<CheckpointRecord> from = {};  ///< the stage's own checkpoint, if any
-  std::string parent_checkpoint = {};         ///< its SHA-256 if the parent's state is used
+  std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
+  std::string parent_checkpoint = {};         ///< SHA-256 if the state is the parent's, or ""
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
@@ -288,10 +288,10 @@ class OwnEngine final : public Engine {
   StageProgress progress_;
 };
 
-/// Advances to `step`, or to the end of the stage if it ends before. Calls between(progress) about
-/// every 50 ms.
+/// Advances to `step`, or to the end of the stage if that comes first. Calls between(progress)
+/// about every 50 ms.
 StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
-  StageProgress progress;  // cycle 0, if the engine is at `step` already
+  StageProgress progress;  // at cycle 0 if no step is needed
   while (engine.step() < step && !progress.finished) {
     progress = engine.advance_by(step - engine.step());
     if (engine.step() < step) between(progress);
@@ -351,7 +351,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // Makes the frame the newest state. Our own engine takes a step from it for the watchdog.
+  // Makes the frame the newest state. The watchdog checks it after one step of our own engine.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -485,7 +485,7 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, the memory or the store failed. The start may be recorded even if a sync failed.
+      // The disk, the memory or the store failed. After a failed sync, the start may be recorded.
       release(failure);
       throw;
     }

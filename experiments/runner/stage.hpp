@@ -53,16 +53,16 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 bool is_done(const Store& store, const Stage& stage);
 
 /// A shear may start from a recorded state of another shear, its parent. Returns the parent's
-/// checkpoint at `start_cycle`, recorded or pruned; empty if there never was this checkpoint.
+/// checkpoint at `start_cycle`, recorded or pruned; empty if this cycle was never recorded.
 std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
   std::uint64_t same_step = 0;   ///< where the replay began; the states agree there
-  std::uint64_t first_step = 0;  ///< first step at which they are known to differ
-  /// What differs in the state: "position", "velocity", "wall_height" or "wall_velocity". If the
-  /// states are equal: "cycle", "time_s", "theta", an observable, or "file". "" if unknown.
+  std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
+  /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
+  /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest difference in `field` [units in the last place]
@@ -73,7 +73,7 @@ nlohmann::json to_json(const Divergence& divergence);
 
 struct Replay {
   CheckpointRecord record;
-  std::optional<CheckpointRecord> from = {};  ///< empty: from the stage's beginning
+  std::optional<CheckpointRecord> from = {};  ///< empty if the replay began at step 0
   std::uint64_t steps = 0;                    ///< number of recomputed steps
   std::optional<Divergence> divergence = {};
   bool interrupted = false;  ///< by a signal; there is no result, and nothing was recorded
@@ -91,8 +91,8 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// Like verify_by_replay(), but restores the file of a pruned, missing or damaged checkpoint with
-/// the same SHA-256. If the replay needs a pruned state with which the stage begins, that file is
-/// restored too. If the bytes differ, records ReplayDiverged and writes no file.
+/// the same SHA-256. If the replay needs a pruned state with which the stage begins, the file of
+/// that state is restored too. If the bytes differ, records ReplayDiverged and writes no file.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -82,7 +82,7 @@ std::string_view first_columns(std::string_view text, std::size_t count) {
 }
 
 std::string filled(std::string_view help, std::size_t width) {
-  constexpr std::size_t kNarrowest = 24;  // of the last column
+  constexpr std::size_t kNarrowest = 24;  // least width of the last column
   std::vector<std::string> paragraphs;
   std::istringstream lines{std::string(help)};
   bool goes_on = false;  // whether the paragraph continues

@@ -23,7 +23,7 @@ std::optional<std::size_t> terminal_columns(std::FILE* stream);
 bool moves_cursor(std::FILE* stream);
 
 /// Whether colours may be written to the stream: moves_cursor() is true, and NO_COLOR
-/// (https://no-color.org) is not set or empty.
+/// (https://no-color.org) is empty or not set.
 bool shows_colours(std::FILE* stream);
 
 /// Number of terminal columns that a UTF-8 text fills: two for most Chinese, Japanese and Korean

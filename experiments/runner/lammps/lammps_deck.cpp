@@ -73,7 +73,7 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // Fraction by which a grain's mass is raised to make a drag of rate b/m [1/s] implicit.
+  // Relative increase of a grain's mass that makes a drag of rate b/m [1/s] implicit: b dt/2m.
   double added(double drag) const {
     return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
   }
@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // LAMMPS creates atoms only between existing atoms, so first at the height of a grain.
+    // LAMMPS creates atoms only between existing atoms, so this one begins at a grain's height.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
@@ -191,7 +191,7 @@ pair_coeff * * ${{law}})",
   }
 
   // A side plane turns about its end at the top wall. Regions are given in their present pose:
-  // LAMMPS computes their velocities from displacements. `wall/region` reports its force only once.
+  // LAMMPS computes their velocities from displacements. fix wall/region reports a force only once.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -275,9 +275,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     }
   }
 
-  // The data file has velocities of half a step earlier, LAMMPS needs velocities of this step.
   void begin() {
-    add(text_, "\n# The data file has velocities of half a step before: add f/m dt/2.");
+    add(text_, "\n# The velocities in the data file are from half a step earlier: add f/m dt/2.");
     add(text_, "# With mpirun, all processes get about the same number of grains.");
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
@@ -299,7 +298,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // Frames have velocities of half a step before: f/m dt/2 is subtracted.
+  // Frames have the velocities of half a step earlier, so f/m dt/2 is subtracted.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
@@ -316,9 +315,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Runs one cycle, or one second of a packing. Everything is defined before the first `run`: a
-  // later definition would need another setup, which would compute the drag from changed
-  // velocities.
+  // Output during one cycle, or one second of a packing. This precedes the first `run`, because
+  // later definitions need another setup, which would compute the drag from changed velocities.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
@@ -351,13 +349,13 @@ write_dump grains custom {2}_end.dump id diameter x y z vx vy vz modify units ye
   const Cell& cell_;
   const Scene& scene_;
   double d_, m_;       // units of length and mass in the script
-  double area_;        // of the moving wall [d^2]
+  double area_;        // area of the moving wall [d^2]
   WallPose pose_;      // at the beginning
   Eigen::Index wall_;  // id of the moving wall's atom
   bool for_users_ = false;
   bool bottom_moves_;
   bool shears_;
-  bool holds_;  // whether pauses hold the moving wall
+  bool holds_;  // whether the moving wall is held during pauses
   std::string text_;
 };
 

@@ -33,9 +33,9 @@ struct LammpsTask {
 /// wall grains and the planes, because LAMMPS drops atoms outside it. `title` is the first line.
 std::string lammps_data(const Particles& particles, std::string_view title);
 
-/// The input deck. It reads the task's particles from `scene.data` and writes each frame to a
-/// temporary file, which it renames to `frame.STEP` when it is complete. If a file `stop` appears
-/// in the same folder, it writes one more frame and ends.
+/// The input deck. LAMMPS reads the task's particles from `scene.data` and writes each frame to a
+/// temporary file, which is renamed to `frame.STEP` when it is complete. If a file `stop` appears
+/// in the same folder, LAMMPS writes one more frame and ends.
 std::string lammps_deck(const LammpsTask& task);
 
 /// An input script for users, with comments. The script reads the file `data` and continues from
@@ -47,9 +47,9 @@ std::string lammps_script(const LammpsTask& task, std::string_view data, std::st
 /// Size limit [bytes] for files that LAMMPS writes, far above their usual sizes.
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
-/// Reads a frame. Ids from 1 to `grains` are the grains; the only other id is the moving wall.
-/// Throws ProgramError, with the file's name, unless the file is a complete state of this number of
-/// grains.
+/// Reads a frame. Ids from 1 to `grains` belong to grains; one larger id belongs to the moving
+/// wall. Throws ProgramError, with the file's name, unless the file is a complete state of this
+/// number of grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
 
 }  // namespace shearcell

@@ -28,8 +28,8 @@ std::string lammps_name();
 /// requested.
 LammpsProgram find_lammps(std::size_t ranks = 1);
 
-/// Steps, about half a second of work, between two checks of LAMMPS for a stop request. LAMMPS logs
-/// its progress as often.
+/// Number of steps after which LAMMPS checks for a stop request and logs its progress: about half a
+/// second of work.
 std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks);
 
 /// Starts LAMMPS in `folder` with `ranks` processes, under mpirun if there are several. Throws
@@ -42,8 +42,8 @@ class LammpsRun {
   /// Starts LAMMPS in a temporary folder with start_lammps().
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// Waits at most `patience` for the next frame; empty if none came. Throws ProgramError, with the
-  /// message of LAMMPS, if LAMMPS has ended without another frame.
+  /// Waits at most `patience` for the next frame; empty if there is none by then. Throws
+  /// ProgramError, with the message of LAMMPS, if LAMMPS has ended without another frame.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
   /// Asks LAMMPS to write one more frame and end.
