@@ -355,7 +355,7 @@ QueueView view_queue(const Store& store) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
       for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
-        QueuedRun& run = view.runs[id] = {queued, {}};  // replaces an older submission
+        QueuedRun& run = view.runs[id] = {queued, {}};  // the newest submission is the last
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
       }

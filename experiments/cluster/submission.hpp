@@ -72,7 +72,7 @@ struct Submission {
   std::string id;                               ///< 12 hex digits
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< number of the array job; "" if not queued
-  std::string merge_job;                        ///< number of the merge job; in the log "fold_job"
+  std::string merge_job;                        ///< number of the merge job ("fold_job" in the log)
   std::vector<QueuedTask> queue;                ///< its jobs in the queue, from view_queue()
 
   std::string name() const { return "shearcell-" + id; }  ///< name of the array job

@@ -178,7 +178,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that is not started any more was done before. Measures nothing: the user waits.
+  // Whether a job that will not be started was done before. Measures nothing: the user waits.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;

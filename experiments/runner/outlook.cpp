@@ -114,7 +114,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1, known = 0, at_most = 0;  // ends: `known`, or `at_most` if unknown
+  double latest = -1, known = 0, at_most = 0;  // latest known and latest possible end
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =

@@ -179,7 +179,7 @@ struct Work {
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
-  double longest_seconds = 0;                ///< of the longest run with its packing
+  double longest_seconds = 0;                ///< time of the longest run, with its packing
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< whether all rates were measured
   std::map<std::string, double> chain = {};  ///< seconds of a stage with its parents, by id

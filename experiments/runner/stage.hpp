@@ -79,8 +79,8 @@ struct Replay {
   bool interrupted = false;  ///< by a signal; there is no result, and nothing was recorded
 };
 
-/// Why this program cannot recompute the checkpoint bit for bit; empty if it can. `known` keeps the
-/// lineages that were read from the log for the next call.
+/// Why this program cannot recompute the checkpoint bit for bit; empty if it can. `known` caches
+/// lineages from the log for further calls.
 std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
                                          RunLineages& known);
 
