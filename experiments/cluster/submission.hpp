@@ -132,7 +132,7 @@ struct QueuedRun {
 
 struct QueueView {
   std::vector<Submission> submissions;    ///< unfinished submissions
-  std::map<std::string, QueuedRun> runs;  ///< their runs and packings, by id
+  std::map<std::string, QueuedRun> runs;  ///< runs and packings of submissions, by id
   std::string problem;                    ///< why the queue could not be read, or ""
 };
 

@@ -45,7 +45,7 @@ struct ExportedState : Particles {
   std::optional<LammpsTask> continued;
 };
 
-/// The name of a frame in file names: its cycle, or "step45600" in a packing without cycles.
+/// The name of a frame in file names: its cycle, or "step45600" in a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
 /// Makes a frame from a checkpoint. `sources` must have read the run; if null, measures that need

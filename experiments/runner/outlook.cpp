@@ -179,7 +179,7 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
     return static_cast<double>(step - (from != nullptr ? from->step : 0));
   };
   const bool pruned = !checkpoints.empty() && checkpoints.back().state == CheckpointState::pruned;
-  if (length > now && pruned) {  // the last state must be recomputed first
+  if (length > now && pruned) {  // the last checkpoint must be recomputed first
     steps += steps_to(checkpoints.back().step, recorded_before(checkpoints.back().step));
   }
   if (!look.missing.empty()) {

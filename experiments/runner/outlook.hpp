@@ -76,8 +76,8 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
 /// and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
-  /// Steps, ascending, of checkpoints before the stage's last checkpoint that were never recorded;
-  /// at most a million.
+  /// Steps, ascending, of missing checkpoints before the stage's last checkpoint; at most a
+  /// million.
   std::vector<std::uint64_t> missing = {};
   double to_come = 0;  ///< number after the stage's last checkpoint; estimated above 10,000
 };
