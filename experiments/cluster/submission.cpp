@@ -32,8 +32,8 @@ constexpr std::size_t kIdDigits = 12;
 // Slurm sends USR1 some time before the limit (with B: only to the shell), and TERM to all
 // processes if a job is cancelled or preempted. After both signals the program records its states
 // and ends with 85. After USR1 the script queues the task again, by array number and task number,
-// because the job number of a task may be the number of the whole array. If the
-// program is killed (out of memory), the script starts it again.
+// because the job number of a task may be the number of the whole array. If the program is killed
+// (out of memory), the script starts it again.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {

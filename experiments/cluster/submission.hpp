@@ -48,7 +48,7 @@ struct JobOptions {
   std::string time;                 ///< limit of one start of a task, as text for Slurm
   std::size_t cpus = 0;             ///< cores of a task; 0 if not chosen yet
   std::size_t threads = 1;          ///< threads of each run
-  std::size_t warn_seconds = 120;   ///< from Slurm's warning to the limit
+  std::size_t warn_seconds = 120;   ///< time between Slurm's warning and the limit
   std::vector<std::string> sbatch;  ///< further options, such as "--qos=long"
   std::string scratch;              ///< see unfit_scratch()
 };

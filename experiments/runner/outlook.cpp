@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // If the ask has more cycles than the stage's target, no recorded end is for this ask.
+      // An end that was recorded for fewer cycles says nothing about an ask for more cycles.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
