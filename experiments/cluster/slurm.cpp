@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Variables that do not reach Slurm's programs and the jobs, because they hide lines of the queue,
-// name another cluster, change what the options of sbatch below say (of one job or of both), or
-// describe the job in which `submit` itself runs. Others stay: SLURM_CONF, and what a site needs,
-// as SBATCH_ACCOUNT, SBATCH_PARTITION, SBATCH_QOS, SBATCH_CONSTRAINT and SBATCH_MEM_PER_CPU.
+// Environment variables that are removed for Slurm's programs and for the jobs. They hide lines of
+// the queue, name another cluster, contradict options of sbatch that this program sets, or describe
+// the job in which `submit` itself runs. All other variables are kept, for example SLURM_CONF,
+// SBATCH_ACCOUNT, SBATCH_PARTITION, SBATCH_QOS, SBATCH_CONSTRAINT and SBATCH_MEM_PER_CPU.
 const std::vector<std::string> kRemoved = {
     "SQUEUE_*",           "SLURM_CLUSTERS",      "SBATCH_CLUSTERS",
     "SBATCH_ARRAY_INX",   "SBATCH_CPUS_PER_GPU", "SBATCH_ERROR",
@@ -37,7 +37,7 @@ const std::vector<std::string> kRemoved = {
     "SBATCH_WAIT",        "SLURM_ARRAY_*",       "SLURM_MEM_PER_*",
     "SLURM_NTASKS_PER_*", "SLURM_RESTART_COUNT", "SLURM_TRES_PER_TASK"};
 
-// Slurm waits 10 s for an answer of its controller.
+// Slurm's programs wait 10 s for an answer of the controller.
 constexpr double kAnswerSeconds = 15;
 
 // std::regex recurses for each character, so a long text would overflow the stack.
@@ -50,7 +50,7 @@ std::string ask(const std::vector<std::string>& words) {
   if (!outcome) {
     throw ProgramError(fmt::format(
         "{} is not installed here (Debian package slurm-client); submit from a machine of the "
-        "cluster, or see what would be submitted with --dry-run",
+        "cluster, or use --dry-run to see what would be submitted",
         words.front()));
   }
   if (outcome->code == 0) return outcome->output;
@@ -69,7 +69,7 @@ std::string unfit_path(const fs::path& path) {
   }
   if (fit) return "";
   return fmt::format(
-      "{}: Slurm cannot be given a path with a backslash, a line feed or another control "
+      "{}: Slurm does not accept a path with a backslash, a line feed or another control "
       "character; name another folder",
       text);
 }
@@ -78,7 +78,7 @@ std::string unfit_value(std::string_view text) {
   constexpr std::string_view kSafe =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+.,:;/=@%*()[]|&!";
   if (!text.empty() && text.find_first_not_of(kSafe) == text.npos) return "";
-  return fmt::format("'{}' is not a value for Slurm; give one word without spaces or quotes", text);
+  return fmt::format("'{}' is not a value for Slurm; use one word without spaces or quotes", text);
 }
 
 std::string unfit_scratch(const std::string& text) {
@@ -86,9 +86,9 @@ std::string unfit_scratch(const std::string& text) {
   if (const std::string why = unfit_path(text); !why.empty()) return why;
   if (std::regex_match(text, fit)) return "";
   return fmt::format(
-      "'{}' does not name a folder on a node's own disk: write an absolute path, which may have "
-      "variables of the node, as '/scratch', '$TMPDIR' or '/scratch/${{USER}}/x'. Commands, ~ and "
-      "other expansions of a shell are not done",
+      "'{}' does not name a folder on a node's own disk: write an absolute path, such as "
+      "'/scratch', '$TMPDIR' or '/scratch/${{USER}}/x'. It may contain variables of the node, but "
+      "no commands, no ~ and nothing else that a shell would expand",
       text);
 }
 
@@ -119,8 +119,8 @@ std::optional<double> slurm_seconds(const std::string& time) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
   if (time.size() > kLongest || !std::regex_match(time, found, form)) return std::nullopt;
-  // A lone number is minutes, and two are minutes and seconds; three, or those after days, begin
-  // with hours.
+  // One number is minutes; two numbers are minutes and seconds. Three numbers, and all numbers
+  // after days, begin with hours.
   double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
   for (std::size_t part = 1; part <= 4; ++part) {
     if (!found[part].matched) continue;
@@ -141,16 +141,16 @@ void require_slurm() {
 }
 
 std::string queue_job(const Job& job, const fs::path& folder) {
-  static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the name of the cluster may follow
+  static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the cluster's name may follow
   write_output(folder / job.file, job.script);
-  // Without a time limit: sbatch may queue a job and not answer in time.
+  // No time limit, because sbatch may queue a job and not answer in time.
   const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
   std::smatch found;
   const auto is_number = [&found](const std::string& text) {
     return text.size() <= kLongest && std::regex_match(text, found, number);
   };
   if (sbatch.code == 0 && is_number(sbatch.output)) return found[1];
-  // It failed, perhaps after the job was queued, or a site's own text is around the number.
+  // sbatch failed, perhaps after it queued the job, or the site added text to the number.
   const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
   std::optional<std::vector<QueuedTask>> tasks;
   std::string queue = "no job of this name is in the queue";
@@ -168,8 +168,9 @@ std::string queue_job(const Job& job, const fs::path& folder) {
   }
   if (sbatch.code == 0 && !last.empty()) return last;
   throw MachineError(fmt::format(
-      "{}, and {}. So it is not known whether the job {} is queued. `submit` again looks for it "
-      "before it queues anything; to see or cancel it: squeue --name={} or scancel --name={}",
+      "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
+      "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
+      "--name={}",
       sbatch.code != 0 ? failure
                        : fmt::format("sbatch gave no job number but '{}'", trimmed(sbatch.output)),
       queue, job.name, job.name, job.name));

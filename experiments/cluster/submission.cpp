@@ -27,18 +27,19 @@ using nlohmann::json;
 constexpr std::size_t kMostCpus = 16;
 constexpr std::size_t kIdDigits = 12;
 
-// task.sh PROGRAM FOLDER ARGUMENT...
+// job.sh PROGRAM FOLDER ARGUMENT...
 //
-// Slurm sends USR1 some time before the limit (to the shell alone: B) and TERM to all processes
-// when a job is cancelled or preempted. Both make the program record its states and end with 85.
-// After USR1 the task is queued again by its own number, because the number of its job may be that
-// of the whole array. A program that was killed (out of memory) is started again here.
+// Slurm sends USR1 some time before the limit (with B: only to the shell), and TERM to all
+// processes if a job is cancelled or preempted. After both signals the program records its states
+// and ends with 85. After USR1 the script queues the task again, by array number and task number,
+// because the job number of a task may be the number of the whole array. If the program is killed
+// (out of memory), the script starts it again.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
   signalled=$1
   [ -n "$program" ] || return 0
-  # More than once: one that is just beginning is still a copy of this shell, which ignores it.
+  # Sent several times: a program that is just starting is a copy of this shell and ignores it.
   for pause in 1 2 4; do kill -"$1" "$program" 2>/dev/null || break; sleep "$pause"; done
 }
 trap 'again=yes; pass_on USR1' USR1
@@ -47,7 +48,7 @@ for start in 1 2 3 4; do
   program=
   "$1" resume --task --store "$2/task-$SLURM_ARRAY_TASK_ID" "${@:3}" $leave &
   program=$!
-  [ -z "$signalled" ] || pass_on "$signalled"  # it came before the number was known
+  [ -z "$signalled" ] || pass_on "$signalled"  # the signal came before the number was known
   wait "$program"; code=$?
   while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
   [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
@@ -55,7 +56,7 @@ for start in 1 2 3 4; do
   leave=--leave-failed
 done
 if [ -n "$again" ] && [ "$code" -ge 85 ]; then
-  echo "The time is over; the task is queued again."
+  echo "The time limit is near; the task is queued again."
   env -u SLURM_CLUSTERS scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 fi
 exit "$code"
@@ -70,8 +71,8 @@ done
 exit "$code"
 )sh";
 
-/// All that this program decides is on the command line, which overrides the variables of sbatch.
-/// Of two equal options sbatch takes the last: only --export gives way to the user's.
+/// Adds the job's command. Options on the command line override sbatch's variables. sbatch uses the
+/// last of two equal options, so users can change only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -146,10 +147,10 @@ void Share::add(const Share& other) {
 
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
-  std::map<std::string, std::string> packing_of;  // that each stage descends from
-  std::map<std::string, Share> packings;          // the cost of settling
+  std::map<std::string, std::string> packing_of;  // by stage id
+  std::map<std::string, Share> packings;          // what settling costs
   std::vector<Share> shares;
-  std::map<std::string, std::size_t> places;  // of each packing in shares
+  std::map<std::string, std::size_t> places;  // index in shares, by packing
   for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
     const std::string packing =
@@ -161,7 +162,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
     if (parent.empty() || one.look.done) continue;
     const auto [place, fresh] = places.try_emplace(packing, shares.size());
     if (fresh) {
-      shares.push_back(packings[packing]);  // no cost if it is not planned
+      shares.push_back(packings[packing]);  // no cost if the packing is not planned
       shares.back().packings = {packing};
     }
     shares[place->second].add(left);
@@ -173,7 +174,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
   std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
   std::vector<Share> shares(std::min(tasks, packings.size()));
   for (const Share& packing : packings) {
-    // The number of packings decides between equal costs, so that no share stays empty.
+    // At equal cost, the share with fewer packings is chosen, so that no share stays empty.
     const auto load = [](const Share& share) {
       return std::pair(share.core_seconds, share.packings.size());
     };
@@ -212,7 +213,7 @@ Job array_job(const Submission& submission, const fs::path& store, const JobOpti
   const std::size_t jobs = std::max<std::size_t>(1, options.cpus / options.threads);
   std::vector<std::string> arguments = {"--jobs", fmt::to_string(jobs), "--threads",
                                         fmt::to_string(options.threads)};
-  // `resume --task` on the node replaces its variables.
+  // On the node, `resume --task` replaces the variables in the path.
   if (!options.scratch.empty()) arguments.push_back("--scratch=" + options.scratch);
   return complete({submission.name(), "job.sh", kTaskScript, {}}, options, submission.folder(store),
                   "task-%a.log",
@@ -268,7 +269,7 @@ std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
   const auto is_done = [&](const std::string& id) { return look_at(store, store.stage(id)).done; };
   std::erase_if(open, [&](const Submission& submission) {
-    // Submissions without a folder were merged from other stores.
+    // Submissions without a folder came from other stores by a merge.
     return !fs::exists(submission.folder(store.folder())) ||
            std::ranges::all_of(submission.tasks, [&](const auto& task) {
              return std::ranges::all_of(task, is_done);
@@ -310,7 +311,7 @@ void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
-    // It is for information only, and written again soon.
+    // The report is only for information, and is written again soon.
   }
 }
 
@@ -327,7 +328,7 @@ std::map<std::string, Stage> read_task_report(const fs::path& folder) {
       record.cycle = run.at("cycle").get<double>();
     }
   } catch (const json::exception&) {
-    reported.clear();  // it is for information only
+    reported.clear();  // the report is only for information
   }
   return reported;
 }
@@ -354,7 +355,7 @@ QueueView view_queue(const Store& store) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
       for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
-        QueuedRun& run = view.runs[id] = {queued, {}};  // of the newest submission that has it
+        QueuedRun& run = view.runs[id] = {queued, {}};  // the newest submission is the last
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
       }
@@ -366,7 +367,7 @@ QueueView view_queue(const Store& store) {
 std::string describe(const Submission& s) {
   if (s.queue.empty()) {
     return fmt::format(
-        "submission {}: its jobs have ended with runs unfinished; `submit` them again", s.id);
+        "submission {}: its jobs have ended, but runs are unfinished; call `submit` again", s.id);
   }
   std::map<std::string, std::size_t> count;
   std::string merge_job;

@@ -28,7 +28,7 @@ void add_columns(const Measures& measures, ExportedState& frame) {
   }
 }
 
-// A packing goes on settling under the forces of its scene.
+// LAMMPS continues a shear with its drive, and a packing with the forces of settling.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   const auto kind = value_of<StageKind>(stage.kind);
   if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;
@@ -55,16 +55,17 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
   frame.sha256 = record.sha256;
   for (const auto& [column, cell] : facts_of(record, measures)) {
     const nlohmann::json value = json_of(cell);
-    // Members of ExportedState.
+    // ExportedState has members for these.
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }
   const nlohmann::json parameters = effective_parameters(selected.stage.resolved);
   for (const auto& [key, value] : parameters.items()) {
-    if (find_field(key) == nullptr) continue;  // a forged store may hold it
+    if (find_field(key) == nullptr) continue;  // a forged store may have other keys
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
-  frame.stiffness_N_per_m = measures.number("raised_stiffness_N_per_m");  // only of a stiffening
+  frame.stiffness_N_per_m =
+      measures.number("raised_stiffness_N_per_m");  // known only for a stiffening
   const nlohmann::json stated = member_of(parameters, "stiffness_N_per_m");
   if (std::isnan(frame.stiffness_N_per_m) && stated.is_number()) {
     frame.stiffness_N_per_m = stated.get<double>();
@@ -87,7 +88,7 @@ ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& rec
       (sources == nullptr ? alone : *sources)
           .measures_of(record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames,
                        frame.unread);
-  const double rate = measures.number("shear_rate_per_s");  // only of a shear
+  const double rate = measures.number("shear_rate_per_s");  // known only for a shear
   static_cast<Particles&>(frame) =
       particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,
                    std::isnan(rate) ? 0 : rate, checkpoint.units);

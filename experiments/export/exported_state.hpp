@@ -19,37 +19,37 @@ namespace shearcell {
 /// A measure of each particle.
 struct ExportedColumn {
   std::string name;
-  bool whole = false;  ///< whole numbers
+  bool whole = false;  ///< whether the values are whole numbers
   std::vector<double> values;
 };
 
-/// Particles in SI units. Measures of wall grains are 0, classes -1. Velocities of grains and of
-/// the moving wall are half a time step before the state's step, velocities of the tilting walls at
-/// this step.
+/// Particles in SI units. Measures of wall grains are 0; classes of wall grains are -1. Velocities
+/// of grains and of the moving wall belong to half a time step before the state's step; velocities
+/// of tilting walls belong to the state's step.
 struct ExportedState : Particles {
   Checkpoint checkpoint;
-  std::string sha256;  ///< of the checkpoint's file
+  std::string sha256;  ///< SHA-256 of the checkpoint's file
 
-  /// Facts of the run, texts and numbers: id, experiment, scale, variant and seed; the parameters
-  /// that distinguish runs, by their keys in a manifest.
+  /// `run`: id, experiment, scale, variant and seed. `parameters`: the parameters that affect the
+  /// run, by their keys in a manifest. Values are texts and numbers.
   std::vector<std::pair<std::string, nlohmann::json>> run, parameters;
-  /// The measures of the frame by their names in `table`; NaN if unknown.
+  /// The frame's scalar measures, by their names in `shearcell table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// The measures of each grain (analysis/measures.hpp); if unknown NaN, or -1 of a whole number.
+  /// Measures of each particle (analysis/measures.hpp). Unknown numbers are NaN, whole ones -1.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
-  MeasureOutcome unread;                    ///< earlier checkpoints; measures over them are NaN
+  MeasureOutcome unread;                    ///< earlier checkpoints that could not be read
 
-  /// How the run goes on from here; nothing for a stiffening, or if the stage cannot be read.
+  /// What LAMMPS must compute to continue the run. Empty for a stiffening or an unreadable stage.
   std::optional<LammpsTask> continued;
 };
 
-/// The frame in a file's name: its cycle; of a packing, which has no cycles, "step45600".
+/// The name of a frame in file names: its cycle, or "step45600" in a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
-/// `sources` has read the run; without it, measures that need earlier checkpoints are NaN. `every`:
-/// as in ToMeasure. Throws as analyse_stored().
+/// Makes a frame from a checkpoint. `sources` must have read the run; if null, measures that need
+/// earlier checkpoints are NaN. `every`: as in ToMeasure. Throws like analyse_stored().
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                        const Run& run = {}, const MeasureSources* sources = nullptr,
                        std::uint64_t every = 1);

@@ -18,10 +18,10 @@ using hdf5::put_dataset;
 using hdf5::require;
 using hdf5::Shape;
 
-// MDAnalysis does not know metres, and reads units only as text of variable length. Velocities have
-// the same numbers in nm/ns as in m/s.
+// MDAnalysis does not support metres, and reads units only as text of variable length. Velocities
+// in nm/ns and in m/s have equal numbers.
 constexpr double nm_per_m = 1e9;
-constexpr std::size_t kHashDigits = 64;  // of a checkpoint's SHA-256
+constexpr std::size_t kHashDigits = 64;  // length of a SHA-256
 
 void put_unit(const Handle& object, const std::string& unit) {
   if (unit.empty()) return;
@@ -31,7 +31,7 @@ void put_unit(const Handle& object, const std::string& unit) {
   put_attribute(object, "unit", type.get(), &text);
 }
 
-/// A file that is written frame by frame.
+/// An H5MD file that is written frame by frame.
 class Trajectory {
  public:
   Trajectory(const std::filesystem::path& path, std::size_t frames)
@@ -43,13 +43,13 @@ class Trajectory {
     if (frame.particles() != particles_) {
       throw std::runtime_error("the number of particles changes between checkpoints of one run");
     }
-    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns here are rows there
+    const Eigen::Matrix3d edges = frame.edges * nm_per_m;  // columns become rows in the file
     const Eigen::Vector3d origin = frame.origin * nm_per_m;
     const Eigen::Matrix3Xd position = frame.position * nm_per_m;
     put("particles/all/step", H5T_STD_U64LE, {}, &frame.checkpoint.state.step);
     put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.checkpoint.time_s, "s");
     element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
-    // Not part of H5MD.
+    // H5MD does not define the origin of a box.
     element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
     element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
     element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),
@@ -89,8 +89,8 @@ class Trajectory {
         H5Fclose};
   }
 
-  /// Writes the frame's value of an H5MD element {step, time, value}. All elements share step and
-  /// time.
+  /// Writes the frame's value of an H5MD element {step, time, value}. All elements share the
+  /// datasets `step` and `time`.
   void element(const std::string& path, hid_t type, const Shape& shape, const void* data,
                const std::string& unit = "") {
     if (next_ == 0) {
@@ -109,7 +109,7 @@ class Trajectory {
     hdf5::put_h5md(file_, "1");
     const Handle particles = make_group(file_, "particles");
     const Handle all = make_group(particles, "all", 20);
-    // MDAnalysis takes the number of particles from a group of this name, and so needs no topology.
+    // MDAnalysis reads the number of particles from the group `trajectory`, and needs no topology.
     require(
         H5Lcreate_soft("/particles/all", particles.get(), "trajectory", H5P_DEFAULT, H5P_DEFAULT),
         "a link");
@@ -170,8 +170,8 @@ class Trajectory {
 }  // namespace
 
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
-  // Must precede other calls. Otherwise HDF5 would repeat a write that a full disk refused when the
-  // process ends, and crash.
+  // Must precede other calls of HDF5. Otherwise, if a write fails because the disk is full, HDF5
+  // repeats the write at exit and crashes.
   H5dont_atexit();
   return
       [out = std::make_shared<Trajectory>(file, frames)](const ExportedState& f) { out->add(f); };

@@ -17,7 +17,7 @@ namespace shearcell {
 namespace {
 
 /// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both ignore
-/// the quotes; ASE takes lists apart at spaces and commas, so the first item decides.
+/// the quotes. ASE splits lists at spaces and commas, so the first item decides.
 bool looks_like_a_value(std::string_view text) {
   std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
@@ -28,8 +28,8 @@ bool looks_like_a_value(std::string_view text) {
   return number || std::ranges::find(kValues, word) != std::end(kValues);
 }
 
-// Quotes a text such that ASE and OVITO read text, in single quotes if need be. Replaces characters
-// that would end the quotes or the line.
+// Quotes a text so that ASE and OVITO read it as text, if needed with single quotes inside.
+// Replaces characters that would end the quotes or the line.
 std::string quoted(std::string text) {
   for (char& c : text) {
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
@@ -53,7 +53,7 @@ std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) 
                       name_of(unit), 2 * f.radius, quoted(f.sha256));
   for (const auto* facts : {&f.run, &f.parameters}) {
     for (const auto& [key, value] : *facts) {
-      if (value == "") continue;  // ASE would take the next key for its value
+      if (value == "") continue;  // ASE would read the next key as the value
       line += fmt::format(" {}={}", key,
                           value.is_string() ? quoted(value.get<std::string>()) : value.dump());
     }
@@ -64,7 +64,7 @@ std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) 
   return line;
 }
 
-// The title has the planes of the cell, since the box is larger; a start from the file needs them.
+// The title has the planes of the cell, which a start from the file needs; the box is larger.
 std::string lammps_title(const ExportedState& f) {
   const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK's XML PolyData with appended raw data, as its file formats describe.
+// Writes XML PolyData with appended raw data, as VTK's file formats specify.
 #include <fmt/format.h>
 
 #include <bit>
@@ -12,9 +12,9 @@
 namespace shearcell {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
+static_assert(std::endian::native == std::endian::little, "the files state LittleEndian");
 
-/// Collects arrays, which are written after the XML elements that refer to them.
+/// Collects arrays. They are written after the XML elements that refer to them.
 class PolyData {
  public:
   template <typename Number>

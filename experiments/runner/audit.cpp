@@ -30,11 +30,12 @@ using nlohmann::json;
 
 void require_same(const std::string& what, const json& recorded, const json& expected) {
   if (recorded == expected) return;
-  throw StoreDamaged(fmt::format("its event has {} = {}, and its parameters give {}", what,
+  throw StoreDamaged(fmt::format("its event has {} = {}, but its parameters give {}", what,
                                  recorded.dump(), expected.dump()));
 }
 
-/// Labels of parameters that do not act on the run, or are not part of its id, are not checked.
+/// Checks seed, swept values and variant. Skips swept parameters that do not act on the run or are
+/// not part of its id.
 void check_place(const Place& place, const StageInputs& stage, const json& resolved) {
   require_same("seed", place.seed, stage.seed);
   for (const auto& [key, value] : place.swept.items()) {
@@ -46,14 +47,14 @@ void check_place(const Place& place, const StageInputs& stage, const json& resol
     require_same("label " + key, value, parameters.at(key));
     const std::string part = key + "=" + value_text(value);
     if (("," + place.variant + ",").find("," + part + ",") == std::string::npos) {
-      throw StoreDamaged(fmt::format("its variant is '{}', without {}", place.variant, part));
+      throw StoreDamaged(fmt::format("its variant '{}' lacks {}", place.variant, part));
     }
   }
 }
 
 void check_stage(const Stage& stage) {
   if (stage_key(stage.resolved) != stage.id) {
-    throw StoreDamaged("its recorded parameters are not those that it is named after");
+    throw StoreDamaged("the id is not the hash of the recorded parameters");
   }
   const StageInputs inputs = read_stage(stage.resolved);
   require_same("kind", stage.kind, name_of(inputs.stage));
@@ -62,8 +63,8 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps at which the run was completed: of each completion the last of its attempt and the
-/// furthest, which differ when attempts of several stores were merged.
+/// Steps at which the run was completed. Each completion gives the last step of its attempt and the
+/// furthest step so far; the two differ if attempts of several stores were merged.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
@@ -80,9 +81,8 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// A run must start from the state at which its packing was completed, or from the recorded one
-/// that it names: from one of `steps` of the stage before it. Of a merged store, states that it
-/// lacks are not checked: a merge leaves out files that another HDF5 library wrote.
+/// Throws StoreDamaged if the stage started from a state of its parent that is at none of `steps`.
+/// A merged store may lack this state: a merge leaves out files that another HDF5 library wrote.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
@@ -94,8 +94,8 @@ void check_beginning(const Store& store, const Stage& stage, const std::set<std:
       continue;
     }
     throw StoreDamaged(fmt::format(
-        "event {} started it from checkpoint {:.12}, which is not the state of run {:.12} that it "
-        "begins with; do not use its states, and compute it again in a new store",
+        "event {} started this run from checkpoint {:.12}, which is not the state of run {:.12} "
+        "from which it must start; do not use the results, and compute this run in a new store",
         event.seq, *from, stage.parent));
   }
 }
@@ -107,14 +107,14 @@ bool nearly_equal(const json& cached, const json& computed) {
          std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
-/// The first place where two results differ, with both values; "" when they are equal.
+/// Describes the first difference of two results, with both values; "" if they are equal.
 std::string difference(const json& cached, const json& computed, const std::string& measure) {
   const json a = cached.flatten(), b = computed.flatten();
   for (const auto& [path, value] : b.items()) {
-    if (!a.contains(path)) return measure + path + ": it is not cached";
+    if (!a.contains(path)) return measure + path + ": this value is not cached";
     if (nearly_equal(a.at(path), value)) continue;
-    return fmt::format("{}{}: {} is cached, {} is computed", measure, path, a.at(path).dump(),
-                       value.dump());
+    return fmt::format("{}{}: the cached value is {}, the computed value is {}", measure, path,
+                       a.at(path).dump(), value.dump());
   }
   return a.size() == b.size() ? "" : measure + ": its structure differs";
 }
@@ -125,7 +125,7 @@ struct CachedMeasure {
   DerivedObject object;
 };
 
-/// What the cache keeps of a checkpoint, for the cadences of all experiments that ask for its run.
+/// The cached measures of a checkpoint, for the intervals of all experiments that use its run.
 std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
                                            MeasureSources& sources) {
   sources.read_run(record.run);
@@ -165,12 +165,11 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
   } catch (const AnalysisError& error) {
     return error.what();
   } catch (const FilePruned&) {
-    // Another program pruned it meanwhile.
+    // Another program has pruned the checkpoint meanwhile.
   }
   return "";
 }
 
-/// Checkpoints of which the cache keeps a measure.
 std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
                                                    MeasureSources& sources) {
   std::vector<CheckpointRecord> found;
@@ -182,7 +181,6 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
   return found;
 }
 
-/// Compares the measures of pruned checkpoints with the log.
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
   const auto note = [&](const std::string& run, const std::string& what) {
@@ -209,7 +207,7 @@ std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  std::map<std::string, CheckpointRecord> unnamed;  // pruned, with measures that the log lacks
+  std::map<std::string, CheckpointRecord> unnamed;  // pruned, without digests in the log
   for (const Stage& stage : store.stages()) {
     for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {
@@ -244,7 +242,7 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed) {
   count = std::min(count, records.size());
-  // Distributions of the standard library differ between libraries; a remainder does not.
+  // The distributions of <random> differ between standard libraries; a remainder does not.
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(records[i], records[i + random() % (records.size() - i)]);
@@ -316,7 +314,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // whoever made a source cannot predict it
+  const std::uint64_t seed = seed_of(store.head());  // sources cannot predict this seed
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

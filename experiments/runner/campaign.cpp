@@ -32,18 +32,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program computes it. ended: without reaching its target.
+// held: another program computes the stage. ended: the stage did not reach its target.
 enum class JobState { waiting, running, held, done, ended };
 
-// Time between two checks of a run that another program holds.
+// Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// A run that was lost so often while no other program holds it cannot be computed.
+// A stage that no program holds counts as blocked after this many failed starts.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
 
-/// On a terminal: one line per running stage, redrawn in place. Elsewhere: a plain line when a
-/// stage begins or ends, and for each running stage at most one every ten seconds. Thread-safe.
+/// On a terminal: one line per running stage, redrawn in place. Elsewhere: a line when a stage
+/// begins or ends, and at most one line per running stage every ten seconds. Thread-safe.
 class Progress {
  public:
   Progress(std::size_t stages, bool quiet)
@@ -68,7 +68,7 @@ class Progress {
     print_stderr("{}: {}\n", shown.name, shown.text);
   }
 
-  /// `done` counts it among the stages that are done. Prints `how` it ended unless that is empty.
+  /// `how`: how the stage ended; printed unless empty. `done`: count the stage as done.
   void end(const StageJob& job, const std::string& how, bool done) {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
@@ -80,7 +80,7 @@ class Progress {
     draw();
   }
 
-  /// A permanent line; a `minor` one only if progress is shown.
+  /// Prints a permanent line. A `minor` line is printed only if progress is shown.
   void say(const std::string& line, bool minor = false) {
     const std::lock_guard lock(mutex_);
     if (minor && quiet_) return;
@@ -102,7 +102,7 @@ class Progress {
   void draw() {
     if (quiet_ || !terminal_) return;
     erase();
-    // A longer line would wrap, and drawing over it would leave its beginning behind.
+    // A longer line would wrap, and erase() would not erase its beginning.
     const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
     std::multimap<std::string, std::string> lines;
     for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
@@ -116,8 +116,8 @@ class Progress {
   std::mutex mutex_;
   std::size_t stages_, done_ = 0;
   bool quiet_, terminal_;
-  std::size_t drawn_ = 0;                 ///< lines on the screen that the next drawing replaces
-  std::map<std::string, Shown> running_;  ///< by id
+  std::size_t drawn_ = 0;                 ///< lines on the screen that the next draw() replaces
+  std::map<std::string, Shown> running_;  ///< by stage id
 };
 
 // --- Scheduling ---
@@ -134,12 +134,12 @@ class Campaign {
   }
 
   CampaignResult run(std::size_t workers) {
-    // Shows other programs that this one is alive, also during long simulations.
+    // Shows other programs that this program is alive, even during long simulations.
     const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // Tried again soon; meanwhile the log alone decides whose records count.
+        // The next call tries again. Until then the log decides whose records are valid.
       }
     });
     {
@@ -153,13 +153,13 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    // Of a run that another program holds or took; used only by the thread that runs the job.
+    // For a stage that another program holds or took; written by the thread that runs the job.
     Clock::time_point check_at = {};
     int losses = 0;
   };
 
-  // The first job that may begin, or else the first held one that is due for a check; null if
-  // there is none now. Jobs that can no longer begin are ended.
+  // The first job that can begin; otherwise the first held job that is due for a check; otherwise
+  // null. Marks jobs that can no longer begin as ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {
@@ -178,19 +178,19 @@ class Campaign {
     return held_job;
   }
 
-  // Of a job that is not computed any more. Measures nothing, because the user waits for the end.
+  // Whether a job that will not be started was done before. Measures nothing: the user waits.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;
     } catch (const std::exception&) {
-      return false;  // the next attempt to compute it reports why
+      return false;  // the next attempt to compute the stage reports why
     }
   }
 
   JobState parent_state(const Job& job) const {
     const auto parent = std::ranges::find(jobs_, job.parent, &Job::id);
     if (parent != jobs_.end()) return parent->state;
-    return JobState::done;  // a first stage, or one whose parent was not asked for
+    return JobState::done;  // no parent, or the parent is not in this campaign
   }
 
   std::size_t count(JobState state) const {
@@ -229,13 +229,13 @@ class Campaign {
     try {
       for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
     } catch (const std::exception&) {
-      return;  // the next attempt to compute one of them reports why
+      return;  // the next attempt to compute a stage reports why
     }
-    if (holders.empty()) return;  // it has just ended
+    if (holders.empty()) return;  // the other program has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another program computes ({}); a stage is free when its "
-                    "holder has ended or been silent for {} s",
+        fmt::format("waiting for {} that another program computes ({}); a stage is free when that "
+                    "program has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }
@@ -252,7 +252,7 @@ class Campaign {
     } catch (const ProgramError& error) {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const NotFound& error) {
-      // A state that it begins with or that decides its end was pruned or never recorded.
+      // A checkpoint that the stage needs was pruned or never recorded.
       note(job, &CampaignResult::blocked, error.what());
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
@@ -284,13 +284,13 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(job);
     if (was_held && stage.state == StageState::failed) {
-      note(job, &CampaignResult::failed, stage.error);  // it would fail here too
+      note(job, &CampaignResult::failed, stage.error);  // the stage would fail here too
       return JobState::ended;
     }
     progress_.begin(job);
     StageOptions options{.parallel = parallel_};
     options.damaged = [&](const std::string& what) {
-      note(job, &CampaignResult::damaged, what + "; computed again from the checkpoint before");
+      note(job, &CampaignResult::damaged, what + "; continuing from an earlier checkpoint");
     };
     options.continuing = [&](const std::string& what) { say(job, what); };
     options.restoring = [&](const std::string& what) {
@@ -319,7 +319,7 @@ class Campaign {
         progress_.end(job, "", false);
         if (++job.losses > kMostLosses && !held_by_another(job.id)) {
           note(job, &CampaignResult::blocked,
-               "it cannot be started; `shearcell verify` may show why");
+               "the stage cannot be started; `shearcell verify` may show why");
           return JobState::ended;
         }
         return put_off(job);
@@ -354,17 +354,17 @@ class Campaign {
   Progress progress_;
   Parallel parallel_;
   std::function<void(const std::string&)> when_done_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::vector<Job> jobs_;
   std::size_t shown_held_ = 0;
   CampaignResult result_;
-  std::set<std::string> damaged_;  // ids of the stages that count as such in result_
+  std::set<std::string> damaged_;  // ids of the stages in result_.damaged
   std::exception_ptr error_;
 };
 
-/// A job for each stage, named by its first place. Its id is added if several stages have one name,
-/// as at several scales.
+/// A job for each stage, named after the stage's first place. If several stages have the same name,
+/// for example at several scales, their ids are added.
 std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
   std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
@@ -383,7 +383,6 @@ std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNam
   return jobs;
 }
 
-// By scale, where the manifest states it.
 nlohmann::json overlap_limits(const Manifest& manifest) {
   nlohmann::json limits = nlohmann::json::object();
   for (const Scale& scale : scales_of(manifest)) {
@@ -411,7 +410,7 @@ std::vector<StageJob> declare(Store& store, const Plan& plan) {
     for (const Stage* stage : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
       if (stage == nullptr) continue;
       const bool first = known.insert(stage->id).second;
-      if (!first && stage != &run.stage) continue;  // a packing of several variants
+      if (!first && stage != &run.stage) continue;  // a packing that variants share
       store.declare_stage(*stage);
       if (first) stages.push_back(*stage);
     }
@@ -426,7 +425,7 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (const Stage& stage : stages) {
     if (prefixes.empty() && !look_at(store, stage).done) asked.push_back(stage.id);
   }
-  // Parents are asked for too, since a parent may have lost its last checkpoint.
+  // Includes parents, since the last checkpoint of a parent may be lost.
   const std::set<std::string> wanted = with_parents(store, asked);
   std::erase_if(stages, [&](const Stage& stage) { return !wanted.contains(stage.id); });
   return jobs_of(stages, VariantNames(store));

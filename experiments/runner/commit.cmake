@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Which commit the sources are of: sets `commit` (12 digits, then -dirty where a tracked file differs;
-# or "unknown") and `commit_time` (seconds since 1970, empty where unknown). As a script it puts the
-# first into a source file, which is written only when it changes:
+# Finds the commit of the sources. Sets `commit` (12 digits, followed by -dirty if a tracked file differs;
+# or "unknown") and `commit_time` (seconds since 1970; empty if unknown). When run as a script, writes
+# `commit` into a source file if its content changes:
 #   cmake -DSOURCE=FOLDER -DOUT=FILE.cpp -P commit.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# `git archive` fills these two in (.gitattributes beside this file).
+# `git archive` replaces these two placeholders (see .gitattributes in this folder).
 set(commit "$Format:%H$")
 set(commit_time "$Format:%ct$")
 
-# Only a repository of our own: an archive may be unpacked inside another.
+# Git is asked only if SOURCE is a repository itself: an archive may be unpacked inside another one.
 if(EXISTS "${SOURCE}/.git")
   execute_process(COMMAND git --no-optional-locks -C ${SOURCE} log -1 --format=%H,%ct
                   OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

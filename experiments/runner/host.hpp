@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Host and build of a computation: recorded with every attempt, part of no identity.
+// Host and build of a computation. Recorded with every attempt; not part of any id.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Results = std::vector<json>;
 
-// Results are cached in batches: one transaction each would take longer than a small analysis.
+// Results are cached in batches, because a transaction takes longer than a small analysis.
 constexpr std::size_t kBatch = 64;
 
 class Measuring {
@@ -35,7 +35,7 @@ class Measuring {
     for (const std::string& name : names) add(provider(name));
     wanted_ = providers_.size();
     for (const std::string& name : options.also) add(provider(name));
-    // A run of two experiments is listed twice.
+    // A checkpoint that two experiments share is listed twice.
     std::map<std::pair<std::string_view, std::uint64_t>, std::size_t> known;
     for (const ToMeasure& one : checkpoints) {
       sources_.read_run(one.checkpoint->run);
@@ -50,7 +50,7 @@ class Measuring {
       for (std::size_t p = 0; p < providers_.size(); ++p) {
         keys_.push_back(sources_.key(*record, *providers_[p], every));
         if (!takes(*record, *providers_[p])) {
-          results_[i][p] = json::object();  // without measures
+          results_[i][p] = json::object();  // an empty result
           continue;
         }
         const CheckpointRecord* other = sources_.earlier(*record, *providers_[p], every);
@@ -87,7 +87,7 @@ class Measuring {
     if (one.is_kept() && !listed) providers_.push_back(&one);
   }
 
-  /// Whether the provider is asked for a result of this checkpoint.
+  /// Whether the provider computes a result for this checkpoint.
   bool takes(const CheckpointRecord& record, const Provider& one) const {
     if (one.from != ComputedFrom::simulation || !options_.simulated) return true;
     const auto [first, last] = *options_.simulated;
@@ -98,7 +98,7 @@ class Measuring {
     const auto found = cache_.get(keys_);
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        throw MachineError(cache_.trouble() + "; it holds the only measures of pruned checkpoints");
+        throw MachineError(cache_.trouble() + "; it has the only measures of pruned checkpoints");
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
@@ -110,13 +110,13 @@ class Measuring {
       json& result = results_[k / providers_.size()][k % providers_.size()];
       if (!found[k] || !result.is_null()) continue;
       const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
-      // What the log does not name can be computed again, unless the file is gone.
+      // A result without a digest in the log is used only while the checkpoint's file exists.
       const bool kept = record.state != CheckpointState::pruned;
       if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
       try {
         result = decode_result(*found[k]);
       } catch (const AnalysisError&) {
-        // Foreign bytes with a correct hash: computed again and replaced.
+        // The hash matches, but the bytes are not a result: the result is recomputed and replaced.
       }
     }
   }
@@ -124,7 +124,7 @@ class Measuring {
   void compute(std::size_t i) {
     const CheckpointRecord& record = *distinct_[i].checkpoint;
     const Checkpoint checkpoint = sources_.load(record);
-    std::optional<Analysis> analysis;  // once, for the first that takes it
+    std::optional<Analysis> analysis;  // computed once, if a provider needs it
     std::vector<DerivedObject> objects;
     MeasureOutcome unread;
     for (std::size_t p = 0; p < providers_.size(); ++p) {
@@ -161,20 +161,20 @@ class Measuring {
     }
     sources_.add_recorded(one, one.measures);
   } catch (const AnalysisError& problem) {
-    throw StoreDamaged(std::string(DerivedCache::kFile) + " holds something else (" +
-                       problem.what() + "); delete it, and the measures are computed again");
+    throw StoreDamaged(std::string(DerivedCache::kFile) + " holds a wrong result (" +
+                       problem.what() + "); delete this file, and the measures are recomputed");
   }
 
   const std::span<const ToMeasure> checkpoints_;
   MeasureSources sources_;
   const MeasureOptions& options_;
-  std::vector<const Provider*> providers_;  // those that are asked for, then MeasureOptions::also
-  std::size_t wanted_ = 0;                  // the number of those that are asked for
+  std::vector<const Provider*> providers_;  // requested ones, then MeasureOptions::also
+  std::size_t wanted_ = 0;                  // number of requested providers
   std::vector<ToMeasure> distinct_;
-  std::vector<std::size_t> place_;  // of each checkpoint in distinct_
-  std::vector<DerivedKey> keys_;    // of each in distinct_, in the order of the providers
+  std::vector<std::size_t> place_;  // index in distinct_ of each checkpoint
+  std::vector<DerivedKey> keys_;    // for each of distinct_: one per provider
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // of each in distinct_; a thread writes only its own
+  std::vector<Results> results_;  // for each of distinct_; threads write different ones
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
@@ -198,7 +198,7 @@ MeasureOutcome read_in_parallel(std::size_t count, std::size_t workers,
   MeasureOutcome unread;
   std::exception_ptr error;
   std::size_t done = 0;
-  std::mutex mutex;  // guards the three above
+  std::mutex mutex;  // guards unread, error and done
   std::atomic<std::size_t> next{0};
   const auto work_on_some = [&](std::size_t) {
     for (std::size_t i = next++; i < count; i = next++) {

@@ -51,7 +51,7 @@ void MeasureSources::read_run(const std::string& run) {
     auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
     if (pruned.measures.empty()) continue;
     Digests& all = entry->second.digests[pruned.checkpoint.sha256];
-    pruned.measures.merge(all);  // later ones count
+    pruned.measures.merge(all);  // a later digest replaces an earlier one
     all = std::move(pruned.measures);
   }
   if (!entry->second.facts.drive) return;
@@ -84,8 +84,9 @@ MeasureSources::PrunedMeasures MeasureSources::compare_pruned(const CheckpointRe
     if (now == cached.end()) ++result.absent;
     if (now == cached.end() || now->second == digest) continue;
     result.altered = fmt::format(
-        "{}: {} of checkpoint {:.12} (run {:.12}, cycle {:g}) is not what the log says since the "
-        "file was pruned; restore this file from a backup, or `shearcell regenerate {:.12}`",
+        "{}: {} of checkpoint {:.12} (run {:.12}, cycle {:g}) does not have the digest that was "
+        "logged when the checkpoint was pruned; restore derived.sqlite from a backup, or run "
+        "`shearcell regenerate {:.12}`",
         DerivedCache::kFile, name, record.sha256, record.run, record.cycle, record.sha256);
   }
   return result;

@@ -24,23 +24,23 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // of one list; the store is not trusted
-constexpr double kMostCounted = 10'000;         // one by one; more are extrapolated
+constexpr std::size_t kMostListed = 1'000'000;  // checkpoints in a list; the store is not trusted
+constexpr double kMostCounted = 10'000;         // one by one; larger numbers are extrapolated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
   return until_from_json(ask.until);
 } catch (const std::runtime_error& problem) {
-  throw StoreDamaged(fmt::format("a record of run {:.8}: {}", stage.id, problem.what()));
+  throw StoreDamaged(fmt::format("run {:.8}: invalid `until`: {}", stage.id, problem.what()));
 }
 
-/// Outlook::ended, as a completion recorded it.
+/// Outlook::ended, read from a recorded completion.
 struct EarlyEnd {
   Until until;
   double reached = 0;  ///< the cycle at which `until` was reached
 };
 
-/// Nothing for another end, or where this program cannot read it.
+/// Empty if the stage did not end by `until`, or if this program cannot read the record.
 std::optional<EarlyEnd> early_end(const json& ended) {
   const json measure = member_of(ended, "measure"), cycle = member_of(ended, "reached_at_cycle");
   if (member_of(ended, "by") != "until" || !measure.is_string() || !cycle.is_number()) return {};
@@ -53,7 +53,7 @@ std::optional<EarlyEnd> early_end(const json& ended) {
   }
 }
 
-/// The cycle at which the stage reached this `until`, as a completion recorded it.
+/// The cycle at which the stage reached this `until`, if a completion recorded it.
 std::optional<double> recorded_reach(const Stage& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
     const auto end = early_end(ended);
@@ -62,11 +62,11 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
   return std::nullopt;
 }
 
-/// Where the stage ends for one ask alone.
+/// The end of a stage if only one ask counts.
 struct End {
-  double cycle = 0;                             ///< its number of cycles, or earlier
-  std::optional<double> reached = {};           ///< the cycle at which its `until` was reached
-  const CheckpointRecord* undecided = nullptr;  ///< the first that may have reached it
+  double cycle = 0;                             ///< the ask's number of cycles, or fewer
+  std::optional<double> reached = {};           ///< the cycle at which `until` was reached
+  const CheckpointRecord* undecided = nullptr;  ///< first checkpoint that may reach `until`
 };
 
 End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
@@ -79,27 +79,27 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // Where an ask for more cycles than the stage was asked for ends is not known yet.
+      // An end that was recorded for fewer cycles says nothing about an ask for more cycles.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
       if (!end.reached) end.undecided = &one;
       break;
     }
-    // Also a number that is undefined, as phi without interior grains, has not reached the value.
+    // NaN does not reach the value, for example phi without interior grains.
     if (!(known->second.number(until->measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
   }
   if (end.reached) {
-    // The first checkpoint at or after it.
+    // The stage ends at its first checkpoint at or after cycle `last`.
     const double last = *end.reached + static_cast<double>(until->extra_cycles);
     end.cycle = std::min(end.cycle, std::ceil(last / every) * every);
   }
   return end;
 }
 
-/// Whether what the completed stage has recorded meets the ask.
+/// Whether the completed stage meets an ask because it has met a recorded ask.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -114,7 +114,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1, known = 0, at_most = 0;  // ends that are known, and those that are not
+  double latest = -1, known = 0, at_most = 0;  // latest known and latest possible end
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
@@ -141,22 +141,22 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
   return long_enough;
 }
 
-/// Simulated time [s] that a packing takes to settle; within a third of the measured 0.9, 1.1, 1.6
-/// and 2.8 s at N = 600, 2000, 5200 and 18200.
+/// Estimated simulated time [s] in which a packing settles. Within a third of the measured times:
+/// 0.9, 1.1, 1.6 and 2.8 s at N = 600, 2000, 5200 and 18200.
 double settling_time_s(const Parameters& p) {
   const double height = p.height_over_width * cell_width(geometry(p));
   const double time = 0.6 + 0.00175 * height * height;
   return std::min(std::max({time, damping_time_s(p), pressing_time_s(p)}), p.settle_time_limit_s);
 }
 
-/// Force evaluations in one minimization at the default tolerance, a mean over the nine
-/// minimizations of B.2; within a sixth of the measured 8.2e3, 16e3 and 52e3 at N = 600, 2000 and
-/// 7900.
+/// Estimated force evaluations of one minimization at the default tolerance: the mean over the nine
+/// minimizations of B.2. Within a sixth of the measured means: 8.2e3, 16e3 and 52e3 at N = 600,
+/// 2000 and 7900.
 double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
 
-/// Sets what is left of a shear whose end is known.
+/// Sets the remaining work of a shear that ends at cycle look.end.
 void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
                std::span<const Ask> asks, std::span<const CheckpointRecord> checkpoints,
                Outlook& look) {
@@ -179,7 +179,7 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
     return static_cast<double>(step - (from != nullptr ? from->step : 0));
   };
   const bool pruned = !checkpoints.empty() && checkpoints.back().state == CheckpointState::pruned;
-  if (length > now && pruned) {  // first the state from which it continues is recomputed
+  if (length > now && pruned) {  // the last checkpoint must be recomputed first
     steps += steps_to(checkpoints.back().step, recorded_before(checkpoints.back().step));
   }
   if (!look.missing.empty()) {
@@ -233,10 +233,10 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
   std::vector<CheckpointCadence> cadences;
   for (const Ask& ask : asks) {
     if (ask.checkpoint_phases.size() > ManifestLimits::values_per_list) {
-      throw StoreDamaged(fmt::format("a record of run {:.8}: checkpoint_phases: there are {}",
-                                     stage.id, ask.checkpoint_phases.size()));
+      throw StoreDamaged(fmt::format("run {:.8}: too many recorded checkpoint_phases: {}", stage.id,
+                                     ask.checkpoint_phases.size()));
     }
-    if (ask.target_cycles == 0) continue;  // it asks for cycle 0, which each shear records
+    if (ask.target_cycles == 0) continue;  // the ask needs only cycle 0, which each shear records
     cadences.push_back(
         {ask.checkpoint_every, steps_at(ask.checkpoint_phases, drive), ask.target_cycles});
   }
@@ -285,7 +285,7 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks) {
   return std::max<std::uint64_t>(cadence, 1);
 }
 
-// --- Of the stages of a store or a plan ---
+// --- Outlooks of the stages of a store or a plan ---
 
 namespace {
 
@@ -300,8 +300,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Measures the checkpoint and the next ones at whole cycles, as many as there are workers, for
-/// the `until` of these asks.
+/// Measures `first` and the next checkpoints at whole cycles for the `until` of these asks: one
+/// checkpoint per worker.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {
@@ -323,7 +323,7 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
-  // These come from the same analysis, and figures need them.
+  // The `also` measures need no second analysis, and figures need these measures.
   const MeasureOptions also = {.workers = options.workers,
                                .report = options.report,
                                .also = {scalars_provider, "crystallites"}};
@@ -331,14 +331,14 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
     if (!one.lacking.empty()) continue;
-    // A number that the checkpoint lacks has not reached the value.
+    // NaN stands for a number that the checkpoint lacks, and does not reach the value.
     for (const std::string& name : wanted) one.measures.numbers.try_emplace(name, std::nan(""));
     measures[one.sha256] = std::move(one.measures);
   }
 }
 
-/// The largest number of cycles that an experiment without this `until` had asked for when the
-/// stage ended, if the stage has so many cycles; else 0.
+/// Among asks without this `until` that were recorded when the stage ended: the largest number of
+/// cycles that the stage has reached; else 0.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -369,7 +369,7 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
     for (Stage& stage : store->stages()) known.emplace(stage.id, std::move(stage));
   }
   std::vector<PlannedStage> stages;
-  std::map<std::string, std::size_t> places;  // in `stages`, by id
+  std::map<std::string, std::size_t> places;  // index in `stages`, by id
   const auto add = [&](const PlannedRun& run, const Stage& planned) {
     const auto [place, fresh] = places.try_emplace(planned.id, stages.size());
     if (fresh) stages.push_back({.run = &run, .stage = planned});
@@ -406,7 +406,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
-  // With one ask no other experiment can have continued it.
+  // No other experiment can have continued a stage with one ask.
   if (stage.memberships.size() < 2 || ask.until.is_null()) {
     return static_cast<double>(ask.target_cycles);
   }
@@ -472,15 +472,15 @@ std::optional<double> expected_end(std::span<const Stage> stages, const json& un
 
 namespace {
 
-// Particle-steps/s assumed until the store has measured them: rough cells on one core of an EPYC
-// (Zen 4), from `bench speed`; LAMMPS 29 Sep 2021 with one process (SCALING.md).
+// Assumed rates [particle-steps/s] until the store has measured rates. Measured with rough cells on
+// one core of an EPYC (Zen 4) by `bench speed`; LAMMPS: 29 Sep 2021, one process (SCALING.md).
 struct MeasuredRate {
   double grains, rate;
 };
 constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
 constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
-// A power law in N between two measured sizes, constant beyond the outermost ones.
+// Interpolates between two measured sizes by a power law in N. Constant beyond the outer sizes.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   if (grains <= rates.front().grains) return rates.front().rate;
   for (std::size_t i = 1; i < rates.size(); ++i) {
@@ -492,7 +492,7 @@ double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   return rates.back().rate;
 }
 
-// Size of a checkpoint file, measured: its grains, its wall grains, and the layout around them.
+// Measured size of a checkpoint file [bytes]: per grain, per wall grain, and the rest.
 constexpr double kBytesPerGrain = 121;
 constexpr double kBytesPerWallGrain = 98;
 constexpr double kBytesPerFile = 18e3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is left of a stage, and what it costs: one function that every command asks.
+// What remains to be computed of a stage, and what that costs. All commands use outlook().
 #pragma once
 
 #include <cstddef>
@@ -24,77 +24,80 @@
 
 namespace shearcell {
 
-/// Scalar measures of checkpoints, by SHA-256.
+/// Scalar measures of checkpoints, by the checkpoint's SHA-256.
 using KnownMeasures = std::map<std::string, Measures>;
 
 struct Outlook {
-  /// The stage is completed for all asks and no checkpoint is missing.
+  /// The stage is completed, is long enough for all asks, and lacks no checkpoint.
   bool done = false;
-  /// Ascending steps of missing checkpoints: asked for, before the last checkpoint, and never
-  /// recorded, for example because a denser cadence was asked for later. A replay makes them. Empty
-  /// for LAMMPS, which does not repeat bits, so that no checkpoint can be made later.
+  /// Steps, ascending, of missing checkpoints: an experiment asks for them, they lie before the
+  /// last checkpoint, and they were never recorded. A replay can compute them. Empty for LAMMPS,
+  /// whose runs cannot be replayed bit for bit.
   std::vector<std::uint64_t> missing = {};
-  /// The cycle at which the stage ends: the largest number of cycles that is asked for, or an
-  /// earlier one at which `until` is known to end the stage.
+  /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
+  /// an earlier cycle at which `until` is known to end the stage.
   double end = 0;
-  /// An `until` that is not known to be reached may end the stage before `end`.
+  /// Whether an undecided `until` may end the stage before `end`.
   bool may_end_early = false;
-  /// How `until` ends the stage at its last checkpoint, as RunCompleted records it; null if it does
-  /// not. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle", "memberships"}.
+  /// How `until` ended the stage at its last checkpoint, as RunCompleted records it; null if no
+  /// `until` did. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
+  /// "memberships"}.
   nlohmann::json ended = nullptr;
-  /// The first checkpoint whose unknown measures may end the stage.
+  /// The first checkpoint that may have reached an `until`, but whose measures are unknown.
   std::optional<CheckpointRecord> undecided = {};
-  // What is left, at most. For settling this is an estimate from packings of 600 to 18200 grains.
+  // Upper bounds of the remaining work. For settling: estimates, from 600 to 18200 grains.
   double checkpoints = 0;
   double particle_steps = 0;
-  double bytes = 0;  ///< of checkpoint files, estimated
-  /// Why this program cannot read the stage's parameters; what is left is then unknown. "" if it
-  /// can.
+  double bytes = 0;  ///< estimated size of the checkpoint files
+  /// Why this program cannot read the stage's parameters, so that the remaining work is unknown; ""
+  /// if it can read them.
   std::string unreadable = {};
 };
 
-/// What is left of a stage for `asks`. `stage`: a recorded stage, or a new one; its recorded asks
-/// need not be `asks`. `checkpoints`: all checkpoints of the stage except rejected ones, by step
-/// (Listed::and_pruned). A completed stage also meets an ask if a recorded ask has the same
-/// `until` and at least as many cycles. Throws StoreDamaged for an ask that no manifest can state.
+/// Finds what remains to be computed of a stage for `asks` (Ask: what an experiment wants of a
+/// stage). `stage`: a recorded or a new stage; its recorded asks may differ from `asks`.
+/// `checkpoints`: all checkpoints of the stage except rejected ones, by step (Listed::and_pruned).
+/// A completed stage also meets an ask if a recorded ask has the same `until`, at least as many
+/// cycles, and a multiple of the ask's `checkpoint_every`. Throws StoreDamaged for an ask that no
+/// manifest can state.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
-/// The motion of the walls in a shear; nothing for another kind of stage and for an unreadable
-/// record, which `verify` names.
+/// Motion of the walls in a shear. Empty for other kinds of stages, and for a stage with an
+/// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// The cadences of a shear, one for each ask of at least one cycle. Throws as outlook().
+/// When checkpoints of a shear are due, for each ask of at least one cycle. Throws StoreDamaged.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
-/// The checkpoints that asks want of a stage: on their cadences, at their phases and at their last
-/// cycles. Checkpoints that interruptions and other experiments left are not among them, so that
-/// figures and tables do not depend on those.
+/// The checkpoints that asks want of a stage: at their intervals, at their phases and at their last
+/// cycles. Checkpoints that interruptions or other experiments left are excluded, so that figures
+/// and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
-  /// Ascending steps before the stage's last checkpoint that were never recorded; at most a
+  /// Steps, ascending, of missing checkpoints before the stage's last checkpoint; at most a
   /// million.
   std::vector<std::uint64_t> missing = {};
-  double to_come = 0;  ///< number after the stage's last checkpoint; above 10,000 an estimate
+  double to_come = 0;  ///< number after the stage's last checkpoint; estimated above 10,000
 };
 
-/// The checkpoints of cycles `first` to `last`; `checkpoints` as in outlook(). If the stage is not
-/// a shear, or there are no asks: the checkpoints that were made at whole cycles.
+/// The checkpoints that asks want from cycle `first` to `last`. `checkpoints`: as for outlook(). If
+/// the stage is not a shear, or there are no asks: all checkpoints at whole cycles, none missing.
 AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
                                    std::span<const CheckpointRecord> checkpoints, double first = 0,
                                    double last = StoreLimits::cycles);
 
-/// The longest interval [cycles] that includes the whole-cycle checkpoints of every ask.
+/// The longest interval [cycles] that divides the checkpoint intervals of all asks.
 std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
-// --- Of the stages of a store or a plan ---
+// --- Outlooks of the stages of a store or a plan ---
 
-/// Like outlook() for all recorded asks, but measures nothing: that `until` ended a run is known
-/// only if the end is recorded. Outlook::unreadable says why an ask cannot be read.
+/// outlook() for all recorded asks, without measuring anything: an `until` counts as reached only
+/// if a completion recorded it. If an ask cannot be read, Outlook::unreadable says why.
 Outlook look_at(const Store& store, const Stage& stage);
 
-/// A stage of plans, with what the store has recorded of it.
+/// A stage of one or more plans, with the store's records of this stage.
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
@@ -103,45 +106,44 @@ struct PlannedStage {
   Outlook look = {};
 };
 
-/// The stages of the plans' runs, each once, parents first. `store` may be null. Throws as
-/// outlook().
+/// Outlooks of the stages of all runs of the plans, each stage once, parents first. `store` may be
+/// null. Throws StoreDamaged like outlook().
 std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* store);
 
-/// outlook() for these asks, with the measures that decide where `until` ends the stage. As long as
-/// a checkpoint is undecided, its measures are read from the cache, or computed and cached, and
-/// added to `measures`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that
-/// may end the stage cannot be read.
+/// outlook() with the measures that decide where `until` ends the stage. While a checkpoint is
+/// undecided, its measures are read from the cache, or computed and cached, and added to
+/// `measures`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that may end the
+/// stage cannot be read.
 Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const Ask> asks,
                          std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
                          const MeasureOptions& options);
 
-/// The last cycle of the stage for one of its asks alone: Outlook::end. Throws as
+/// The cycle at which the stage ends if only this ask counts (Outlook::end). Throws like
 /// measured_outlook().
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The checkpoints that were made and that at least one ask wants, each ask up to its end_for();
-/// with pruned checkpoints.
+/// The recorded and pruned checkpoints that at least one ask wants, for each ask up to end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
-/// The recorded Outlook::ended of a stage that was completed before its last cycle, else null.
-/// "cycles_asked" is added if the stage later went on to a length that another experiment asked
-/// for.
+/// The recorded Outlook::ended if an `until` completed the stage before its largest number of
+/// cycles; else null. "cycles_asked" is added if the stage continued beyond this `until` because
+/// another experiment asked for more cycles.
 nlohmann::json end_of(const Stage& stage);
 
-/// "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
+/// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
-/// Mean cycle at which this `until` ended stages; nothing if it ended none.
+/// Mean cycle at which this `until` ended stages; empty if it ended no stage.
 std::optional<double> expected_end(std::span<const Stage> stages, const nlohmann::json& until);
 
-// --- What it costs: estimates of memory, files and time ---
+// --- Estimates of memory, file sizes and time ---
 
-/// Memory [bytes] per grain that a run may need: grains, lists, wall grains, and a checkpoint while
-/// it is written. Measured: 405 to 460 under shear (`bench speed`), 710 while 100,000 grains settle
-/// (SCALING.md).
+/// Memory [bytes] per grain that a run may need for its grains, neighbour lists and wall grains,
+/// and for a checkpoint while it is written. Measured: 405 to 460 under shear (`bench speed`), 710
+/// while 100,000 grains settle (SCALING.md).
 inline constexpr double kRunBytesPerGrain = 750;
 
 /// Memory [bytes] that a whole run may need.
@@ -152,16 +154,16 @@ double checkpoint_bytes(const Geometry& shape);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
-  bool measured;                     ///< in the store's own runs; else assumed
+  bool measured;                     ///< in this store's runs; false: assumed
 };
 
-/// Particle-steps/s of recorded runs.
+/// Mean rates of recorded runs [particle-steps/s].
 class Rates {
  public:
   explicit Rates(const std::vector<Stage>& stages);
 
-  /// The mean rate of the stage's engine in these runs; without such runs, the rate that was
-  /// measured on another machine for this number of grains.
+  /// The mean rate of the stage's engine in these runs. Without such runs, a rate that was measured
+  /// on another machine for this number of grains.
   Rate of(const Stage& stage) const;
 
  private:
@@ -171,16 +173,16 @@ class Rates {
   std::map<EngineKind, Sum> sums_;
 };
 
-/// What is left of stages.
+/// The remaining work of several stages.
 struct Work {
   std::size_t stages = 0;
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
-  double longest_seconds = 0;                ///< of the longest run, its packing included
+  double longest_seconds = 0;                ///< time of the longest run, with its packing
   double rate = 0;                           ///< mean particle-steps/s of one core
-  bool measured = true;                      ///< all rates were measured
-  std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by id
+  bool measured = true;                      ///< whether all rates were measured
+  std::map<std::string, double> chain = {};  ///< seconds of a stage with its parents, by id
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);
@@ -188,11 +190,10 @@ struct Work {
   double seconds(std::size_t at_a_time) const;
 };
 
-/// The stages with these ids, and those that they start from, down to their packings.
+/// The ids of these stages and of all their parents, down to the packings.
 std::set<std::string> with_parents(const Store& store, const std::vector<std::string>& stages);
 
-/// Whether nothing more is computed of the stage by itself: it failed, or cannot start because its
-/// parent failed.
+/// Whether the stage failed, or cannot start because its parent failed.
 bool has_failed(const Store& store, const Stage& stage);
 
 }  // namespace shearcell

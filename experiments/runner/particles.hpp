@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A state for other programs: every particle, wall grains included, and the box, in units that the
-// caller chooses.
+// All particles of a state, including wall grains, and the cell, in units that the caller chooses.
+// For exports and LAMMPS.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,27 +13,27 @@
 
 namespace shearcell {
 
-/// The grains by id, then the wall grains in the order of the cell. Arrays have one entry, or one
-/// column, per particle. particles_of() sets the units: SI in an export.
+/// The particles are the grains, by id, and then the wall grains, in the order of the cell. Arrays
+/// have one entry or one column per particle. The caller of particles_of() chooses the units.
 struct Particles {
-  /// The cell: its lower left corner, and its edges as columns. Only the third is periodic.
+  /// Lower left corner of the cell, and its edges as columns. Only the third edge is periodic.
   Eigen::Vector3d origin;
   Eigen::Matrix3d edges;
 
-  std::size_t grains = 0;           ///< the first of the particles
+  std::size_t grains = 0;           ///< number of grains
   double radius = 0;                ///< of every particle
   double mass = 0;                  ///< of every grain
-  Eigen::Matrix3Xd position;        ///< z within the cell
+  Eigen::Matrix3Xd position;        ///< z is wrapped into the cell
   Eigen::Matrix3Xd velocity;        ///< a wall grain has the velocity of its wall
-  std::vector<std::int32_t> image;  ///< periods in z to add for the unwrapped position
+  std::vector<std::int32_t> image;  ///< number of periods that unwrap z
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
 
   std::size_t particles() const { return type.size(); }
 };
 
-/// Lengths in units.diameter_m and masses in units.mass_kg. Wall grains move with `shear_rate`, the
-/// change of tan(theta) [1/s], and with the moving wall (x of a wall point at y: (y - y_top)
-/// tan(theta)).
+/// `units`: diameter and mass of a grain in the units of the result. `shear_rate`: change of
+/// tan(theta) [1/s]. A wall grain at y is displaced by x = (y - y_top) tan(theta); its velocity
+/// follows from `shear_rate` and the moving wall.
 Particles particles_of(const Cell& cell, const WallPose& pose, const State& state,
                        double shear_rate, const Units& units);
 

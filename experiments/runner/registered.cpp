@@ -10,15 +10,15 @@
 namespace shearcell {
 namespace {
 
-// In place of a manifest: packings of all versions are named together.
+// In a Group, this text replaces the manifest: packings of all versions are named together.
 const std::string kPackings = "packings";
 
-/// The registrations, oldest first. A version that was registered again after another version
-/// occurs again. Throws StoreDamaged for an event that does not hold a manifest.
+/// All registered manifests, oldest first. A manifest that was registered again after another
+/// version appears again. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");
-  // Not in the order of the log, which a merge decides.
+  // The log of a merged store is not in the order of time.
   std::ranges::stable_sort(events, {}, &Event::recorded_at);
   for (const Event& event : events) {
     auto registered = std::get<events::ManifestRegistered>(events::decode(event));
@@ -70,7 +70,7 @@ VariantNames::VariantNames(const std::vector<Stage>& stages, const Labels& label
         variant_names(vary, stated == labels.end() ? std::vector<VariantLabel>() : stated->second);
     if (std::get<1>(group) == kPackings) {
       for (auto& [parameters, name] : names) name = "packing " + name;
-      if (names.size() < 2) continue;  // the variant is called "packing"
+      if (names.size() < 2) continue;  // of() returns the variant "packing"
     }
     names_[group] = std::move(names);
   }

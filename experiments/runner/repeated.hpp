@@ -12,8 +12,8 @@
 
 namespace shearcell {
 
-/// Calls `action`, which must not throw, at every interval in its own thread, until it is
-/// destroyed.
+/// Calls `action` in a separate thread after every interval, until this object is destroyed.
+/// `action` must not throw.
 class Repeated {
  public:
   Repeated(std::chrono::duration<double> interval, std::function<void()> action)
@@ -27,7 +27,7 @@ class Repeated {
  private:
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::jthread thread_;  // last: it ends before the members that it uses are destroyed
+  std::jthread thread_;  // last member, so that it ends before the others
 };
 
 }  // namespace shearcell

@@ -37,12 +37,12 @@
 namespace shearcell {
 namespace {
 
-// --- A stage, made from its record and ready to be stepped ---
+// --- Building a stage from its record ---
 
 Scene make_scene(const StageInputs& inputs) {
   if (inputs.stage == StageKind::shear) return shear_scene(inputs.parameters);
   Scene scene = settle_scene(inputs.parameters);
-  if (inputs.stage == StageKind::stiffen) scene.time_step = 0;  // no time passes
+  if (inputs.stage == StageKind::stiffen) scene.time_step = 0;  // no time passes in a stiffening
   return scene;
 }
 
@@ -50,7 +50,7 @@ void require_memory(const StageInputs& inputs) {
   const double needed = run_bytes(geometry(inputs.parameters));
   if (needed <= machine_memory()) return;
   throw TooLittleMemory(fmt::format(
-      "{} grains take about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
+      "{} grains need about {:.3g} GB, and this machine has {:.3g} GB; use fewer grains",
       inputs.parameters.grains, needed / 1e9, machine_memory() / 1e9));
 }
 
@@ -58,7 +58,7 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   const Parameters& p = inputs.parameters;
   const std::uint64_t cycles = stage.target_cycles;
   if (inputs.file && !inputs.file->settles) {
-    return cyclic_shear({}, 0, {});  // the grains stay where they are
+    return cyclic_shear({}, 0, {});  // the grains keep their positions
   }
   if (inputs.stage == StageKind::prepare) {
     const SettleParameters settle{p.settle_force_tolerance, p.settle_kinetic_tolerance,
@@ -73,8 +73,8 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
-// The limit is not part of a run's identity. Limits other than the default are recorded with the
-// manifest (campaign.cpp); for the other manifests it is `otherwise`.
+// The watchdog's overlap limit [d]: the largest limit of the stage's manifests. `otherwise` is the
+// limit of manifests that state none. It is not part of the run's id (see campaign.cpp).
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {
@@ -84,14 +84,13 @@ double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
       const nlohmann::json stated = info.value("max_overlap_diameters", nlohmann::json::object());
       limit = std::max(limit, stated.value(m.place.scale, otherwise));
     } catch (const nlohmann::json::exception& problem) {
-      throw StoreDamaged(fmt::format("manifest {:.12}: the facts recorded with it: {}",
+      throw StoreDamaged(fmt::format("manifest {:.12}: its recorded facts are invalid: {}",
                                      m.place.manifest, problem.what()));
     }
   }
   return limit;
 }
 
-/// The scene and the protocol of a stage.
 struct ReadyStage {
   Stage stage;
   StageInputs inputs;
@@ -99,11 +98,11 @@ struct ReadyStage {
   Protocol protocol;
 };
 
-/// The watchdog's overlap limit is the largest that a manifest of the run states.
+/// Throws StoreDamaged if the stage's id is not the hash of the recorded parameters.
 ReadyStage ready_stage(const Store& store, Stage stage) {
   if (stage_key(stage.resolved) != stage.id) {
     throw StoreDamaged("run " + stage.id.substr(0, 12) +
-                       ": its recorded parameters are not those that it is named after");
+                       ": the id is not the hash of the recorded parameters");
   }
   StageInputs inputs = read_stage(stage.resolved);
   double& limit = inputs.parameters.max_overlap_diameters;
@@ -114,29 +113,28 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
   return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
-/// The state from which a stage is stepped on.
+/// The state from which an attempt computes a stage.
 struct Beginning {
   Cell cell;
   State state;
-  std::optional<CheckpointRecord> from = {};  ///< checkpoint of this stage that it continues
-  std::string parent_checkpoint = {};         ///< that the stage begins from, or ""
+  std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
+  std::string parent_checkpoint = {};         ///< SHA-256 if the state is the parent's, or ""
 };
 
-/// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options or the
-/// checkpoint's engine do not permit it.
+/// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
+/// permit this, or if this program cannot repeat the bits.
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options);
 
-/// The recorded state of a shear that the stage's parameters name, with their noise.
+/// The parent's checkpoint at `start_cycle`, with noise added to the positions.
 Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOptions& options) {
   const Parameters& p = plan.inputs.parameters;
   const auto record = recorded_start(store, plan.stage, p);
   const std::string what = fmt::format(
-      "run {:.12}: its state at cycle {}, from which run {:.12} "
+      "run {:.12}: the state at cycle {}, from which run {:.12} "
       "starts, ",
       plan.stage.parent, p.start_cycle, plan.stage.id);
   if (!record) {
-    throw NotFound(what +
-                   "was never recorded; name a cycle of its checkpoints, or ask for more of them");
+    throw NotFound(what + "was never recorded; name a recorded cycle, or request more checkpoints");
   }
   restore_if_pruned(store, *record, options);
   auto checkpoint = store.load_if_readable(*record);
@@ -149,9 +147,9 @@ Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOp
   return {std::move(checkpoint->cell), std::move(checkpoint->state), std::nullopt, record->sha256};
 }
 
-/// The newest valid checkpoint before a step. Without one, the beginning of the stage. Throws
-/// Interrupted when a stop is requested during the filling. `damage` as in
-/// Store::newest_valid_checkpoint.
+/// The stage's newest valid checkpoint before `before_step`. Without one, the state with which the
+/// stage begins. Throws Interrupted if a stop is requested while a cell is filled. `damage`: as for
+/// Store::newest_valid_checkpoint().
 Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions& options,
                        std::vector<std::string>* damage, std::uint64_t before_step = UINT64_MAX) {
   const Stage& stage = plan.stage;
@@ -180,18 +178,17 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions&
   // The checkpoint must be the one at which the parent was completed.
   if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
     throw StoreDamaged(fmt::format(
-        "run {:.12}: the settled packing that run {:.12} starts from is missing or damaged; {}",
+        "run {:.12}: the settled packing from which run {:.12} starts is missing or damaged; {}",
         stage.parent, stage.id,
         recorded
             ? fmt::format("`shearcell regenerate {:.12}` restores its file", known.back().sha256)
-            : "`shearcell resume` recomputes it first"));
+            : "`shearcell resume` recomputes the packing first"));
   }
   parent->checkpoint.state.step = 0;
   return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
           parent->record.sha256};
 }
 
-/// Takes ownership of the beginning's cell and state.
 Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
   SimulationSettings settings;
   settings.threads = threads;
@@ -199,7 +196,7 @@ Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::s
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
 }
 
-/// The checkpoint of a state on which `scene` acts now; it depends on the state alone.
+/// A checkpoint of this state. `scene`: the present scene; a stiffening changes its stiffness.
 Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
@@ -227,7 +224,7 @@ Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene
   return checkpoint;
 }
 
-// --- Engines: our own simulation in this process, or LAMMPS in another ---
+// --- Engines: our own simulation in this process, or LAMMPS in another process ---
 
 /// Steps between two checks for signals and leases: about 50 ms at 50 million particle-steps/s.
 std::uint64_t chunk_steps(std::size_t grains) {
@@ -238,20 +235,20 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  /// Advances for about 50 ms and returns its progress, as Protocol::advance does. Throws
-  /// NumericalFailure, and ProgramError when another program failed.
+  /// Computes for about 50 ms and returns the progress of the stage. Throws NumericalFailure, or
+  /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. No checkpoint is due if another program did not answer:
-  /// then there is no state beyond the last recorded one.
+  /// Stops before the end of the stage. A checkpoint is due, except if LAMMPS did not answer: then
+  /// the last recorded state is the newest one.
   virtual StageProgress halt() = 0;
 
-  /// The checkpoint of the newest state (of LAMMPS: its last frame). Throws NumericalFailure.
+  /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.
   virtual Checkpoint checkpoint(double cycle) const = 0;
 
-  virtual std::uint64_t step() const = 0;         ///< present step
-  virtual std::uint64_t evaluations() const = 0;  ///< of the forces since construction
-  /// Processor time of the steps since construction; nothing if it is not known.
+  virtual std::uint64_t step() const = 0;
+  virtual std::uint64_t evaluations() const = 0;  ///< force evaluations since construction
+  /// Processor time [s] of all steps since construction; empty if unknown.
   virtual std::optional<double> core_seconds() const = 0;
 };
 
@@ -267,7 +264,7 @@ class OwnEngine final : public Engine {
     const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
     const double before = thread_seconds();
     progress_ = plan_.protocol.advance(simulation_, steps);
-    core_seconds_ += threads_ * (thread_seconds() - before);  // its threads share the work equally
+    core_seconds_ += threads_ * (thread_seconds() - before);  // all threads work equally long
     return progress_;
   }
   StageProgress halt() override {
@@ -291,10 +288,10 @@ class OwnEngine final : public Engine {
   StageProgress progress_;
 };
 
-/// Advances to a step; stays before it where the stage ends earlier. Calls between(progress)
+/// Advances to `step`, or to the end of the stage if that comes first. Calls between(progress)
 /// about every 50 ms.
 StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
-  StageProgress progress;  // of the beginning of a stage, where nothing is stepped
+  StageProgress progress;  // at cycle 0 if no step is needed
   while (engine.step() < step && !progress.finished) {
     progress = engine.advance_by(step - engine.step());
     if (engine.step() < step) between(progress);
@@ -302,8 +299,8 @@ StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& betw
   return progress;
 }
 
-// Time for LAMMPS to write a frame and end. It checks for a stop every half second; batch systems
-// kill half a minute after their first signal.
+// Longest time for LAMMPS to write a frame and end. LAMMPS looks for a stop request every half
+// second. Batch systems kill a job half a minute after their first signal.
 constexpr std::chrono::seconds kPatience{10};
 
 class LammpsEngine final : public Engine {
@@ -354,7 +351,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // The watchdog checks the frame after a step of our own engine from it.
+  // Makes the frame the newest state. The watchdog checks it after one step of our own engine.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -383,9 +380,6 @@ class LammpsEngine final : public Engine {
   std::optional<LammpsRun> run_;
 };
 
-// --- Computing ---
-
-// One attempt to compute a stage.
 class StageAttempt {
  public:
   StageAttempt(Store& store, Stage stage, const StageOptions& options)
@@ -421,20 +415,20 @@ class StageAttempt {
             std::make_unique<OwnEngine>(plan_, std::move(beginning), options_.parallel.threads);
       }
       first_step_ = engine->step();
-      // The settled packing is cycle 0 of what follows.
+      // A shear or a stiffening records the state with which it begins as cycle 0.
       if (fresh && plan_.inputs.stage != StageKind::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     });
   }
 
-  // Records the checkpoints at these steps of a completed run, which lacks them.
+  // Records missing checkpoints of a completed run: the checkpoints at these steps.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = beginning_of(store_, plan_, options_, nullptr, steps.front());
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // The stage is completed for all that were declared since.
+    // The stage is now completed for all memberships, also for those declared later.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -453,11 +447,10 @@ class StageAttempt {
     });
   }
 
-  /// Whether a checkpoint was recorded.
   bool computed() const { return computed_; }
 
  private:
-  // Records the start, computes, and records the end.
+  // Records the start, calls compute(), and records the end of an attempt that fails.
   StageOutcome attempt(const Beginning& beginning, const nlohmann::json& facts, bool filling,
                        const std::function<StageOutcome()>& compute) {
     const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
@@ -472,7 +465,8 @@ class StageAttempt {
       RunLineages known;
       const bool own = plan_.inputs.parameters.engine == EngineKind::shearcell;
       const auto other = own && first ? why_not_again(store_, *first, known) : std::nullopt;
-      if (other && options_.continuing) options_.continuing("it continues a state: " + *other);
+      if (other && options_.continuing)
+        options_.continuing("the starting state cannot be repeated bit for bit: " + *other);
       return compute();
     } catch (const ConcurrencyConflict& conflict) {
       if (started) release(conflict);
@@ -491,18 +485,18 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, the memory or the store. A failed sync may leave even the start recorded.
+      // The disk, the memory or the store failed. After a failed sync, the start may be recorded.
       release(failure);
       throw;
     }
   }
 
-  // Lets other programs continue the run.
+  // Records the end of the attempt, so that another program can continue the run.
   void release(const std::exception& failure) {
     try {
       store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
-      // For the same reason; then the run's lease expires.
+      // The end cannot be recorded either. Then the run's lease expires.
     }
   }
 
@@ -516,7 +510,6 @@ class StageAttempt {
         complete({{"by", plan_.inputs.stage == StageKind::prepare ? "settled" : "cycles"}});
         return StageOutcome::completed;
       }
-      // `until` is checked at whole cycles only.
       const bool whole = progress.cycle == std::floor(progress.cycle);
       if (progress.checkpoint_due && whole && ends_early()) return StageOutcome::completed;
       if (stop) return interrupted();
@@ -529,15 +522,15 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the stage when what is recorded is all that the experiments ask for, those included
-  // that declared it meanwhile.
+  // Completes the stage if `until` has ended it for all experiments, including experiments that
+  // were declared during the computation.
   bool ends_early() {
     const Stage now = store_.stage(id());
     const std::vector<Ask> asks = asks_of(now.memberships);
     const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
     if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
     const nlohmann::json ended = measured_outlook(store_, now, asks, seen_, measures_, {}).ended;
-    recorded_.restart();  // measuring is not computing
+    recorded_.restart();  // effort does not include measuring
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }
@@ -562,9 +555,9 @@ class StageAttempt {
     recorded_evaluations_ = engine.evaluations();
   }
 
-  // Throws when another program took the stage.
+  // Throws ConcurrencyConflict if another program now computes the stage.
   void report(const Engine& engine, double cycle) {
-    if (!store_.holds(id())) throw ConcurrencyConflict("another program took the stage");
+    if (!store_.holds(id())) throw ConcurrencyConflict("another program now computes the stage");
     const double since = reported_.seconds();
     if (!options_.report || since < 0.2) return;
     const auto steps = static_cast<double>(engine.evaluations() - reported_evaluations_);
@@ -592,17 +585,17 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// Whether the newest checkpoint can be read, or was pruned and can be recomputed. If not,
-// run_stage() reports the damage.
+// Whether the newest checkpoint can be read or was pruned. If it is damaged, run_stage() reports
+// the damage.
 bool newest_is_sound(const Store& store, const Stage& stage) {
   const auto found = store.checkpoints(stage.id, Listed::and_pruned);
   return !found.empty() &&
          (found.back().state == CheckpointState::pruned || store.load_if_readable(found.back()));
 }
 
-// --- Computing again ---
+// --- Recomputing a recorded state ---
 
-// Integers in the order of the reals: neighbouring doubles differ by 1, and so do -0 and +0.
+// Maps doubles to integers in the same order. Neighbours differ by 1, and so do -0 and +0.
 std::int64_t ordered_bits(double x) {
   const auto bits = std::bit_cast<std::int64_t>(x);
   return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
@@ -636,7 +629,7 @@ void diverge(Replay& replay, std::uint64_t step, const std::string& message,
   replay.divergence = Divergence{first, step, field, -1, 0, message};
 }
 
-/// The state at the record's step; nothing when that was not reached.
+/// Recomputes the state at the record's step; empty if the replay does not reach this step.
 std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const StageOptions& options) {
   const CheckpointRecord& record = replay.record;
   const ReadyStage plan = ready_stage(store, store.stage(record.run));
@@ -654,7 +647,7 @@ std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const Stag
     replay.steps = engine.step() - first;
     if (engine.step() == record.step) return engine.checkpoint(progress.cycle);
     diverge(replay, engine.step(),
-            fmt::format("the stage ended at step {} already", engine.step()));
+            fmt::format("the stage already ended at step {}", engine.step()));
   } catch (const Interrupted&) {
     replay.interrupted = true;
   } catch (const NumericalFailure& failure) {
@@ -663,13 +656,13 @@ std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const Stag
   return std::nullopt;
 }
 
-/// Compares the state or, if it is the same, the numbers that the log and the file have beside it.
+/// Compares the states. If they are equal, compares the numbers that were recorded with the state.
 void compare_again(const Store& store, const Checkpoint& found, Replay& replay) {
   const CheckpointRecord& record = replay.record;
   const std::string hash = state_hash(found);
   if (hash != record.state_hash) {
     diverge(replay, record.step,
-            fmt::format("state {:.12} instead of {:.12}", hash, record.state_hash));
+            fmt::format("the state hash is {:.12} instead of {:.12}", hash, record.state_hash));
     if (const auto recorded = store.load_if_readable(record)) {
       const State &a = recorded->state, &b = found.state;
       Divergence& worst = *replay.divergence;
@@ -682,13 +675,13 @@ void compare_again(const Store& store, const Checkpoint& found, Replay& replay) 
   }
   const auto require = [&](const std::string& field, double computed, double recorded) {
     if (computed == recorded || replay.divergence) return;
-    diverge(replay, record.step, fmt::format("{} {} instead of {}", field, computed, recorded),
+    diverge(replay, record.step, fmt::format("{} is {} instead of {}", field, computed, recorded),
             field);
     compare(field.c_str(), computed, recorded, *replay.divergence);
   };
   require("cycle", found.cycle, record.cycle);
   require("time_s", found.time_s, record.time_s);
-  // Versions before this one may have recorded fewer observables.
+  // Earlier versions may have recorded fewer observables.
   for (const auto& [name, value] : record.observables) {
     const auto again = found.observables.find(name);
     require(name, again == found.observables.end() ? std::nan("") : again->second, value);
@@ -698,7 +691,7 @@ void compare_again(const Store& store, const Checkpoint& found, Replay& replay) 
   }
 }
 
-/// Also writes the file if the options permit it.
+/// Recomputes and compares a checkpoint. If options.restores, also writes its file.
 Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& options) {
   Replay result{.record = record};
   const auto found = compute_again(store, result, options);
@@ -726,7 +719,7 @@ void restore_if_pruned(Store& store, const CheckpointRecord& record, const Stage
   if (record.state != CheckpointState::pruned) return;
   RunLineages known;
   if (!options.restores || why_not_again(store, record, known)) {
-    store.load_checkpoint(record);  // throws, unless it was restored meanwhile
+    store.load_checkpoint(record);  // throws, unless the file was restored meanwhile
     return;
   }
   const std::string what = fmt::format("checkpoint {:.12} of run {:.12} (cycle {:g})",
@@ -752,14 +745,14 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
         return outcome;
       computed = attempt.computed();
     }
-    // A denser cadence may have been asked for.
+    // A manifest that was declared later may ask for more frequent checkpoints.
     const std::vector<std::uint64_t> missing =
         outlook(stage, asks_of(stage.memberships), store.checkpoints(id, Listed::and_pruned))
             .missing;
     if (!missing.empty()) return StageAttempt(store, std::move(stage), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const Interrupted&) {
-    return StageOutcome::interrupted;  // before an attempt was recorded
+    return StageOutcome::interrupted;  // before the attempt's start was recorded
   } catch (const ConcurrencyConflict&) {
     return StageOutcome::lost;
   }
@@ -794,15 +787,15 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
   add_run_lineage(store, record.run, known);
   const RunLineage& run = known.at(record.run);
   if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
-    return "LAMMPS made it, whose runs are not repeated bit for bit";
+    return "LAMMPS computed this state, and its runs cannot be repeated bit for bit";
   }
   const CheckpointHistory* made = run.find(record.sha256);
   if (made == nullptr || !made->attempt) return std::nullopt;
   const Attempt& by = run.attempts[*made->attempt];
   if (by.bits_version == bits_version) return std::nullopt;
   return fmt::format(
-      "shearcell {} made it, with bits version {}, and this program computes version {}, whose "
-      "states differ in the last bits",
+      "shearcell {} computed this state with bits version {}, and this program has bits version "
+      "{}, which gives other last bits",
       maker_of(by.host).version, by.bits_version, bits_version);
 }
 

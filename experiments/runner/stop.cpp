@@ -8,7 +8,7 @@ namespace shearcell {
 namespace {
 
 std::atomic<bool> stop_wish{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only set such a flag");
+static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers need a lock-free flag");
 
 extern "C" void on_stop_signal(int number) {
   stop_wish.store(true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGINT, SIGTERM and SIGHUP as a request to stop: runs write a checkpoint and end; a second
-// signal kills.
+// SIGINT, SIGTERM and SIGHUP are requests to stop: runs write a checkpoint and end. A second signal
+// kills the program.
 #pragma once
 
 #include <stdexcept>
@@ -8,14 +8,14 @@
 namespace shearcell {
 
 /// Catches SIGINT and SIGTERM from now on, and SIGHUP unless it is ignored (nohup). Ignores
-/// SIGPIPE: nobody needs to read the progress of a campaign.
+/// SIGPIPE, because a campaign continues when nobody reads its progress.
 void catch_stop_signals();
 
-/// catch_stop_signals() for a task of a batch system, which announces the end by SIGTERM or
-/// SIGUSR1, perhaps several times, and kills the task later. Only the first signal counts.
+/// Used instead of catch_stop_signals() in a task of a batch system, which sends SIGTERM or
+/// SIGUSR1, perhaps several times, and kills the task later. Signals after the first have no
+/// effect.
 void catch_batch_signals();
 
-/// Whether a signal arrived that asks to stop.
 bool stop_requested();
 
 /// Thrown when a stop is requested before there is a state to record.
@@ -27,7 +27,7 @@ class Interrupted : public std::runtime_error {
 /// Throws Interrupted if a stop is requested.
 void give_up_if_requested();
 
-/// Requests a stop as a signal would; `false` withdraws it.
+/// Requests a stop as a signal does; with `false`, cancels the request.
 void request_stop(bool stop);
 
 }  // namespace shearcell

@@ -28,7 +28,7 @@ struct Character {
   std::size_t columns = 1;
 };
 
-/// The first character of a UTF-8 text that is not empty, whatever the program's locale.
+/// The first character of a non-empty UTF-8 text, independent of the program's locale.
 Character first_character(std::string_view text) {
   static const locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
   const locale_t before = utf8 == nullptr ? nullptr : uselocale(utf8);
@@ -82,10 +82,10 @@ std::string_view first_columns(std::string_view text, std::size_t count) {
 }
 
 std::string filled(std::string_view help, std::size_t width) {
-  constexpr std::size_t kNarrowest = 24;  // of a column of text
+  constexpr std::size_t kNarrowest = 24;  // least width of the last column
   std::vector<std::string> paragraphs;
   std::istringstream lines{std::string(help)};
-  bool goes_on = false;  // the paragraph
+  bool goes_on = false;  // whether the paragraph continues
   for (std::string line; std::getline(lines, line);) {
     const bool heading = line.starts_with("Usage:") || (line.size() < 20 && line.ends_with(':'));
     const bool plain = !line.empty() && line[0] != ' ' && !heading;
@@ -100,7 +100,7 @@ std::string filled(std::string_view help, std::size_t width) {
   for (const std::string& paragraph : paragraphs) {
     const std::size_t begin = paragraph.find_first_not_of(' ');
     std::size_t indent = begin == paragraph.npos ? 0 : begin;
-    // The last column begins after several blanks.
+    // The last column begins after two or more blanks.
     const std::size_t blanks = indent > 0 ? paragraph.find("  ", indent) : paragraph.npos;
     if (blanks != paragraph.npos) indent = paragraph.find_first_not_of(' ', blanks);
     if (indent + kNarrowest > width) indent = std::min(begin, width / 2);
@@ -124,7 +124,7 @@ void write_stderr(std::string_view text) noexcept {
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
   if (!moves_cursor(stderr)) {
-    // Shared by all copies.
+    // All copies of the function share the stopwatch.
     return [what = std::move(what), said = std::make_shared<Stopwatch>()](std::size_t done,
                                                                           std::size_t total) {
       if (said->seconds() < 10) return;

@@ -99,7 +99,7 @@ TEST_F(EngineRun, IsRecordedBesideOursAndStartsFromTheSamePacking) {
   EXPECT_EQ(pruned["kept_of_other_engines"], 1);
   expect(0, {"regenerate", b["checkpoints"][1]["sha256"]}, {"the file is intact"});
   fs::remove(path("shearcell-store") / b["checkpoints"][1]["file"].get<std::string>());
-  expect(1, {"regenerate", b["checkpoints"][1]["sha256"]}, {"LAMMPS made it"});
+  expect(1, {"regenerate", b["checkpoints"][1]["sha256"]}, {"LAMMPS computed this state"});
 }
 
 TEST_F(EngineRun, FailsWhereTheWatchdogRefusesAFrame) {

@@ -356,11 +356,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       Case{"forged with its digest",
            [&] { forge("scalars"); },
            4,
-           {"scalars-", "is not what the log says"}},
+           {"scalars-", "does not have the digest"}},
       {"forged without it",
        [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
        4,
-       {"core-", "is not what the log says"}},
+       {"core-", "does not have the digest"}},
       {"swapped",
        [&] {
          sql("UPDATE derived SET content = (SELECT content FROM derived AS other WHERE "
@@ -548,9 +548,10 @@ TEST_F(OtherBits, AreNotRegeneratedAndNotCalledDiverged) {
   const CheckpointRecord record = store.checkpoints(last_run()).at(1);
   fs::remove(path("shearcell-store/" + record.file));
   const std::size_t events = store.head().seq;
-  const Outcome refused = expect(1, {"regenerate", record.sha256},
-                                 {"shearcell 0.1.0 (41b6139096fb) made it, with bits version 1",
-                                  "this program computes version 2"});
+  const Outcome refused =
+      expect(1, {"regenerate", record.sha256},
+             {"shearcell 0.1.0 (41b6139096fb) computed this state with bits version 1",
+              "this program has bits version 2"});
   EXPECT_FALSE(has(refused.out, "DIVERGED"));
   EXPECT_EQ(store.head().seq, events);
 }
@@ -563,7 +564,7 @@ TEST_F(OtherBits, AreNamedByWhatContinuesThem) {
   EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0})) << "written before they were";
   const std::string run = last_run();
   expect(0, {"run", "m.yaml", "--cycles", "4", "-q"},
-         {"it continues a state: shearcell 0.1.0", "with bits version 1"});
+         {"cannot be repeated bit for bit: shearcell 0.1.0", "with bits version 1"});
   EXPECT_EQ(last_run(), run);
   EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0, 2}));
   // Cycles 3 and 4 can be made again from cycle 2, which cannot.

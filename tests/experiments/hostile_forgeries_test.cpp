@@ -68,7 +68,7 @@ std::vector<Case> forged_events() {
       reported("parent", "verify", 4, member("/parent", ""), "parent"),
       reported("kind", "verify", 4, member("/kind", "stiffen"), "stiffen"),
       reported("parameters", "verify", 4, member("/resolved/parameters/pressure_Pa", 10.0),
-               "are not those that it is named after"),
+               "the id is not the hash of the recorded parameters"),
       reported("seed", "verify", 4, member("/membership/seed", 7), "seed"),
       reported("labels_swapped", "verify", 4,
                event("RunDeclared",

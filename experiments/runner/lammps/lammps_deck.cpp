@@ -18,7 +18,7 @@
 namespace shearcell {
 namespace {
 
-// Atom types: Particles::type plus one; the last type is the atom of the moving wall.
+// Atom types: Particles::type + 1; the last type is the atom of the moving wall.
 enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
 constexpr const char* kSides[] = {"left", "right", "bottom", "top"};
 
@@ -73,7 +73,7 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // What an explicit drag of rate b must add to the mass of a grain to be taken implicitly.
+  // Relative increase of a grain's mass that makes a drag of rate b/m [1/s] implicit: b dt/2m.
   double added(double drag) const {
     return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
   }
@@ -84,13 +84,13 @@ class Deck {
     add(text_,
         "\n# Grains (type 1), wall grains ({} left, {} right, {} bottom, {} top), and an atom",
         +kLeft, +kRight, +kBottom, +kTop);
-    add(text_, "# (type {}) that stands for the moving wall and touches nothing.", +kWall);
+    add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // LAMMPS creates atoms only between those that there are: first at the height of a grain.
+    // LAMMPS creates atoms only between existing atoms, so this one begins at a grain's height.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
-    add(text_, "# -var finer 2 halves the time step, which is stable below 0.7*sqrt(m/k).");
+    add(text_, "# -var finer 2 halves the time step. Stable time steps are below 0.7*sqrt(m/k).");
     add(text_, "variable finer index 1\ntimestep $({:.17g}/v_finer:%.17g)", scene_.time_step);
     add(text_, "reset_timestep $({}*v_finer:%.0f)", task_.state.step);
     add(text_, "group grains type {}\ngroup wall type {}\ngroup free type {} {}", +kGrain, +kWall,
@@ -101,10 +101,11 @@ class Deck {
     add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
     add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
     const double drag = task_.added_mass ? area_ * scene_.wall_drag * m_ : 0;
-    add(text_, R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal an implicit one.
+    add(text_,
+        R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal to implicit drag.
 set group wall mass $({:.17g}+{:.17g}*dt/2:%.17g)
 set group grains mass {:.17g}
-# Contact laws with damping take wall grains for immovable if these are heavy.
+# Wall grains are heavy, so that contact laws with damping treat them as immovable.
 set group planted mass {:.17g}
 
 # Change diameters and masses of grains here, for example:
@@ -117,8 +118,8 @@ set group planted mass {:.17g}
     const double k = scene_.stiffness * m_;
     if (for_users_) {
       add(text_, R"(
-# The contact law of grains, wall grains and planes, in the words of pair_style granular. With
-# damping of 50/s, and friction of 0.5 with a tangential spring:
+# The contact law of grains, wall grains and planes, in the syntax of pair_style granular. For a
+# damping of 50/s, and a friction of 0.5 with a tangential spring, write:
 # hooke {0:.6g} 50 tangential linear_history {1:.6g} 1 0.5 damping mass_velocity
 variable law index "hooke {0:.17g} 0 tangential linear_nohistory 0 0 damping mass_velocity"
 pair_style granular
@@ -133,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // Tilt and heights at the present step, from the integer step and the moving wall's atom.
+  // Tilt and heights at the present step, from the step number and the moving wall's atom.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
@@ -156,8 +157,8 @@ pair_coeff * * ${{law}})",
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Moves the wall grains of a group from where the data file has them: x by that variable, or by
-  // nothing; y with the moving wall.
+  // Moves the wall grains of a group: in x by the variable `x` from their positions in the data
+  // file, with the velocity `vx`; in y with the moving wall if the group `rises`.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
@@ -166,11 +167,11 @@ pair_coeff * * ${{law}})",
   // The wall's atom moves first, because the wall grains follow its height.
   void motion() {
     add(text_,
-        "\n# Grains and the moving wall by velocity Verlet; wall grains follow their walls.");
+        "\n# Velocity Verlet for grains and the moving wall. Wall grains follow their walls.");
     add(text_, "fix step free nve/sphere\nvariable zero equal 0");
     const double top = pose_.top * d_, shear = pose_.tan_theta;
-    // The sides tilt about the top, so where the top rises, points on a side move in x by
-    // -v_rising tan(theta).
+    // The side walls tilt about the top. If the top rises, points on a side move in x with the
+    // velocity -v_rising tan(theta).
     const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
     if ((has(WallSide::left) || has(WallSide::right)) && shears_) {
       add(text_, "variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
@@ -189,8 +190,8 @@ pair_coeff * * ${{law}})",
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
-  // A side plane turns about its end at the top wall. Regions begin in their present pose: LAMMPS
-  // computes their velocities from displacements. `wall/region` reports its force only once.
+  // A side plane turns about its end at the top wall. Regions are given in their present pose:
+  // LAMMPS computes their velocities from displacements. fix wall/region reports a force only once.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -255,7 +256,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
       }
     }
     const double load = inwards(cell_) * scene_.pressure * area_ * m_ * d_;
-    const double carried = carried_weight(scene_, cell_, 1) * d_;  // of a unit of mass
+    const double carried = carried_weight(scene_, cell_, 1) * d_;  // per unit of mass
     const auto grains = static_cast<double>(task_.state.position.cols());
     const char* moving = bottom_moves_ ? "bottom" : "top";
     std::string force =
@@ -263,21 +264,20 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
                    : fmt::format("{:.17g}+f_{}_plane[1]", load + grains * carried * m_, moving);
     if (has(moving_side(cell_))) force += fmt::format("+fcm({},y)", moving);
     if (holds_) {
-      // The force that, with the drag, stops the wall within one step.
+      // This force and the drag stop the wall within one step.
       force = fmt::format("({0})*(v_phase<{1})+({2:.17g}-mass(wall)/dt)*vy[{3}]*(v_phase>={1})",
                           force, task_.drive.steps_per_cycle, scene_.wall_drag * area_ * m_, wall_);
     }
-    add(text_, "\n# The moving wall: its load, the forces of its plane and wall grains, its drag.");
+    add(text_, "\n# Forces on the moving wall: load, contacts of plane and wall grains, drag.");
     add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
     if (scene_.wall_drag != 0) {
       add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_ * m_);
     }
   }
 
-  // Our velocities are half a step older than LAMMPS's.
   void begin() {
-    add(text_, "\n# The velocities of the data file are half a step old: add half a kick.");
-    add(text_, "# Under mpirun each process gets equally many grains.");
+    add(text_, "\n# The velocities in the data file are from half a step earlier: add f/m dt/2.");
+    add(text_, "# With mpirun, all processes get about the same number of grains.");
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
     }
@@ -298,7 +298,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // Half a kick is subtracted in each frame.
+  // Frames have the velocities of half a step earlier, so f/m dt/2 is subtracted.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
@@ -315,13 +315,13 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // A cycle, or of a packing a second. What is defined after the first `run` would need another
-  // setup, in which the drag would be computed from the kicked velocities.
+  // Output during one cycle, or one second of a packing. This precedes the first `run`, because
+  // later definitions need another setup, which would compute the drag from changed velocities.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
     add(text_, R"(
-# How long, and how often positions are written: lmp -in in.{0} -var steps 1000
+# Number of steps, and steps between written positions: lmp -in in.{0} -var steps 1000
 variable steps index $({1}*v_finer:%.0f)
 variable every index $({2}*v_finer:%.0f)
 compute ke grains ke
@@ -335,8 +335,8 @@ dump_modify frames sort id format float %.12g)",
   void to_the_end(std::string_view name) {
     add(text_, R"(run ${{steps}} pre no
 
-# The grains at the end, in the box of the planes, which cuts off the wall grains: add runs before
-# it. A manifest can start from equal grains, in an upright cell.
+# Writes the grains at the end. The box shrinks to the planes, without the wall grains, so add runs
+# before this line. A manifest can start from the file if all grains are equal and the cell upright.
 undump frames
 change_box all triclinic boundary f f p x final $({0}:%.17g) $({0}+{1:.17g}:%.17g) &
  y final $(v_bottom:%.17g) $(v_top:%.17g) xy final $(-({0}):%.17g) units box
@@ -348,21 +348,21 @@ write_dump grains custom {2}_end.dump id diameter x y z vx vy vz modify units ye
   const LammpsTask& task_;
   const Cell& cell_;
   const Scene& scene_;
-  double d_, m_;       // the units of length and mass of the text
-  double area_;        // of the moving wall [d^2]
+  double d_, m_;       // units of length and mass in the script
+  double area_;        // area of the moving wall [d^2]
   WallPose pose_;      // at the beginning
   Eigen::Index wall_;  // id of the moving wall's atom
   bool for_users_ = false;
   bool bottom_moves_;
   bool shears_;
-  bool holds_;  // the moving wall, during a pause
+  bool holds_;  // whether the moving wall is held during pauses
   std::string text_;
 };
 
 }  // namespace
 
 std::string lammps_data(const Particles& all, std::string_view title) {
-  // A box for all particles and all planes, tilted ones too.
+  // The box includes all particles and all planes, also tilted planes.
   Eigen::Matrix3Xd corners(3, 4);
   corners << all.origin, all.origin + all.edges.col(0), all.origin + all.edges.col(1),
       all.origin + all.edges.rowwise().sum();
@@ -400,7 +400,7 @@ std::string lammps_script(const LammpsTask& task, std::string_view data, std::st
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   std::istringstream text(read_plain(file, kLargestFile).value_or(""));
   const auto require = [&](bool sound) {
-    if (!sound) throw ProgramError(file.string() + ": not a complete state of the grains");
+    if (!sound) throw ProgramError(file.string() + ": this is not a complete state of the grains");
   };
   const auto skip_to = [&](std::string_view heading) {
     std::string line;

@@ -34,8 +34,8 @@ std::string last_line(std::string_view text) {
   return std::string(newline == text.npos ? text : text.substr(newline + 1));
 }
 
-// Variables for LAMMPS and MPI that the environment does not set. Several runs may share a machine,
-// where Open MPI would bind all of them to the same cores and keep those busy while it waits.
+// Environment variables for LAMMPS and MPI, except those that are already set. Without them, Open
+// MPI would bind all runs on a machine to the same cores, and would keep cores busy while it waits.
 std::vector<std::string> variables() {
   std::vector<std::pair<std::string, std::string>> all = {
       {"OMP_NUM_THREADS", "1"},
@@ -56,7 +56,7 @@ std::vector<std::string> variables() {
 // "... Massively Parallel Simulator - 29 Sep 2021 - Update 2"
 constexpr std::string_view kTitle = "Massively Parallel Simulator - ";
 
-// MPI sometimes fails to start while other programs start theirs, so it is tried several times.
+// MPI sometimes fails to start while another MPI program starts, so there are three attempts.
 std::string help_of(const fs::path& program, const fs::path& folder) {
   constexpr int kAttempts = 3;
   try {
@@ -93,7 +93,8 @@ LammpsProgram find_lammps(std::size_t ranks) {
   const std::string text = help_of(*path, folder.path());
   const auto at = text.find(kTitle);
   if (at == text.npos) {
-    throw ProgramError(path->string() + " is not LAMMPS, or cannot start: its help ends with '" +
+    throw ProgramError(path->string() +
+                       " is not LAMMPS, or cannot start: the output of -h ends with '" +
                        last_line(text) + "'");
   }
   if (text.find("gran/hooke") == text.npos) {
@@ -145,7 +146,7 @@ std::optional<State> LammpsRun::take_frame() {
   if (first == 0) return std::nullopt;
   const fs::path file = folder_.path() / fmt::format("{}{}", prefix, first);
   State state = read_lammps_frame(file, grains_);
-  if (state.step != first) throw ProgramError(file.string() + " is of another step");
+  if (state.step != first) throw ProgramError(file.string() + " contains a different step");
   fs::remove(file);
   step_ = std::max(step_, first);
   return state;
@@ -154,7 +155,7 @@ std::optional<State> LammpsRun::take_frame() {
 std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    const auto code = process_->exit_code();  // read first, or a last frame could be missed
+    const auto code = process_->exit_code();  // read first, so that no last frame is missed
     if (auto state = take_frame()) return state;
     if (code) fail(*code);
     if (std::chrono::steady_clock::now() >= until) return std::nullopt;
@@ -169,7 +170,7 @@ void LammpsRun::ask_to_stop() {
 std::uint64_t LammpsRun::step() {
   std::ifstream log(folder_.path() / "log", std::ios::binary);
   if (!log.seekg(-64, std::ios::end)) return step_;
-  // The last complete line is a step or a message.
+  // The last complete line of the log is a step or a message.
   std::string tail(64, '\0');
   log.read(tail.data(), 64);
   tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));

@@ -22,28 +22,28 @@ struct LammpsProgram {
 /// Name of the program: $SHEARCELL_LAMMPS, or "lmp".
 std::string lammps_name();
 
-/// The program lammps_name(), on PATH if the name has no slash. Throws ProgramError when there is
-/// no such program, when the program lacks the package GRANULAR or does not answer, or when there
-/// is no mpirun for several ranks. Throws Interrupted when the program does not answer and a stop
-/// is requested.
+/// Finds the program lammps_name(), in PATH if the name has no slash. Throws ProgramError if the
+/// program does not exist, does not answer or lacks the package GRANULAR, or if several ranks are
+/// wanted without mpirun. Throws Interrupted if the program does not answer and a stop is
+/// requested.
 LammpsProgram find_lammps(std::size_t ranks = 1);
 
-/// Steps between two checks of LAMMPS for a request to stop, and of this program for progress:
-/// about half a second of work.
+/// Number of steps after which LAMMPS checks for a stop request and logs its progress: about half a
+/// second of work.
 std::uint64_t lammps_check_steps(std::size_t grains, std::size_t ranks);
 
-/// Starts LAMMPS in `folder`, with more than one of `ranks` processes under mpirun. Throws
+/// Starts LAMMPS in `folder` with `ranks` processes, under mpirun if there are several. Throws
 /// ProgramError.
 std::unique_ptr<ChildProcess> start_lammps(const LammpsProgram& program, const LammpsTask& task,
                                            const std::filesystem::path& folder, std::size_t ranks);
 
 class LammpsRun {
  public:
-  /// Starts LAMMPS as start_lammps() does.
+  /// Starts LAMMPS in a temporary folder with start_lammps().
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// The next frame; waits for it at most for `patience`. Throws ProgramError with LAMMPS's message
-  /// if it ended without one.
+  /// Waits at most `patience` for the next frame; empty if there is none by then. Throws
+  /// ProgramError, with the message of LAMMPS, if LAMMPS has ended without another frame.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
   /// Asks LAMMPS to write one more frame and end.
@@ -52,7 +52,7 @@ class LammpsRun {
   /// The newest step in LAMMPS's log.
   std::uint64_t step();
 
-  /// Processor time of LAMMPS; nothing under mpirun, whose processes are not ours.
+  /// Processor time of LAMMPS [s]; empty under mpirun, whose processes cannot be measured here.
   std::optional<double> core_seconds() const {
     return ranks_ > 1 ? std::nullopt : std::optional(process_->core_seconds());
   }
@@ -65,7 +65,7 @@ class LammpsRun {
   std::size_t grains_;
   std::size_t ranks_;
   std::uint64_t step_;
-  std::unique_ptr<ChildProcess> process_;  // ends before its folder is deleted
+  std::unique_ptr<ChildProcess> process_;  // last member: ends before folder_ is deleted
 };
 
 }  // namespace shearcell
