@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the notes of verdicts have in common.
+// Parts of the notes of verdicts.
 #pragma once
 
 #include <string>
