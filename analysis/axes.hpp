@@ -31,8 +31,7 @@ void add_size_columns(const std::string& name, std::vector<TableColumn>& columns
 /// Adds the values for the columns of add_size_columns(); empty cells if there is no estimate.
 void add_size(const std::optional<Estimate>& size, TableRow& row);
 
-/// A quantity that a table shows in the columns NAME_mean_UNIT (or NAME_rms_UNIT) and
-/// NAME_standard_error_UNIT.
+/// A quantity with the columns NAME_mean_UNIT (or NAME_rms_UNIT) and NAME_standard_error_UNIT.
 struct MeasureColumn {
   std::string name;
   std::string unit;  ///< as in the columns' names: "d", "percent" or ""

@@ -111,8 +111,7 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
-  /// Number of independent packings per point if all points of the curve come from the same runs;
-  /// otherwise 0.
+  /// Independent packings per point if all points come from the same runs; otherwise 0.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -173,15 +172,13 @@ std::string csv_field(const std::string& text);
 /// of the column. `all`: the shortest text that reads back to the same double.
 enum class Digits { enough, all };
 
-/// RFC 4180 with a header row and "\n" line ends. A number that is not finite leaves its field
-/// empty.
+/// RFC 4180 with a header row and "\n" line ends. A number that is not finite is an empty field.
 std::string to_csv(const Table& table, Digits digits = Digits::enough);
 
 /// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// The points of one series, without its shift. Points whose x or y is not a finite number are left
-/// out.
+/// The points of one series that have finite x and y, without the series' shift.
 std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 
 /// Adds the numbers of runs per point, such as "(3 to 5 runs)", to the title of each series in
@@ -209,8 +206,7 @@ std::string caption_of(const std::string& title, std::span<const Table> tables);
 /// The parts of the text as [[text, style], ...].
 nlohmann::json to_json(const Text& text);
 
-/// The chart with the points of its series, for the front end of the report. The same table gives
-/// the same bytes.
+/// The chart with its points, for the front end of the report. Equal tables give equal bytes.
 nlohmann::json chart_json(const Table& table);
 
 }  // namespace shearcell

@@ -38,20 +38,17 @@ struct ClaimSpec {
   std::string against = {};
   /// Both sides have only runs with these parameters (has_parameters()).
   nlohmann::json where = nlohmann::json::object();
-  /// Name of a parameter. Each value of it among the runs gives a claim, which has the value in its
-  /// id: "S5a.onset@amplitude_rad=0.05".
+  /// A parameter. Each of its values gives a claim with an id like "S5a.onset@amplitude_rad=0.05".
   std::string for_each = {};
-  /// Two sides, each selected by parameters and their values. The second is empty if the claim has
-  /// one side.
+  /// Parameters that select the runs of each side. The second is empty if the claim has one side.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
   /// In units of the measure; for waiting times, in log2 of their ratio. With margin 0, a published
   /// number is an upper or lower bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
-  /// The claim as a sentence; "": made from the keys. If KEY is the parameter that `for_each`
-  /// names,
-  /// "{KEY}" is replaced by its value.
+  /// The claim as a sentence; "": made from the keys. With `for_each: amplitude_rad`, for example,
+  /// "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
   bool optional = false;               ///< no verdict if a side has no runs
@@ -61,8 +58,7 @@ struct ClaimSpec {
   bool listed = false;
 };
 
-/// Whether the claim has only one group of runs, since it has a published number or its estimator
-/// needs one group.
+/// Whether the claim has one group of runs, by a published number or by Estimator::one_side.
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if stated, otherwise the id up to its first dot.

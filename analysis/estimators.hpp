@@ -29,8 +29,7 @@ struct Estimator {
   std::string_view name;      ///< its name in manifests
   std::string_view meaning;   ///< its description in REFERENCE.md
   std::string_view key = {};  ///< a key that its claims must state; "": no such key
-  /// Whether its claims compare numbers of whole runs (true) or of checkpoints (false); empty:
-  /// both.
+  /// Whether its claims compare numbers of whole runs, not of checkpoints; empty: both kinds.
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   bool one_side = false;       ///< its claims have one group, even without a published number
@@ -47,8 +46,7 @@ struct Estimator {
 std::span<const Estimator> all_estimators();
 /// The estimator that the claim names, or that its keys imply.
 const Estimator& estimator_of(const ClaimSpec& claim);
-/// mean_over_cycles if the claim has `cycles`, mean_over_phi if it has `phi`, otherwise
-/// number_of_the_run.
+/// mean_over_cycles for a claim with `cycles`, mean_over_phi with `phi`, else number_of_the_run.
 const Estimator& estimator_by_keys(const ClaimSpec& claim);
 
 // Defined in analysis/estimators/.
@@ -91,8 +89,7 @@ std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double 
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
 /// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
-/// (statistics.hpp). `waits` returns the waiting times of runs; runs that end before the event are
-/// censored.
+/// (statistics.hpp). `waits` returns the waiting times of a group's runs.
 Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
@@ -101,8 +98,8 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 /// The bootstrap draws packings, each with all its items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
-/// The number of a run. If the run ended before the event, RunValue::above, marked as censored. NaN
-/// if neither number is known.
+/// The number of a run. For a run that ended before the event, the result is the lower bound
+/// RunValue::above and is censored. NaN if neither number is known.
 CensoredValue censored_value(const RunValue& value);
 
 /// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if

@@ -140,8 +140,7 @@ Layout layout_of(const Chart& chart) {
   return layout;
 }
 
-/// The commands for one chart. The data are written into the script, so that it draws the same
-/// points as the report.
+/// The commands for one chart, with the data that they draw.
 class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
@@ -235,9 +234,8 @@ class Script {
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
-  /// Sets the ranges of both axes. An end that the axis does not fix is chosen by gnuplot, a little
-  /// beyond the data. gnuplot ignores horizontal lines: if the chart has such lines, the script
-  /// states the ends of y itself.
+  /// Sets the ranges of both axes. gnuplot chooses each end that is not fixed, a little beyond the
+  /// data. gnuplot ignores horizontal lines; with such lines, the script states the ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {

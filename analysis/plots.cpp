@@ -74,9 +74,8 @@ double value_of(const NumberColumn& column, const Selected& one,
   return own - over_runs(values).mean.value_or(std::nan(""));
 }
 
-/// Selects the runs and checkpoints of the plot. With PlotSpec::minus, each run needs a partner
-/// with the same packing, and each checkpoint a partner with this cycle. Sets a note for the
-/// caption.
+/// Selects runs and checkpoints. With PlotSpec::minus, each run needs a partner with its packing,
+/// and each checkpoint needs a partner at its cycle. Sets a note for the caption.
 std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
   std::vector<Selected> selected;
   json of_runs = plot.where;
@@ -158,8 +157,7 @@ struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
   Missing missing = Missing::nothing;  ///< why the run has no y, if y is of the whole run
-  /// For each column, the lower bound of the run's number if the run ended before the event, or
-  /// NaN.
+  /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
 
@@ -254,9 +252,8 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as a CSV field that needs no quotes, for readers that do not support RFC 4180. The
-/// only special character in a manifest's variants is the comma; variants from other stores may
-/// have more.
+/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. Variants of
+/// manifests have no special character except the comma. Variants of other stores may have more.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -416,8 +413,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 
 // --- Average ---
 
-/// Mean over packings and its error, if some values are censored. RunStatistics::runs counts the
-/// packings whose value is not censored.
+/// Mean over packings if values are censored. RunStatistics::runs counts the uncensored packings.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
   RunStatistics found;
@@ -446,7 +442,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
   const bool by_x = what == Against::number_of_run || what == Against::curve;
   struct Members {
     std::vector<const FrameRun*> runs;
-    std::vector<std::vector<double>> values;        // x, then y, of each run
+    std::vector<std::vector<double>> values;        // for each run: x, then all y
     std::vector<const std::vector<double>*> above;  // Trace::above of each run
     std::map<Missing, std::size_t> missing;
   };
@@ -813,8 +809,7 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// Sets title and look of the k-th y column of a plot that draws several. `alone`: the plot has
-/// only one curve.
+/// Sets title and look of the k-th of several y columns. `alone`: the plot has one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
   const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
@@ -833,7 +828,6 @@ void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   series.title = alone ? label : series.title + Text(", ") + label;
 }
 
-/// Adds the points that PlotSpec::mark states.
 void add_mark(const Panel& panel, Table& table) {
   const MarkSpec& mark = *panel.plot.mark;
   const NumberColumn x(mark.x), y(mark.y);

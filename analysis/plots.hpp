@@ -84,7 +84,7 @@ struct PlotSpec {
   /// First and last cycle to draw, with all checkpoints within them; only for traces and scatter.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
-  std::string x_symbol = {}, x_unit = {};  ///< if x is a parameter; "" if unknown
+  std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
   /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
   /// user's manifest then replace the labels of `series`. The styles of `series` are used only if
   /// the runs differ in no parameters other than those in `series`.

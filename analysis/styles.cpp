@@ -19,8 +19,7 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// The rank of a variant's values among the sorted values of all variants, and the number of
-/// different values.
+/// Rank of a variant's values among the different values of all variants, and their number.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;

@@ -66,7 +66,7 @@ struct Verdict {
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< seeds at each planned look; empty: no plan
   std::size_t look = 0;                    ///< seeds at the last look so far; 0: no look yet
-  std::string note;                        ///< how runs were compared, which are missing
+  std::string note;                        ///< how the runs were compared, and which are missing
   bool primary = false;                    ///< the runs were made to decide this claim
   Table entered = {};                      ///< rows with the numbers that the verdict uses
 };
@@ -93,8 +93,7 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 /// Makes the ruling undecided, unless the claim cannot be decided.
 void withhold(Verdict& verdict);
 
-/// One table with the rows and columns of Verdict::entered of all verdicts. The first column is the
-/// claim.
+/// The tables Verdict::entered of all verdicts as one table, whose first column is the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",

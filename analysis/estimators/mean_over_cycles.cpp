@@ -36,16 +36,14 @@ Scalar over_cycles(const std::string& name, const std::string& column, double fi
           fmt::format("cycles {} to {}", first, last), of};
 }
 
-const Estimator mean_over_cycles = {.name = "mean_over_cycles",
-                                    .meaning =
-                                        "mean over the checkpoints from the first to the last of "
-                                        "`cycles`, or the value at `at_cycle`",
-                                    .key = "cycles",
-                                    .scalar = [](const ClaimSpec& claim) {
-                                      return over_cycles(words_of_column(claim.compare),
-                                                         claim.compare,
-                                                         static_cast<double>(claim.cycles->at(0)),
-                                                         static_cast<double>(claim.cycles->at(1)));
-                                    }};
+const Estimator mean_over_cycles = {
+    .name = "mean_over_cycles",
+    .meaning = "mean over the checkpoints within `cycles`, or the value at `at_cycle`",
+    .key = "cycles",
+    .scalar = [](const ClaimSpec& claim) {
+      return over_cycles(words_of_column(claim.compare), claim.compare,
+                         static_cast<double>(claim.cycles->at(0)),
+                         static_cast<double>(claim.cycles->at(1)));
+    }};
 
 }  // namespace shearcell

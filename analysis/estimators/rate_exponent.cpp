@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exponent a of rate ~ n^a: the rate of nucleation against a number of grains n
-// (nucleation.hpp).
+// The exponent of the rate of nucleation against a number of grains (nucleation.hpp).
 #include <fmt/format.h>
 
 #include "analysis/estimators.hpp"

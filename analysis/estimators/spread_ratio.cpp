@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ratio of the standard deviations of two numbers that are measured on the same runs and are
-// therefore correlated. E. J. G. Pitman, Biometrika 31, 9 (1939); W. A. Morgan, Biometrika 31, 13
-// (1939).
+// The ratio of the standard deviations of two correlated numbers of the same runs: E. J. G. Pitman,
+// Biometrika 31, 9 (1939); W. A. Morgan, Biometrika 31, 13 (1939).
 #include <fmt/format.h>
 
 #include <cmath>

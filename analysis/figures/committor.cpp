@@ -21,8 +21,8 @@
 namespace shearcell {
 namespace {
 
-/// Rules for when a crystallite is gone: after this many cycles without a descendant. Verdicts use
-/// cycles_gone; the other numbers show how the result depends on this choice.
+/// A crystallite is gone after this many cycles without a descendant. Verdicts use cycles_gone. The
+/// other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
 /// No critical size is defined if the fraction of controls that grow exceeds this value and is at

@@ -88,8 +88,8 @@ Table survival_table(const Groups& groups) {
   return table;
 }
 
-/// Standard error from the Poisson count. Empty for one event, since the bar would reach zero,
-/// which a logarithmic axis cannot show.
+/// Poisson error of the rate. Empty for one event, whose bar would reach zero on a logarithmic
+/// axis.
 TableCell error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));

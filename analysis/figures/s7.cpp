@@ -20,9 +20,8 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t density_bins = 8;
-/// Centres of crystallites near the critical size are assumed to be at least this far from a plane
-/// [d]: interior grains are 1.875 d or more inside a rough plane, and crystallites have a radius.
-/// [choice]
+/// Centres of crystallites near the critical size are at least this far from a plane [d]: interior
+/// grains are 1.875 d or more inside a rough plane, and a crystallite has a radius. [choice]
 constexpr double inaccessible = 4;
 
 struct Places {
