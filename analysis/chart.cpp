@@ -279,9 +279,8 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
-  std::vector<std::pair<std::string, std::string>> panels;  // names of panels, and their sentence
-  nlohmann::ordered_map<std::string, std::vector<std::string>>
-      notes;  // and the letters of their panels
+  std::vector<std::pair<std::string, std::string>> panels;  // names of panels, with a sentence
+  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // each note, with its panels
   std::size_t charts = 0;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);

@@ -35,7 +35,7 @@ Text operator+(Text first, const Text& second);
 /// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
 Text formula(std::string_view text);
 
-/// A number, a whole number, text, or empty: not measured, or the error of a single run.
+/// A number, a whole number, text, or empty. Empty: not measured, or the error of a single run.
 struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
   TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
@@ -77,7 +77,7 @@ struct ChartPoint {
   std::optional<double> x_error =
       std::nullopt;  ///< standard error; bars reach from x - error to x + error
   std::optional<double> y_error = std::nullopt;
-  std::optional<double> runs = std::nullopt;  ///< number of runs of which y is the mean
+  std::optional<double> runs = std::nullopt;  ///< number of runs averaged in y
 };
 
 /// Names of the columns with the data of a series. The names of errors and of `runs` may be empty.
@@ -88,7 +88,7 @@ struct SeriesColumns {
   std::string x_error = {};
   std::string y_error = {};
   std::string x_high = {};
-  std::string runs = {};  ///< number of runs of which y is the mean
+  std::string runs = {};  ///< number of runs averaged in y
 };
 
 /// Selects the rows with `value` in the column named `column`; every row if `column` is empty.
@@ -107,11 +107,11 @@ struct Series {
   Join join = Join::none;   ///< points are joined in their order
   bool band = false;        ///< errors of y are drawn as a band; errors of x are not drawn
   bool thin = false;        ///< a thin line, for one run of many
-  bool large = false;       ///< larger points, which stay visible around smaller ones
+  bool large = false;       ///< larger points, which stay visible around smaller points
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
-  /// Independent packings per point if all points come from the same runs; otherwise 0.
+  /// Number of independent packings per point if all points have the same runs; otherwise 0.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -130,7 +130,7 @@ struct Chart {
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> lines = {};
-  Text title = {};           ///< above the frame, such as the value of the panel
+  Text title = {};           ///< text above the frame, such as "fluid = still"
   bool wide = false;         ///< two journal columns wide (17.8 cm) instead of one (8.6 cm)
   std::string letter = {};   ///< of the panel: "a"
   std::string note = {};     ///< a sentence of the caption, without its full stop
@@ -145,7 +145,7 @@ struct TextTable {
     Text text;
     std::string colour = "#000000";
   };
-  std::vector<int> widths = {};  ///< of the columns [px]
+  std::vector<int> widths = {};  ///< widths of the columns [px]
   std::vector<std::vector<Cell>> rows = {};
   Text note = {};
 };
@@ -168,8 +168,8 @@ struct Table {
 /// A text as a CSV field (RFC 4180), in quotes if it needs them.
 std::string csv_field(const std::string& text);
 
-/// Digits of the numbers in a CSV. `enough`: digits_between() the smallest and the largest number
-/// of the column. `all`: the shortest text that reads back to the same double.
+/// Digits of the numbers in a CSV file. `enough`: digits_between() for the smallest and the largest
+/// number of the column. `all`: the shortest text that reads back to the same double.
 enum class Digits { enough, all };
 
 /// RFC 4180 with a header row and "\n" line ends. A number that is not finite is an empty field.

@@ -58,7 +58,7 @@ struct ClaimSpec {
   bool listed = false;
 };
 
-/// Whether the claim has one group of runs, by a published number or by Estimator::one_side.
+/// Whether the claim has one group of runs, due to a published number or Estimator::one_side.
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if stated, otherwise the id up to its first dot.
@@ -85,7 +85,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
                                            bool planned);
 
 /// A figure without panels, with the verdicts of the claim. A verdict is undecided if a side has no
-/// runs. Figure::make throws UsageError with the first problem of problems_of_sides().
+/// runs. For a claim that is not listed, Figure::make throws UsageError with the first problem of
+/// problems_of_sides().
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

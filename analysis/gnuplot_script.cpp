@@ -27,7 +27,7 @@ constexpr std::string_view style =
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
     "set autoscale noextend\n"
-    // The key is above the frame, since it could hide data inside.
+    // The key is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
 /// A single-quoted gnuplot string, in which each quote must be doubled. gnuplot misreads two quotes

@@ -18,7 +18,7 @@ double probability_within(double limit, std::span<const std::size_t> looks) {
   const auto share_of_next = [&](std::size_t k) {
     return static_cast<double>(looks[k - 1]) / static_cast<double>(looks[k]);
   };
-  double step = 0.05;  // but at most a quarter of the narrowest kernel
+  double step = 0.05;  // at most a quarter of the narrowest kernel's width
   for (std::size_t k = 1; k < looks.size(); ++k) {
     step = std::min(step, std::sqrt(1 - share_of_next(k)) / 4);
   }

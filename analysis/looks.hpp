@@ -21,7 +21,7 @@ namespace shearcell {
 /// Rowe, J. R. Stat. Soc. A 132, 235 (1969).
 double look_level(std::span<const std::size_t> looks, double level = confidence_level);
 
-/// Probabilities that this look or an earlier one decides. The first decision is final.
+/// Probabilities that the claim is decided at this look or before. The first decision is final.
 struct LookPower {
   std::size_t runs = 0;
   double as_claimed = 0;  ///< agrees, or supported

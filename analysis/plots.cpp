@@ -36,7 +36,7 @@ const Measure* find_curve(std::string_view name) {
   return find_measure(name, MeasureKind::curve);
 }
 
-/// The quantity on the x axis, at whose equal values runs are averaged.
+/// The quantity on the x axis. Runs are averaged at equal values of this quantity.
 enum class Against { cycle, phi, measure, number_of_run, curve };
 
 Against against(const PlotSpec& plot) {
@@ -156,7 +156,7 @@ struct Sample {
 struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< why the run has no y, if y is of the whole run
+  Missing missing = Missing::nothing;  ///< why a measure y of the whole run is missing
   /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
@@ -374,7 +374,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const std::vector<Group> groups = groups_of(plot, panel.selected);
   const std::vector<std::string> titles = titles_of(plot, groups, names);
   const std::vector<std::size_t> styles = styles_for(plot, groups);
-  using Place = std::tuple<std::size_t, json, std::size_t>;  // sort key of a curve
+  using Place = std::tuple<std::size_t, json, std::size_t>;  // sort key: style, values, group
   std::map<Place, Curve> ordered;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const auto& [key, variant, members] = groups[k];
@@ -431,7 +431,7 @@ struct Bin {
   RunStatistics x = {};
   std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
-  std::map<Missing, std::size_t> missing = {};  ///< runs without y, if y is of the whole run
+  std::map<Missing, std::size_t> missing = {};  ///< runs that lack a y of the whole run
 };
 
 /// Averages over independent runs. Runs of one packing count as one run. In a bin of phi, the value
@@ -624,7 +624,7 @@ void leave_out_symbol(const Curve& curve, Series& series) {
 std::vector<Series> series_of_runs(const Panel& panel) {
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
-    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used against a number of the run
+    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used if x is a number of the run
     std::vector<std::vector<ChartPoint>> traces;
     for (const Trace& trace : curve.traces) {
       std::vector<ChartPoint>& points = traces.emplace_back();
@@ -867,7 +867,7 @@ Table draw(const Panel& panel) {
     series.band = what != Against::number_of_run;
     if (what == Against::phi) series.columns.x_error = "phi_standard_error";
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // Against a number of the run, each x has different runs.
+    // If x is a number of the run, points at different x come from different runs.
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {

@@ -63,14 +63,14 @@ struct PlotSpec {
   /// this variant's run with the same packing at the same cycle. If empty, the plot shows `y`.
   nlohmann::json minus = nlohmann::json::object();
   /// "cycle", a number of a checkpoint, a parameter, a number of the whole run, or an expression of
-  /// these. A number of the whole run is averaged over the runs of each variant. Unused by curves.
+  /// these. A number of the whole run is averaged over the runs of each variant. Curves ignore x.
   std::string x = "cycle";
   std::string by = {};      ///< one curve for each value of this parameter; "": for each variant
   std::string figure = {};  ///< the figure to which the plot belongs; "": `name`
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": from the names
+  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. If y is a number of the run, measures of checkpoints have their
@@ -85,9 +85,9 @@ struct PlotSpec {
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
-  /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
-  /// user's manifest then replace the labels of `series`. The styles of `series` are used only if
-  /// the runs differ in no parameters other than those in `series`.
+  /// The plot belongs to a shipped manifest, and the user's manifest lists its figure. Labels of
+  /// the user's manifest then replace the labels of `series`. The styles of `series` are used only
+  /// if the runs differ in no parameters other than those in `series`.
   bool listed = false;
 };
 
@@ -106,13 +106,13 @@ bool draws_every_cycle(const PlotSpec& plot);
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
 
-/// The figure of a plot: one panel NAME, or with PlotSpec::panel panels NAME_1, NAME_2, ... with
-/// equal ranges. Against phi, runs are averaged in bins of phi; against another measure, at each
-/// cycle; against a parameter, at one cycle. A curve measure is drawn against its own x at one
-/// cycle. `names` gives the titles of curves; without it a title has the form "fluid=still".
+/// The figure of a plot. It has one panel NAME; with PlotSpec::panel it has panels NAME_1, NAME_2,
+/// ... with equal ranges. Against phi, runs are averaged in bins of phi; against another measure,
+/// at each cycle; against a parameter, at one cycle. A curve measure is drawn at one cycle. `names`
+/// gives the titles of curves; without it a title has the form "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
-/// "2 variants have fluid=still", "no variant has fluid=still".
+/// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".
 std::string variants_have(std::size_t variants, const nlohmann::json& where);
 
 /// A sentence on why `minus` does not select exactly one variant; "" if it does. `variants`: number

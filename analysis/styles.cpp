@@ -19,7 +19,7 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// Rank of a variant's values among the different values of all variants, and their number.
+/// Rank of a variant's values among the `count` different values of all variants.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;
@@ -64,8 +64,8 @@ Look Looks::of(RunGroup curve, const json& key) const {
   const std::span all(keys);
   Rank first = rank_of(variant, variants_, all.first(std::min<std::size_t>(1, all.size())));
   Rank rest = rank_of(variant, variants_, all.subspan(std::min<std::size_t>(1, all.size())));
-  // If only one key varies, colour and symbol change together. They also do if the keys have more
-  // values than there are colours or symbols. 7 colours and 10 symbols give 70 different looks.
+  // Colour and symbol change together if only one key varies, or if the keys have more values than
+  // there are colours or symbols. 7 colours and 10 symbols then give 70 different looks.
   std::size_t dashes = rest.rank;
   if (rest.count <= 1 || first.count > safe_colours.size() || rest.count > curve_symbols) {
     first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;

@@ -50,7 +50,7 @@ struct Verdict {
   std::string id = {};             ///< Claim::id
   std::string claim;               ///< Claim::text
   std::string quantity;            ///< what is estimated, with its unit
-  std::optional<double> estimate;  ///< none if too few runs have the quantity
+  std::optional<double> estimate;  ///< empty if too few runs have the quantity
   Interval interval;               ///< undefined without an estimate
   double level = confidence_level;
   /// The event of a claim on waiting times; "" for other claims. With an event, `estimate`,
@@ -61,7 +61,7 @@ struct Verdict {
   std::size_t runs = 0;  ///< in units of `counted`
   Counted counted = Counted::runs;
   std::size_t censored = 0;                ///< entered runs that ended before the event
-  std::optional<std::size_t> runs_needed;  ///< if undecided; empty if unknown
+  std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown
   double spread = 0;                       ///< Estimate::spread
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< seeds at each planned look; empty: no plan
@@ -71,8 +71,8 @@ struct Verdict {
   Table entered = {};                      ///< rows with the numbers that the verdict uses
 };
 
-/// agrees or supported if the interval lies in the range that the claim expects; differs or refuted
-/// if the interval lies wholly outside this range; undecided otherwise.
+/// Returns agrees or supported if the interval lies in the range that the claim expects; differs or
+/// refuted if the interval lies wholly outside this range; undecided otherwise.
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
@@ -97,9 +97,10 @@ void withhold(Verdict& verdict);
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",
-/// "margin", "verdict", "runs", "counted", "runs_needed", "note", and "primary" if it is}]}.
-/// "verdict" is headline_of() or null. Numbers have six significant digits. A missing number and an
-/// infinite end of an interval are null. The same verdicts give the same bytes.
+/// "margin", "verdict", "runs", "counted", "runs_needed", "note"}]}. A claim also has "censored",
+/// "looks", "look" and "primary" if they apply. The first "verdict" is headline_of() or null.
+/// Numbers have six significant digits. A missing number and an infinite end of an interval are
+/// null. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed". For

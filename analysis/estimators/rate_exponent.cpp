@@ -46,16 +46,16 @@ Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup ru
 
 }  // namespace
 
-const Estimator rate_exponent = {
-    .name = "rate_exponent",
-    .meaning =
-        "exponent a of rate ~ n^a: the rate of onsets at equal phi and amplitude against n, which "
-        "`against` names (interior_grains or core_grains)",
-    .key = "against",
-    .of_run = true,
-    .over_variants = true,
-    .one_side = true,
-    .decide = decide_exponent,
-    .words = words_of_exponent};
+const Estimator rate_exponent = {.name = "rate_exponent",
+                                 .meaning =
+                                     "exponent a of rate ~ n^a, for the rate of onsets at equal "
+                                     "phi and amplitude; `against` names "
+                                     "n, which is interior_grains or core_grains",
+                                 .key = "against",
+                                 .of_run = true,
+                                 .over_variants = true,
+                                 .one_side = true,
+                                 .decide = decide_exponent,
+                                 .words = words_of_exponent};
 
 }  // namespace shearcell

@@ -75,7 +75,7 @@ struct AmplitudeGrowth {
   GrowthCurve curve;
   std::optional<Estimate> without_absorbed;
   std::optional<Estimate> without_vanished;
-  Interval repeated;  ///< 90 % interval of repetitions with published_runs runs
+  Interval repeated;  ///< 90 % interval of critical sizes from published_runs runs
 
   /// Growth over the supplement's n_bin cycles.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }

@@ -185,7 +185,7 @@ std::string why_undefined(const Amplitude& one) {
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
-/// The size at which (p - q) / (1 - q) = 1/2, which is where delta_rho = 2 p - 1 = q. Empty if no
+/// The size at which (p - q) / (1 - q) = 1/2 or, equivalently, delta_rho = 2 p - 1 = q. Empty if no
 /// critical size is defined.
 std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   if (!why_undefined(one).empty()) return std::nullopt;

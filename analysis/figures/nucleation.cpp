@@ -88,8 +88,7 @@ Table survival_table(const Groups& groups) {
   return table;
 }
 
-/// Poisson error of the rate. Empty for one event, whose bar would reach zero on a logarithmic
-/// axis.
+/// Poisson error of the rate. Empty for one event: its bar would reach zero on a log axis.
 TableCell error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
@@ -122,7 +121,7 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
 }
 
 /// The exponent a of rate ~ n^a, with n the grains of the region, if the rate is proportional to
-/// the area of the walls, N^(2/3). It follows from the smallest and the largest cells. It is less
+/// the area of the walls, N^(2/3). The smallest and the largest cells determine a, which is less
 /// than 2/3, since the fraction n / N grows with N. Not a number unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");

@@ -162,7 +162,7 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
-            "there are no such runs, or they differ in another swept parameter too");
+            "the claim selects no runs, or its runs differ in another swept parameter too");
 }
 
 TEST(Compare, PairsMustIncludeMostRuns) {
