@@ -15,7 +15,6 @@
 
 namespace shearcell {
 
-// The axes that several figures share.
 inline const Axis cycle_axis = {.name = "shear cycle", .symbol = formula("$n$"), .whole = true};
 inline const Axis phi_axis = {.name = "volume fraction", .symbol = formula("$ϕ$")};
 inline const Axis crystalline_axis = {.name = "percentage crystalline", .unit = "%", .low = 0};
@@ -24,26 +23,25 @@ inline const Axis overlap_axis = {
 inline const Axis amplitude_axis = {
     .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
 
-/// The supplement's critical size [grains] of one amplitude.
+/// A line at the supplement's critical size [grains] of one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 
-/// Adds the columns of a size, its interval and its standard error, all in grains.
+/// Adds columns for a size, the ends of its interval and its standard error, all in grains.
 void add_size_columns(const std::string& name, std::vector<TableColumn>& columns);
-/// Adds the values of the columns of add_size_columns(); empty cells without an estimate.
+/// Adds the values for the columns of add_size_columns(); empty cells if there is no estimate.
 void add_size(const std::optional<Estimate>& size, TableRow& row);
 
-/// One quantity of a panel: its columns are NAME_mean (or NAME_rms) and NAME_standard_error, with
-/// the unit at the end where there is one.
+/// A quantity with the columns NAME_mean_UNIT (or NAME_rms_UNIT) and NAME_standard_error_UNIT.
 struct MeasureColumn {
   std::string name;
-  std::string unit;  ///< as it ends a column's name: "d", "percent" or ""
-  bool rms = false;  ///< the root mean square over runs in place of the mean
+  std::string unit;  ///< as in the columns' names: "d", "percent" or ""
+  bool rms = false;  ///< root mean square over runs instead of the mean
 
-  RunStatistics over(std::span<const double> values) const;  ///< one value of each run
+  RunStatistics over(std::span<const double> values) const;  ///< `values`: one per run
 };
 
-/// Name of the column of a statistic, "mean" or "standard_error". With MeasureColumn::rms the
-/// "mean" is the root mean square.
+/// Name of the column of a statistic, which is "mean" or "standard_error". With MeasureColumn::rms,
+/// "rms" replaces "mean".
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<TableColumn>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A number at all digits if `significant` is 0.
+/// The cell as a CSV field. If `significant` is 0, a number has all digits.
 std::string field_text(const TableCell& value, int significant) {
   if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
@@ -26,7 +26,7 @@ std::string field_text(const TableCell& value, int significant) {
   return significant > 0 ? digits(*real, significant) : json(*real).dump();
 }
 
-/// Place of a column, counted from 1.
+/// The index of a column, counted from 1. Throws AnalysisError if the table lacks the column.
 std::size_t column_number(const Table& table, const std::string& name) {
   const std::size_t place = table.place(name);
   if (place == table.columns.size()) {
@@ -35,7 +35,7 @@ std::size_t column_number(const Table& table, const std::string& name) {
   return place + 1;
 }
 
-/// The number in a column, counted from 1; none for column 0 and where there is no finite number.
+/// The number in a column, counted from 1. Empty for column 0 or a cell without a finite number.
 std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
   const TableCell& value = row.at(column - 1);
@@ -45,13 +45,13 @@ std::optional<double> number_in(const TableRow& row, std::size_t column) {
   return *real;
 }
 
-/// Null if it is missing or not finite; never "-0".
+/// Returns null if the number is missing or not finite, and 0 instead of -0.
 json number(const std::optional<double>& value) {
-  constexpr int significant = 15;  // digits; readers of the page enlarge parts of a plot
+  constexpr int significant = 15;  // digits; readers may zoom into the plot
   return value ? rounded(*value == 0 ? 0 : *value, significant) : json();
 }
 
-/// As "mean overlap ⟨δ⟩ [d]".
+/// Name, symbol and unit: "mean overlap ⟨δ⟩ [d]".
 std::string axis_text(const Axis& axis) {
   std::string text = plain_text(axis.name);
   if (!axis.symbol.empty()) text += (text.empty() ? "" : " ") + plain_text(axis.symbol);
@@ -127,7 +127,7 @@ Text formula(std::string_view text) {
       if (braces) take(1);
     } else {
       const bool latin = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-      const bool greek = (static_cast<unsigned char>(c) & 0xFE) == 0xCE;  // its first byte of two
+      const bool greek = (static_cast<unsigned char>(c) & 0xFE) == 0xCE;  // first of two bytes
       add(take(greek ? 2 : 1), inside && (latin || greek) ? "i" : "");
     }
   }
@@ -136,7 +136,7 @@ Text formula(std::string_view text) {
 
 int digits_between(double low, double high) {
   const double spread = (high - low) / std::max(std::abs(low), std::abs(high));
-  if (!(spread > 1e-11)) return 9;  // less is rounding
+  if (!(spread > 1e-11)) return 9;  // a smaller spread is rounding error
   return std::clamp(5 - static_cast<int>(std::floor(std::log10(spread))), 9, 17);
 }
 
@@ -229,7 +229,7 @@ std::vector<ChartPoint> points_of(const Table& table, const Series& series) {
 
 void name_run_counts(Table& table) {
   std::vector<Series*> means;
-  std::vector<std::string> counts;  // of each; "" if it is complete
+  std::vector<std::string> counts;  // of each mean; "" if no run is missing
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const ChartPoint& point : points_of(table, series)) {
@@ -279,8 +279,8 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
-  std::vector<std::pair<std::string, std::string>> panels;  // their names, and what they show
-  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // with their panels
+  std::vector<std::pair<std::string, std::string>> panels;  // names of panels, with a sentence
+  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // each note, with its panels
   std::size_t charts = 0;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);
@@ -289,7 +289,7 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
     const Chart& chart = table.chart;
     if (chart.series.empty()) continue;
     ++charts;
-    // Panels that show the same share a sentence.
+    // Consecutive panels with equal axes share one sentence.
     const std::string what = fmt::format("{} against {}{}.", axis_text(chart.y), axis_text(chart.x),
                                          chart.errors.empty() ? "" : "; " + chart.errors);
     std::string panel = chart.letter.empty() ? "" : "(" + chart.letter + ")";

@@ -31,11 +31,11 @@ struct Text {
 };
 Text operator+(Text first, const Text& second);
 
-/// Text in which formulas stand between `$`, as in TeX: letters are italic there, and `_` and `^`
-/// lower and raise the next character or the text in the next braces: "drag $v_{fluid}$".
+/// Reads a text that has formulas between `$` signs, as in TeX: "drag $v_{fluid}$". In formulas
+/// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
 Text formula(std::string_view text);
 
-/// Empty (not measured, or no error from one run), a number, a whole number, or text.
+/// A number, a whole number, text, or empty. Empty: not measured, or the error of a single run.
 struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
   TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
@@ -45,7 +45,7 @@ struct TableCell : std::variant<std::monostate, double, std::int64_t, std::strin
 };
 using TableRow = std::vector<TableCell>;
 
-/// The cell of a JSON null, number or text.
+/// Converts a JSON null, number or text to a cell.
 TableCell cell_of(const nlohmann::json& value);
 nlohmann::json json_of(const TableCell& cell);
 
@@ -63,34 +63,35 @@ struct TableColumn {
 struct Axis {
   Text name = {};    ///< "volume fraction"
   Text symbol = {};  ///< "ϕ"
-  Text unit = {};    ///< empty where there is none
+  Text unit = {};    ///< empty: no unit
   bool log = false;
-  bool whole = false;                        ///< only whole numbers have a meaning: cycles
+  bool whole = false;                        ///< only whole numbers are meaningful
   std::optional<double> low = std::nullopt;  ///< the axis ends here unless data lie beyond
   std::optional<double> high = std::nullopt;
-  bool clip = false;  ///< the axis ends there even if data lie beyond
+  bool clip = false;  ///< the axis ends at low and high even if data lie beyond
 };
 
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error = std::nullopt;  ///< standard error, one sided
+  std::optional<double> x_error =
+      std::nullopt;  ///< standard error; bars reach from x - error to x + error
   std::optional<double> y_error = std::nullopt;
-  std::optional<double> runs = std::nullopt;  ///< over which y is a mean
+  std::optional<double> runs = std::nullopt;  ///< number of runs averaged in y
 };
 
-/// Names of columns; an empty name of an error, or of `runs`, means that there is none. With
-/// `x_high`, x is the middle of both.
+/// Names of the columns with the data of a series. The names of errors and of `runs` may be empty.
+/// If `x_high` is named, a point lies in the middle between the columns `x` and `x_high`.
 struct SeriesColumns {
   std::string x = {};
   std::string y = {};
   std::string x_error = {};
   std::string y_error = {};
   std::string x_high = {};
-  std::string runs = {};  ///< over which y is a mean
+  std::string runs = {};  ///< number of runs averaged in y
 };
 
-/// The rows that have `value` in that column; every row when `column` is empty.
+/// Selects the rows with `value` in the column named `column`; every row if `column` is empty.
 struct RowFilter {
   std::string column;
   TableCell value;
@@ -99,24 +100,23 @@ struct RowFilter {
 enum class Join { none, line, dashes };
 
 struct Series {
-  Text title = {};          ///< in the key; no entry if empty
+  Text title = {};          ///< in the key; a series without title has no entry
   std::string colour = {};  ///< "#rrggbb"
-  int point = 7;  ///< 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down, 12 diamond;
-                  ///< + 1 filled
-  Join join = Join::none;  ///< points are joined in their order
-  bool band = false;       ///< errors of y are drawn as a band; errors of x are not drawn
-  bool thin = false;       ///< one of many traces
-  bool large = false;      ///< larger points, which stay visible around smaller ones
+  int point = 7;            ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
+                            ///< 12 diamond; one more is the filled symbol
+  Join join = Join::none;   ///< points are joined in their order
+  bool band = false;        ///< errors of y are drawn as a band; errors of x are not drawn
+  bool thin = false;        ///< a thin line, for one run of many
+  bool large = false;       ///< larger points, which stay visible around smaller points
   SeriesColumns columns = {};
   RowFilter filter = {};
-  std::vector<ChartPoint> points = {};  ///< used where `columns` names no x
-  /// Number of independent packings per point, if all points of the curve have the same runs; else
-  /// 0.
+  std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
+  /// Number of independent packings per point if all points have the same runs; otherwise 0.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
 
-/// A dashed line across the frame; `stub` is a short mark at the lower end of a vertical one.
+/// A dashed line across the frame. With `stub`, a vertical line is a short mark at the lower edge.
 struct ReferenceLine {
   double at = 0;
   bool vertical = false;
@@ -130,12 +130,12 @@ struct Chart {
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<ReferenceLine> lines = {};
-  Text title = {};           ///< above the frame; figures have none
-  bool wide = false;         ///< drawn over two columns of a journal (17.8 cm), not one (8.6 cm)
+  Text title = {};           ///< text above the frame, such as "fluid = still"
+  bool wide = false;         ///< two journal columns wide (17.8 cm) instead of one (8.6 cm)
   std::string letter = {};   ///< of the panel: "a"
   std::string note = {};     ///< a sentence of the caption, without its full stop
-  std::string sources = {};  ///< a sentence on the sources of published numbers, also without it
-  /// For the caption: what bars and bands are if they are not standard errors over runs.
+  std::string sources = {};  ///< sources of published numbers, for the caption, without full stop
+  /// The meaning of bars and bands, for the caption; "": standard errors over runs.
   std::string errors = {};
 };
 
@@ -145,12 +145,12 @@ struct TextTable {
     Text text;
     std::string colour = "#000000";
   };
-  std::vector<int> widths = {};  ///< of the columns [px]
+  std::vector<int> widths = {};  ///< widths of the columns [px]
   std::vector<std::vector<Cell>> rows = {};
   Text note = {};
 };
 
-/// One panel: its data and one way to draw them. With neither chart nor text it is not drawn.
+/// One panel: its data, and either a chart or a text. A table without chart and text is not drawn.
 struct Table {
   std::string name = {};  ///< "S2a": letters, digits, '-' and '_'
   std::vector<TableColumn> columns = {};
@@ -158,7 +158,7 @@ struct Table {
   Chart chart = {};
   TextTable text = {};
 
-  /// The index of a column; the number of columns if there is none of that name.
+  /// The index of a column; the number of columns if no column has that name.
   std::size_t place(std::string_view column) const {
     return static_cast<std::size_t>(std::ranges::find(columns, column, &TableColumn::name) -
                                     columns.begin());
@@ -168,48 +168,45 @@ struct Table {
 /// A text as a CSV field (RFC 4180), in quotes if it needs them.
 std::string csv_field(const std::string& text);
 
-/// Digits of the numbers in a CSV. `enough`: digits_between() the smallest and the largest number
-/// of the column. `all`: the shortest text that reads back to the same double.
+/// Digits of the numbers in a CSV file. `enough`: digits_between() for the smallest and the largest
+/// number of the column. `all`: the shortest text that reads back to the same double.
 enum class Digits { enough, all };
 
-/// RFC 4180 with a header row and "\n" line ends. A number that is not finite leaves its field
-/// empty.
+/// RFC 4180 with a header row and "\n" line ends. A number that is not finite is an empty field.
 std::string to_csv(const Table& table, Digits digits = Digits::enough);
 
-/// An array of objects, one for each row, keys in the order of the columns.
+/// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// The points of one series, without its shift. Points of which x or y is not a finite number are
-/// left out.
+/// The points of one series that have finite x and y, without the series' shift.
 std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 
-/// Adds the number of runs behind the points to the title of each series, as "(3 to 5 runs)", if
-/// this number differs between points or is less than Series::runs. A mean may change along a curve
-/// only because other runs enter it. If all series have the same numbers, the caption states them
-/// once.
+/// Adds the numbers of runs per point, such as "(3 to 5 runs)", to the title of each series in
+/// which they differ between points or are less than Series::runs. Readers need them, since a mean
+/// may change along a curve only because other runs enter it. If the numbers are equal for all
+/// series, the caption states them once.
 void name_run_counts(Table& table);
 
-/// Significant digits of values from `low` to `high`: nine, or more where nine would not show the
-/// spread in five digits. A spread as small as rounding errors does not count.
+/// Number of significant digits for values from `low` to `high`: nine, or as many as show the
+/// spread high - low with five digits. A spread below 1e-11 of the values counts as rounding error.
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 
 /// The text without styles. A subscript becomes "v_fluid".
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point or line: a logarithmic axis has positive values only.
+/// Whether the chart can draw the point or line. A logarithmic axis has only positive values.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
 bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 
-/// The caption of a figure: what each panel shows, what the errors are, and what the reference
-/// lines are. One paragraph that begins with `title`.
+/// The caption of a figure: one paragraph that begins with `title` and explains the panels, the
+/// error bars and the reference lines.
 std::string caption_of(const std::string& title, std::span<const Table> tables);
 
-/// The text as [[text, style], ...].
+/// The parts of the text as [[text, style], ...].
 nlohmann::json to_json(const Text& text);
 
-/// The chart with the points of its series, for the front end of the report. The same table gives
-/// the same bytes.
+/// The chart with its points, for the front end of the report. Equal tables give equal bytes.
 nlohmann::json chart_json(const Table& table);
 
 }  // namespace shearcell

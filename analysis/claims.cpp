@@ -20,21 +20,21 @@
 namespace shearcell {
 namespace {
 
-/// Whether the run is of a side of the claim.
+/// Whether the run belongs to a side of the claim.
 bool is_of(const ClaimSpec& claim, const FrameRun& run) {
   return has_parameters(run, claim.where) &&
          (has_parameters(run, claim.between[0]) ||
           (!has_one_side(claim) && has_parameters(run, claim.between[1])));
 }
 
-/// What the claim estimates, in sentences.
+/// The name of the estimated quantity in sentences.
 std::string words_of(const ClaimSpec& claim) {
   const Estimator& estimator = estimator_of(claim);
   return estimator.words != nullptr ? estimator.words(claim) : estimator.scalar(claim).name;
 }
 
-/// Crystallization changes a mean over cycles: the note counts the runs that begin to crystallize
-/// before the last of these.
+/// Crystallization changes a mean over cycles. Adds to the note how many runs begin to crystallize
+/// before the last of `cycles`.
 void note_early_onsets(const ClaimSpec& claim, std::initializer_list<RunGroup> groups,
                        Verdict& verdict) {
   if (!claim.cycles || claim.cycles->at(0) == claim.cycles->at(1)) return;
@@ -97,7 +97,7 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
 
 namespace {
 
-/// The verdict on runs of both sides, or of the first one with a published number.
+/// The verdict on the runs of both sides; `b` is empty if the claim has one side.
 Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Estimator& estimator = estimator_of(claim);
   if (estimator.decide != nullptr) return estimator.decide(claim, stated, a, b);
@@ -115,10 +115,10 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   return verdict;
 }
 
-/// The verdict of the first planned look that decides. A look at n seeds takes the runs of the
-/// first n seeds of each side and exists when all of them have ended; without stated looks there is
-/// one, at all seeds. Between looks there are numbers, of the first seeds that have ended, and no
-/// verdict. Runs of other seeds have no part in it.
+/// The verdict of the first planned look that decides the claim. A look at n seeds uses the runs of
+/// the first n seeds, and is made when all these runs have ended. Without stated looks there is one
+/// look, at all seeds. Between looks the verdict is undecided and shows the numbers of the first
+/// seeds that have ended. Runs of other seeds only enter the note.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
@@ -162,14 +162,14 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
-    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look is at {}", ended,
-                                       seeds.size(), *next));
+    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look is at {} seeds",
+                                       ended, seeds.size(), *next));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
       add_note(verdict.note,
-               fmt::format("if this estimate is true, a verdict is given there or before with "
-                           "probability {:.2f}",
+               fmt::format("if this estimate is the true value, that look or an earlier one "
+                           "decides the claim with probability {:.2f}",
                            there.as_claimed + there.against));
     }
   }
@@ -177,17 +177,17 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  add_note(verdict.note, fmt::format("unplanned look, with {} more: {}",
+  add_note(verdict.note, fmt::format("unplanned look with {} beyond the plan: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }
 
-/// Nothing for an optional claim without runs.
+/// Returns nothing if the claim is optional and one of its sides has no runs.
 std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
   ClaimSides sides = sides_of(claim, frame.runs);
   if (claim.optional && sides.lacks_one) return {};
   const ClaimSides planned = sides_of(claim, frame.pending);
-  for (std::size_t k = 0; k < 2; ++k) {  // a side without runs has the name of the planned ones
+  for (std::size_t k = 0; k < 2; ++k) {  // a side without runs is named after its planned runs
     if (sides.runs[k].empty() && !planned.runs[k].empty()) sides.names[k] = planned.names[k];
   }
   const Claim decided = stated(claim, sides.names);
@@ -224,14 +224,14 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 
 namespace {
 
-/// The values of the swept keys that side `k` does not state. A claim may average over them if they
-/// are the same on both sides.
+/// The values of the swept keys that side `k` of the claim does not state. A claim may average over
+/// these values if both sides have the same values.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {
     nlohmann::json swept = run->place.swept;
     for (const auto& [key, value] : claim.between.at(k).items()) {
-      if (swept.is_object()) swept.erase(key);  // of a damaged store it may be none
+      if (swept.is_object()) swept.erase(key);  // in a damaged store it may not be an object
     }
     others.insert(std::move(swept));
   }
@@ -255,10 +255,10 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
       continue;
     problems.push_back(
         (claim.between[k].empty()
-             ? fmt::format("there are {} variants; `of` must name one.", variants)
-             : fmt::format("{}; `{}` must name one{}.", variants_have(variants, claim.between[k]),
-                           claim.published ? "of" : "between",
-                           claim.published ? "" : " on each side")));
+             ? fmt::format("there are {} variants; `of` must name one variant.", variants)
+             : fmt::format(
+                   "{}; `{}` must name one variant{}.", variants_have(variants, claim.between[k]),
+                   claim.published ? "of" : "between", claim.published ? "" : " on each side")));
   }
   const auto& [a, b] = sides.runs;
   if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {

@@ -19,13 +19,13 @@ namespace {
 /// Converts a run's value to the number that is compared, such as its logarithm.
 using Number = std::function<double(double value)>;
 
-/// The numbers of one or two groups of runs, and why other runs have none.
+/// The numbers of the runs in one or two groups, and the reasons why some runs have no number.
 struct Values {
-  std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite where there is none
+  std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite if a run has no number
   std::size_t runs = 0, censored = 0;
   std::map<Missing, std::size_t> missing;
-  std::size_t not_positive = 0;  ///< values without a logarithm, which are left out
-  bool enough = true;            ///< three quarters of each group have a number
+  std::size_t not_positive = 0;  ///< runs left out because their value has no logarithm
+  bool enough = true;            ///< at least three quarters of each group have a number
   Table entered = entered_with({"value", "missing"});
 
   void take(const Scalar& scalar, RunGroup group, const Number& number) {
@@ -59,7 +59,7 @@ struct Values {
   }
 };
 
-/// `runs`: number of runs, or of pairs, with a number.
+/// Makes the verdict and its note. `runs`: number of runs, or of pairs of runs, with a number.
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
                  std::size_t runs, Values values, const Scalar& scalar, std::string note,
                  bool two_sides) {
@@ -91,11 +91,10 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   const bool no_scatter = estimate && estimate->interval.low == estimate->interval.high;
   const bool equal_sides = no_scatter && two_sides && estimate->value == 0;
   if (no_scatter) {
-    add_note(note,
-             equal_sides
-                 ? "the numbers of both sides are equal to all digits: usually both sides are "
-                   "the same computation up to here, which is no evidence that they agree"
-                 : "the numbers have no scatter, so the interval has no width");
+    add_note(note, equal_sides
+                       ? "the numbers of both sides are equal to all digits, usually because both "
+                         "sides are the same computation; this is no evidence that they agree"
+                       : "the numbers have no scatter, so the interval has no width");
   }
   Verdict verdict =
       decide(claim, quantity, estimate, runs, std::move(note), std::move(values.entered));
@@ -104,11 +103,11 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   return verdict;
 }
 
-/// For each packing that both groups have, the means over its runs in both groups.
+/// For each packing that occurs in both groups: the mean over its runs in each group.
 struct Pairs {
   std::vector<CensoredValue> a, b;
-  bool any = false;    ///< different runs share a packing, whether or not they have numbers
-  bool enough = true;  ///< three quarters of the packings of each group have a partner
+  bool any = false;    ///< runs of the two groups share a packing, with or without numbers
+  bool enough = true;  ///< at least three quarters of each group's packings form pairs
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values) {
   Pairs pairs;
@@ -192,14 +191,14 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 }
 
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
-  const double sign = published < 0 ? -1 : 1;  // a higher value has a positive difference
+  const double sign = published < 0 ? -1 : 1;  // a value above `published` gives a positive number
   const auto number = [&](double value) {
     return scalar.relative ? sign * (value / published - 1) : value - published;
   };
   Values all;
   all.take(scalar, runs, number);
   std::vector<CensoredValue> values = all.over_packings(runs);
-  // So that the order of the runs does not change a bit.
+  // Sorted, so that the order of the runs does not change the bits of the result.
   std::ranges::sort(values, {},
                     [](const CensoredValue& v) { return std::pair(v.value, v.censored); });
   std::string quantity = scalar.name;

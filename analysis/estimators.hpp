@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Estimators: one number of one or two groups of runs, with its interval. To add one, write its
-// file in analysis/estimators/ and add it to the list in estimators.cpp.
+// An estimator computes one number of one or two groups of runs, with its confidence interval. To
+// add an estimator, write a file in analysis/estimators/ and extend the list in estimators.cpp.
 #pragma once
 
 #include <functional>
@@ -20,101 +20,99 @@ namespace shearcell {
 /// One number per run.
 struct Scalar {
   std::string name;   ///< "phi at cycle 10"
-  std::string reach;  ///< what a run must reach to have it: "cycle 10"
+  std::string reach;  ///< what a run must reach to have the number: "cycle 10"
   std::function<RunValue(const FrameRun&)> of;
   bool relative = false;  ///< differences are relative: 0.03 is 3 %
 };
 
 struct Estimator {
-  std::string_view name;      ///< in manifests
-  std::string_view meaning;   ///< for the reference
-  std::string_view key = {};  ///< the key that its claims must state; "": none
-  /// Whether it compares a number of the whole run, not one of checkpoints; empty: either.
+  std::string_view name;      ///< its name in manifests
+  std::string_view meaning;   ///< its description in REFERENCE.md
+  std::string_view key = {};  ///< a key that its claims must state; "": no such key
+  /// Whether its claims compare numbers of whole runs, not of checkpoints; empty: both kinds.
   std::optional<bool> of_run = false;
-  bool over_variants = false;  ///< each of its groups may have several variants
-  bool one_side = false;       ///< it takes one group and no published number
-  /// The number of each run. The mean over runs, or a difference of means, is estimated. Null: see
-  /// `decide`.
+  bool over_variants = false;  ///< a group of runs may contain several variants
+  bool one_side = false;       ///< its claims have one group, even without a published number
+  /// Returns the number of each run. The mean over runs, or the difference of two means, is then
+  /// estimated. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
-  /// Used if `scalar` is null: the verdict on the groups. The second group is empty if the claim
-  /// has a published number or takes one side.
+  /// Returns the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// Words for what is estimated. Null: the name of its Scalar.
+  /// Names the estimated quantity in sentences. If null, Scalar::name is used.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 
-/// All estimators that claims can name, in the order of the reference.
+/// All estimators that claims can name, in the order of REFERENCE.md.
 std::span<const Estimator> all_estimators();
 /// The estimator that the claim names, or that its keys imply.
 const Estimator& estimator_of(const ClaimSpec& claim);
-/// The estimator of one number of each run that `cycles` or `phi` of the claim implies.
+/// mean_over_cycles for a claim with `cycles`, mean_over_phi with `phi`, else number_of_the_run.
 const Estimator& estimator_by_keys(const ClaimSpec& claim);
 
-// The estimators, a file each.
+// Defined in analysis/estimators/.
 extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, change_over_cycles,
     relative_fall, slope_over_cycles, first_cycle_reached, waiting_ratio, slope_against,
     spread_of_variants, spread_ratio, pooled_difference, rate_exponent;
 
-/// Whether the claim compares waiting times: a run may end before the event.
+/// Whether the claim compares waiting times for an event. A run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
-/// The statistic of the (cycle, value) points of a column at the whole cycles first .. last, all of
-/// which the run must have.
+/// `statistic` of the points (cycle, value) of a column at the whole cycles first .. last. A run
+/// that lacks one of these cycles has no value.
 using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
                    PointStatistic statistic);
 
-/// Mean of a column over the checkpoints of cycles first .. last, all of which the run must have.
-/// Sentences call it `name`.
+/// Mean of a column over the checkpoints at the whole cycles first .. last. A run that lacks one of
+/// these cycles has no value. `name`: the column's name in sentences.
 Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
-/// Mean of a column over a window of phi: the polygon through the means of the run's bins of phi
-/// (binning.hpp), integrated over the window. Sentences call it `name`.
+/// Mean of a column over phi from `low` to `high`. The means in the run's bins of phi (binning.hpp)
+/// are joined by straight lines, and these are integrated. `name`: the column's name in sentences.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
-/// The difference a less b. If some runs share a packing, these pairs are compared by Student's t
-/// and other runs are left out; otherwise the interval is Welch's. Runs that end before an event
-/// are censored (censored.hpp). A verdict needs least_runs runs or pairs. Three quarters of each
-/// group must have the number, and with pairs also a partner, lest the missing runs bias the
-/// verdict. [choice]
+/// Decides on the mean of `a` minus the mean of `b`. Runs of `a` and `b` that share a packing form
+/// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
+/// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
+/// verdict needs least_runs runs or pairs. At least three quarters of each group must have the
+/// number (and a partner, if there are pairs), since missing runs may bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
-/// The mean over runs less the published number.
+/// Decides on the mean over runs minus the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
-/// For each run the first cycle at which the column is at least `level`. A run without such a cycle
-/// is censored at its last cycle.
+/// Returns for each run the first cycle at which the column is at least `level`. A run without such
+/// a cycle is censored at its last cycle.
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level);
-/// For each run the cycle of the onset by method 1. A run without onset is censored at its last
-/// cycle.
+/// Returns for each run the cycle of the onset by method 1 (onset.hpp). A run without an onset is
+/// censored at its last cycle.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
 /// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
-/// (statistics.hpp). `waits` gives the waiting times of runs; runs that end before the event are
-/// censored.
+/// (statistics.hpp). `waits` returns the waiting times of a group's runs.
 Verdict compare_waits(const Claim& claim, const std::string& event,
                       const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
                       RunGroup b);
 
-/// Mean over the items of all packings, such as nuclei. The bootstrap draws packings with all their
-/// items.
+/// Mean over the items, such as nuclei, of all packings; `packings[k]` has the items of packing k.
+/// The bootstrap draws packings, each with all its items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
-/// The number of a run. If the run ended before the event: the censored number, which is larger
-/// than the value. NaN if neither is known.
+/// The number of a run. For a run that ended before the event, the result is the lower bound
+/// RunValue::above and is censored. NaN if neither number is known.
 CensoredValue censored_value(const RunValue& value);
 
 /// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if
-/// one of its values is. Values that are not finite are left out.
+/// one of its values is censored. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 
-/// The name of a measure in sentences.
+/// The name of a column in sentences: Measure::words, or the column's text.
 std::string words_of_column(const std::string& column);
 
-/// An empty table of what entered a verdict: group (the run's variant), seed, packing, then these
-/// columns.
+/// An empty table for the numbers that enter a verdict. It has the columns group (the run's
+/// variant), seed, packing, and then `columns`.
 Table entered_with(const std::vector<TableColumn>& columns);
-/// Adds the row of a run, with the values of the columns after group, seed and packing.
+/// Adds the row of a run. `values`: the values of the columns after group, seed and packing.
 void enter(const FrameRun& run, const TableRow& values, Table& entered);
 
 }  // namespace shearcell

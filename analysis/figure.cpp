@@ -13,7 +13,7 @@ std::span<const Figure> computed_figures() {
     return Figure{name, title, make, form, std::move(keys), std::move(claims), std::move(needs)};
   };
   static const std::vector<Figure> all = {
-      one("table1", "Table I beside the parameters of every experiment", figure_table1, table),
+      one("table1", "Table I and the parameters of every experiment", figure_table1, table),
       one("S7", "Where crystallites nucleate", figure_s7, groups,
           {"amplitude_rad", "stiffness_N_per_m"}, {"crystallites"},
           {"S7.inner", "S7.top", "S7.stiff"}),

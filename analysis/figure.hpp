@@ -27,34 +27,34 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table`: takes the runs of all experiments, each with its last checkpoint, without measures.
-/// `curves`: takes runs of one experiment, one curve for each variant. `groups`: takes runs of one
-/// experiment and averages over variants with the same values of Figure::keys.
+/// `table`: uses the runs of all experiments, each with its last checkpoint and without measures.
+/// `curves`: uses the runs of one experiment, with one curve for each variant. `groups`: uses the
+/// runs of one experiment and averages over variants with equal values of Figure::keys.
 enum class FigureForm { table, curves, groups };
 
-/// A figure of the supplement, or of plots and claims in a manifest.
+/// A figure that is computed in C++, or that consists of the plots and claims of a manifest.
 struct Figure {
   std::string name;
   std::string title;
   std::function<FigureResult(const Frame& frame)> make;
   FigureForm form = FigureForm::curves;
-  std::vector<std::string> keys = {};    ///< parameters that its curves compare
+  std::vector<std::string> keys = {};    ///< parameters in which its curves differ
   std::vector<std::string> claims = {};  ///< ids of its claims, without the part after '@'
-  /// Names of the providers (measures.hpp) that it needs besides scalars_provider.
+  /// Names of the providers (measures.hpp) that the figure needs besides scalars_provider.
   std::vector<std::string> needs = {};
-  /// First and last cycle whose checkpoints the figure takes, also those at phases of a cycle.
-  /// Without it the figure takes whole cycles only.
+  /// First and last cycle that the figure uses, with all checkpoints within these cycles. If empty,
+  /// the figure uses all cycles, but only the checkpoints at whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
-  /// First and last cycle for which simulated measures are needed; default: all cycles.
+  /// First and last cycle for which the figure needs simulated measures; empty: all cycles.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
-  /// The experiments whose runs the figure takes; empty: its own experiment.
+  /// The experiments whose runs the figure uses; empty: the experiment of its manifest.
   std::vector<std::string> of = {};
-  /// Whether the figure uses the run, whose checkpoints are not read yet; empty: it uses all runs.
+  /// Whether the figure uses a run. Called before checkpoints are read. Empty: it uses all runs.
   std::function<bool(const FrameRun& run)> uses = {};
 };
 
-/// The figures with an analysis of their own (analysis/figures/), in the order of the supplement.
-/// Manifests state the others (experiments/manifest/shipped.hpp).
+/// The figures that are computed in analysis/figures/, in the order of the supplement. All other
+/// figures are plots and claims of manifests (experiments/manifest/shipped.hpp).
 std::span<const Figure> computed_figures();
 
 }  // namespace shearcell

@@ -13,7 +13,7 @@
 namespace shearcell {
 namespace {
 
-// At 96 px an inch: 8.6 cm and 17.8 cm wide, type of 8 pt.
+// Pixels, at 96 px per inch: widths of 8.6 cm and 17.8 cm, and 8 pt type.
 constexpr int column_width = 325, double_width = 673, chart_height = 215, key_row = 15;
 constexpr double type_size = 10.67;
 
@@ -27,21 +27,22 @@ constexpr std::string_view style =
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
     "set autoscale noextend\n"
-    // Above the frame, the one place where no data can be.
+    // The key is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// gnuplot's single-quoted text, in which only the quote itself is special. gnuplot misreads two
-/// quotes in a row, and one at the beginning; markup() has none, since it puts `\` before each.
+/// A single-quoted gnuplot string, in which each quote must be doubled. gnuplot misreads two quotes
+/// in a row and a quote at the beginning. Texts from markup() are safe: each quote follows a `\`.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
     if (c == '\'') inside += '\'';
-    if (static_cast<unsigned char>(c) >= 0x20) inside += c;  // a line end would end the text
+    if (static_cast<unsigned char>(c) >= 0x20) inside += c;  // a line break would end the string
   }
   return fmt::format("'{}'", inside);
 }
 
-/// gnuplot's enhanced text. Without the `{}`, `\\U+0041` would give the character "A".
+/// The text in gnuplot's enhanced markup. The `{}` after a backslash prevents gnuplot from reading
+/// `\\U+0041` as the character "A".
 std::string markup(const Text& text) {
   std::string result;
   for (const TextPart& part : text.parts) {
@@ -68,7 +69,7 @@ std::string label_of(const Axis& axis) {
   return label;
 }
 
-/// The range of the data along one axis, error bars and reference lines included.
+/// The range of the data along one axis, including error bars and reference lines.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -80,14 +81,14 @@ struct Extent {
   }
 };
 
-/// Ticks of a logarithmic axis with fewer than two powers of ten: 1, 2 and 5 times a power of ten,
-/// or more values where few of these lie in the range.
+/// Ticks of a logarithmic axis that has fewer than two powers of ten: 1, 2 and 5 times a power of
+/// ten. If the highest value is less than four times the lowest, the ticks have equal steps.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;
   const double power =
       std::pow(10, std::floor(std::log10(narrow ? (data.high - data.low) / 2 : data.low)));
-  const bool one_value = data.high - data.low < 1e-8 * data.low;  // except for rounding
+  const bool one_value = data.high - data.low < 1e-8 * data.low;  // equal up to rounding
   if (one_value || !(power > 0) || !std::isfinite(power)) return {digits(data.low)};
   if (narrow) {
     const double step = power * ((data.high - data.low) / power > 5 ? 2 : 1);
@@ -104,7 +105,7 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   return ticks;
 }
 
-/// Width and height of a drawing [px]: the frame, and the rows of the key in its columns.
+/// Width and height of a drawing with its key [px], and the number of columns of the key.
 struct Layout {
   int width = column_width;
   int height = chart_height;
@@ -112,8 +113,8 @@ struct Layout {
   std::size_t longest = 0;  ///< letters of the longest title in the key
 };
 
-/// A title that is too long for a row of one column of a journal, or a key of more than eight rows,
-/// takes two columns.
+/// The drawing has the width of two journal columns if the chart is wide, if a title in the key is
+/// too long for one journal column, or if the key would have more than eight rows.
 Layout layout_of(const Chart& chart) {
   constexpr double letter = 5.2, symbol = 32;  // [px]
   constexpr std::size_t most_letters = 42;
@@ -139,8 +140,7 @@ Layout layout_of(const Chart& chart) {
   return layout;
 }
 
-/// The commands for one chart. The data are written into the script, so that it draws the same
-/// points as the report.
+/// The commands for one chart, with the data that they draw.
 class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
@@ -167,7 +167,7 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
-    // gnuplot takes letters for a quarter wider than most are, and so would use fewer columns.
+    // gnuplot overestimates the width of titles by about a quarter and would use fewer columns.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
@@ -182,7 +182,7 @@ class Script {
       if (is_on_log_axes(chart_, line)) reference(line);
     }
     for (std::size_t k = 0; k < points_.size(); ++k) data(k);
-    // The key in the order of the series; the first series lies on top of the others.
+    // The key lists the series in their order. Curves are drawn in reverse: the first is on top.
     std::vector<std::string> plots;
     for (const Series& series : chart_.series) plots.push_back(key_entry(series));
     for (const bool bands : {true, false}) {
@@ -214,8 +214,8 @@ class Script {
     const double high = std::max(data.high, axis.high.value_or(data.high));
     const double length = axis.clip && axis.low && axis.high ? *axis.high - *axis.low : high - low;
     if (!(length > 0) || !std::isfinite(length)) return;
-    // About five steps of 1, 2 or 5 times a power of ten, fewer where the labels below the frame
-    // would touch; all ticks have the same number of decimals.
+    // The axis has about five steps of 1, 2 or 5 times a power of ten, or fewer if the labels below
+    // the frame would touch. All labels have the same number of decimals.
     constexpr double letter = 6, gap = 8, margins = 65;  // [px]
     double step = 0;
     int decimals = 0;
@@ -234,8 +234,8 @@ class Script {
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
-  /// An end of an axis is either fixed, or left to gnuplot with some room beyond the data. gnuplot
-  /// does not count horizontal lines: with these, the ends beyond data and lines are stated.
+  /// Sets the ranges of both axes. gnuplot chooses each end that is not fixed, a little beyond the
+  /// data. gnuplot ignores horizontal lines; with such lines, the script states the ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {
@@ -284,7 +284,7 @@ class Script {
     add("EOD\n");
   }
 
-  /// A joined curve has a mark at every so many points, so that marks do not overlap.
+  /// Returns n: a joined curve has a symbol at every n-th point, so that symbols do not overlap.
   std::size_t spacing(const Series& series) const {
     constexpr std::size_t most_marks = 20;
     std::size_t every = 1;
@@ -317,8 +317,8 @@ class Script {
                                [&](const ChartPoint& p) { return (p.*error).has_value(); });
   }
 
-  /// The lower end and the length of the error bars, for gnuplot. On a logarithmic axis a bar that
-  /// reaches zero ends at the lowest value that is drawn, or at the axis's end below it.
+  /// gnuplot expressions for the lower end and the length of the error bars. On a logarithmic axis,
+  /// a bar that reaches zero ends at the lowest drawn value, or at Axis::low if that is lower.
   static std::pair<std::string, std::string> bar(int value, int error, const Axis& axis,
                                                  const Extent& data) {
     std::string low = fmt::format("${}-${}", value, error);
@@ -336,8 +336,8 @@ class Script {
                       k, series.colour));
     }
     if (series.band) return;
-    // Arrows whose heads are the caps, 2 px to each side: behind each point of `yerrorbars` gnuplot
-    // 5.4 paints a white disc over what is there already.
+    // Bars are arrows, and their heads are the caps, 2 px to each side. With `yerrorbars`, gnuplot
+    // 5.4 paints a white disc behind each point, which hides parts of other curves.
     const auto add_bars = [&](const std::string& columns) {
       plots.push_back(fmt::format(
           "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "
@@ -370,7 +370,7 @@ class Script {
   std::size_t longest_ = 0;                      ///< most points of a series
   Extent x_;
   Extent y_;
-  bool lines_ = false;  ///< y_ holds horizontal lines
+  bool lines_ = false;  ///< y_ includes horizontal lines
   std::string text_;
 };
 
@@ -385,7 +385,7 @@ int height_of(const TextTable& table) {
   return row_height * (static_cast<int>(table.rows.size()) + 1);
 }
 
-/// Labels at fixed places; the first column is left aligned, the others are centred.
+/// Writes each cell as a label. The first column is left-aligned; the other columns are centred.
 std::string text_table_commands(const TextTable& table) {
   std::string text = "unset border\nunset tics\nunset key\nset margins 0,0,0,0\n";
   const double width = width_of(table), height = height_of(table);

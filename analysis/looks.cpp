@@ -13,12 +13,12 @@
 namespace shearcell {
 namespace {
 
-/// Probability that the standard normal deviates of all looks lie within -limit and limit.
+/// Probability that the standard normal deviates of all looks lie between -limit and limit.
 double probability_within(double limit, std::span<const std::size_t> looks) {
   const auto share_of_next = [&](std::size_t k) {
     return static_cast<double>(looks[k - 1]) / static_cast<double>(looks[k]);
   };
-  double step = 0.05;  // and at most a quarter of the narrowest kernel
+  double step = 0.05;  // at most a quarter of the narrowest kernel's width
   for (std::size_t k = 1; k < looks.size(); ++k) {
     step = std::min(step, std::sqrt(1 - share_of_next(k)) / 4);
   }

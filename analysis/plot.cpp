@@ -13,20 +13,20 @@
 namespace shearcell {
 namespace {
 
-/// Throws unless the name has only characters that are special neither in scripts nor in file
-/// names.
+/// Throws AnalysisError if the name has a character that is special in scripts or in file names.
 void require_plain_name(const std::string& name) {
   const bool plain = !name.empty() && name.front() != '-' &&
                      name.find_first_not_of(
                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
                          "0123456789_-") == std::string::npos;
-  if (!plain) throw AnalysisError("'" + name + "' cannot name a figure's files");
+  if (!plain) throw AnalysisError("'" + name + "' cannot be used in names of files");
 }
 
 /// Makes programs write a fixed date into their files.
 constexpr const char* fixed_date = "SOURCE_DATE_EPOCH=0";
 
-/// Why the drawing that a program wrote to its standard output cannot be used; "" if it can.
+/// Returns why the program's standard output is not a complete drawing; "" if it is complete. A
+/// complete drawing begins with `begins` and ends with `ends`.
 std::string fault_of(const char* program, const ProgramOutcome& outcome,
                      const std::filesystem::path& file, std::string_view begins,
                      std::string_view ends) {
@@ -39,7 +39,7 @@ std::string fault_of(const char* program, const ProgramOutcome& outcome,
   } else if (outcome.code != 0) {
     fault = fmt::format("ended with code {}", outcome.code);
   } else if (!drawn.starts_with(begins) || !drawn.ends_with(ends)) {
-    fault = fmt::format("wrote {} bytes; a whole file begins with {} and ends with {}",
+    fault = fmt::format("wrote {} bytes; a complete file begins with {} and ends with {}",
                         drawn.size(), begins, ends);
   } else {
     return "";
@@ -75,9 +75,9 @@ std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& 
   const TemporaryFolder apart;
   write_output(apart.path() / script, gnuplot_script(table));
   write_output(folder / script, gnuplot_script(table));
-  // Into memory: on a full disk gnuplot leaves out a part of the file and ends with code 0.
+  // gnuplot writes into memory, since on a full disk it truncates the file and exits with code 0.
   std::filesystem::create_symlink("/dev/stdout", apart.path() / svg.filename());
-  // -d: without the user's own settings.
+  // With -d, gnuplot ignores the user's settings.
   const std::optional<ProgramOutcome> outcome =
       run_program({"gnuplot", "-d", script}, apart.path(), {fixed_date});
   const std::string fault = outcome ? fault_of("gnuplot", *outcome, svg, "<?xml", "</svg>")
@@ -91,7 +91,7 @@ std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& 
   // sets only for two spaces in a row.
   boost::replace_all(drawn, "<text>", "<text xml:space=\"preserve\">");
   boost::replace_all(drawn, "]]>",
-                     "]]&gt;");  // XML does not allow it in a text; gnuplot leaves it there
+                     "]]&gt;");  // XML forbids ]]> in text, but gnuplot writes it
   write_output(svg, drawn);
   return svg;
 }
@@ -103,7 +103,7 @@ std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path&
       {"rsvg-convert", "--format=pdf", svg.filename().string()}, svg.parent_path(), {fixed_date});
   const std::string fault =
       outcome ? fault_of("rsvg-convert", *outcome, pdf, "%PDF-", "%%EOF") : "";
-  if (!outcome || !fault.empty()) std::filesystem::remove(pdf);  // it shows other data
+  if (!outcome || !fault.empty()) std::filesystem::remove(pdf);  // an older PDF shows other data
   if (!fault.empty()) throw AnalysisError(fault);
   if (!outcome) return std::nullopt;
   write_output(pdf, outcome->output);

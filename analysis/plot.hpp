@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws a figure's table with gnuplot; PDF with librsvg.
+// Draws a table as SVG with gnuplot and converts the SVG to PDF with librsvg.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@
 
 namespace shearcell {
 
-/// The gnuplot commands (gnuplot_script.cpp) that write NAME.svg into the current folder. They hold
-/// the points that they draw. A chart without points gets its axes and the words "no data". The
+/// The gnuplot commands (gnuplot_script.cpp) that write NAME.svg into the current folder. The data
+/// points are part of the commands. A chart without points has axes and the words "no data". The
 /// same table gives the same bytes.
 std::string gnuplot_script(const Table& table);
 
-/// How every script begins.
+/// The first words of every script.
 inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg size ";
 
 /// Throws NotOurs if drawing the table would overwrite a file that this program did not write.
-/// Scripts are recognized by their first words, a CSV file by its header or by the script of the
-/// same name, drawings by the script of the same name.
+/// A script is recognized by its first words, a drawing by a script with the same name. A CSV file
+/// is recognized by its header or by a script with the same name.
 void require_own_files(const Table& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
@@ -29,15 +29,15 @@ void require_own_files(const Table& table, const std::filesystem::path& folder);
 /// gnuplot draws into memory, so that several programs may write to one folder and no truncated
 /// file is left there.
 ///
-/// Throws AnalysisError if gnuplot is missing (naming the package to install), fails (with its
-/// message) or writes a part of the drawing; the script stays, and drawings of other data are
-/// deleted.
+/// Throws AnalysisError if gnuplot is not installed, fails or writes an incomplete drawing. The
+/// error names the package to install, or repeats gnuplot's message. The script is kept. Older
+/// drawings with this name are deleted, since they show other data.
 std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder);
 
 /// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes
 /// with the same librsvg (gnuplot's own PDF contains the time). Returns nothing if rsvg-convert
 /// (Debian package librsvg2-bin) is not installed. Throws AnalysisError if rsvg-convert fails or
-/// writes a part.
+/// writes an incomplete file.
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg);
 
 }  // namespace shearcell

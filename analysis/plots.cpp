@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plot in the order of the calls: select runs and checkpoints, evaluate the columns, group into
-// panels and curves, average, draw.
+// Makes a plot. The functions are in the order of the calls: select runs and checkpoints, evaluate
+// the columns, group runs into panels and curves, average, draw.
 #include "analysis/plots.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ const Measure* find_curve(std::string_view name) {
   return find_measure(name, MeasureKind::curve);
 }
 
-/// What the plot averages over at equal values.
+/// The quantity on the x axis. Runs are averaged at equal values of this quantity.
 enum class Against { cycle, phi, measure, number_of_run, curve };
 
 Against against(const PlotSpec& plot) {
@@ -45,22 +45,22 @@ Against against(const PlotSpec& plot) {
   return plot.x == "cycle" ? Against::cycle : plot.x == "phi" ? Against::phi : Against::measure;
 }
 
-/// Whether the plot draws runs, not numbers over runs.
+/// Whether the plot draws single runs instead of averages over runs.
 bool draws_runs(const PlotSpec& plot) {
   return plot.show == Show::traces || plot.show == Show::scatter;
 }
 
 // --- Select ---
 
-/// A run of the plot.
+/// A run that the plot draws.
 struct Selected {
   const FrameRun* run;
   std::vector<const CheckpointMeasures*> checkpoints = {};
-  /// The runs whose mean is subtracted: several where the runs of a packing differ by noise.
+  /// The runs whose mean is subtracted; several if runs with one packing differ only by noise.
   std::vector<const FrameRun*> partners = {};
 };
 
-/// The column `text` of the run at its checkpoint less the mean over its partners.
+/// The column at the checkpoint of the run, minus the column's mean over the partners of the run.
 double value_of(const NumberColumn& column, const Selected& one,
                 const CheckpointMeasures* checkpoint) {
   const double own = column(*one.run, checkpoint);
@@ -74,8 +74,8 @@ double value_of(const NumberColumn& column, const Selected& one,
   return own - over_runs(values).mean.value_or(std::nan(""));
 }
 
-/// All runs, or those with a partner of PlotSpec::minus and their checkpoints of cycles that the
-/// partner has. Adds a sentence for the caption.
+/// Selects runs and checkpoints. With PlotSpec::minus, each run needs a partner with its packing,
+/// and each checkpoint needs a partner at its cycle. Sets a note for the caption.
 std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
   std::vector<Selected> selected;
   json of_runs = plot.where;
@@ -125,14 +125,14 @@ std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::stri
   const std::string& name = others.front()->name;
   note = fmt::format("Differences from {} with the same packing{}",
                      name.empty() ? words_of(plot.minus) : name,
-                     alone == 0 ? "" : fmt::format(", which {} of {} runs lack", alone, all));
+                     alone == 0 ? "" : fmt::format("; {} of {} runs have no partner", alone, all));
   return selected;
 }
 
-/// The cycle of the plot: as stated, or the last that all runs have.
+/// The cycle of the plot: PlotSpec::cycle, or the last cycle that all runs have.
 double cycle_of(const PlotSpec& plot, std::span<const Selected> runs) {
   if (plot.cycle) return static_cast<double>(*plot.cycle);
-  std::map<double, std::size_t> count;  // of the runs with this cycle
+  std::map<double, std::size_t> count;  // number of runs with this cycle
   std::size_t begun = 0;
   for (const Selected& run : runs) {
     if (!run.checkpoints.empty()) ++begun;
@@ -145,19 +145,19 @@ double cycle_of(const PlotSpec& plot, std::span<const Selected> runs) {
 
 // --- Evaluate ---
 
-/// The values of one row.
+/// x and y of one row of the frame.
 struct Sample {
   double cycle = 0;
   double x = 0;
-  std::vector<double> y = {};  ///< of the columns in columns_of()
+  std::vector<double> y = {};  ///< values of the columns in columns_of()
 };
 
-/// A run of a curve.
+/// The samples of one run of a curve.
 struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< why the run has no y, a measure of the whole run
-  /// Of the columns: what the run's number exceeds, if the run ended before the event; else NaN.
+  Missing missing = Missing::nothing;  ///< why a measure y of the whole run is missing
+  /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
 
@@ -182,7 +182,7 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-/// The samples of a run.
+/// Computes the samples of a run. `cycle`: cycle_of(), used if the plot draws only one cycle.
 Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
                const Selected& one, double cycle) {
   Trace trace{one.run};
@@ -231,10 +231,10 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
   return trace;
 }
 
-/// Sets x, a measure of the whole run, to its mean over those runs of a variant that have a y, so
-/// that these share a point.
+/// Gives all runs of a variant the same x, so that they share a point. x is a measure of the whole
+/// run; its new value is the mean over the variant's runs that have a y.
 void average_x(std::vector<Curve>& curves) {
-  std::map<std::string, std::vector<double>> found;  // of each variant
+  std::map<std::string, std::vector<double>> found;  // x of each variant
   const auto for_each_sample = [&](const auto& visit) {
     for (Curve& curve : curves) {
       for (Trace& trace : curve.traces) {
@@ -252,8 +252,8 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as one field without quotes, for readers that do not know RFC 4180. Variants of
-/// manifests have no special characters but the comma; those of another program's store may.
+/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. Variants of
+/// manifests have no special character except the comma. Variants of other stores may have more.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -267,12 +267,13 @@ std::string plain_field(std::string variant) {
 /// Runs that share a curve.
 struct Group {
   json key;             ///< the keys that distinguish curves, with the values of these runs
-  std::string variant;  ///< the same as text
+  std::string variant;  ///< `key` as text
   std::vector<const Selected*> runs = {};
 };
 
-/// The curves of a panel: one for each variant; or runs that differ in `x` alone, or have the same
-/// value of `by`, share a curve.
+/// The curves of a panel. With PlotSpec::by, runs with equal values of `by` share a curve. Without
+/// it, each variant has a curve; if x is a number of the run, or the plot has panels, runs that
+/// differ only in x or in the panel's parameter share a curve.
 std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -298,7 +299,7 @@ std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> run
   return found;
 }
 
-/// The titles of the curves: the name of a curve's only variant, else its values.
+/// The titles of the curves: the variant's name if a curve has one variant, otherwise its values.
 std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
                                    const NameVariants& name) {
   std::vector<json> keys;
@@ -316,9 +317,9 @@ std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> 
   return titles;
 }
 
-/// The place of a style in PlotSpec::series for each group; the number of styles if none fits it
-/// alone. Styles of a plot that another manifest lists are used only if the runs differ in no other
-/// parameters.
+/// For each group, the index of its style in PlotSpec::series. The index is the number of styles if
+/// no style fits, or if the style fits another group too. The styles of a listed plot are used only
+/// if the runs differ in no other parameters.
 std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group> groups) {
   std::vector<json> keys;
   for (const Group& group : groups) keys.push_back(group.key);
@@ -348,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets the colour and the symbol that are stated.
+/// Sets colour and symbol if the series states them.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -356,14 +357,14 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
 }
 
-/// Sets title and look as PlotSpec::series states.
+/// Sets the title and the look that the series states.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
   if (!stated.colour.empty()) curve.look.join = Join::line;
   set_look(stated, curve.look.colour, curve.look.point);
 }
 
-/// Sets Panel::curves, in the order of PlotSpec::series, then by their values.
+/// Sets Panel::curves, sorted by their style's index in PlotSpec::series, then by their values.
 void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const PlotSpec& plot = panel.plot;
   std::vector<NumberColumn> columns;
@@ -373,7 +374,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const std::vector<Group> groups = groups_of(plot, panel.selected);
   const std::vector<std::string> titles = titles_of(plot, groups, names);
   const std::vector<std::size_t> styles = styles_for(plot, groups);
-  using Place = std::tuple<std::size_t, json, std::size_t>;  // of a curve among all
+  using Place = std::tuple<std::size_t, json, std::size_t>;  // sort key: style, values, group
   std::map<Place, Curve> ordered;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const auto& [key, variant, members] = groups[k];
@@ -392,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // A colour that a manifest states is of that curve alone.
+  // If a manifest states the colour of a curve, no other curve may have this colour.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {
@@ -412,8 +413,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 
 // --- Average ---
 
-/// Mean over packings and its error, of numbers that some runs only exceed; `runs` counts the
-/// packings with a number.
+/// Mean over packings if values are censored. RunStatistics::runs counts the uncensored packings.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
   RunStatistics found;
@@ -429,20 +429,20 @@ RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> v
 struct Bin {
   double at = 0;  ///< the cycle, the lower end of the bin of phi, or x
   RunStatistics x = {};
-  std::vector<RunStatistics> y = {};            ///< of the columns
+  std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
-  std::map<Missing, std::size_t> missing = {};  ///< runs without y, a measure of the whole run
+  std::map<Missing, std::size_t> missing = {};  ///< runs that lack a y of the whole run
 };
 
-/// Averages over independent runs: runs of one packing count as one, and in a bin of phi each run
-/// with the mean over its checkpoints there. `columns`: of the values.
+/// Averages over independent runs. Runs of one packing count as one run. In a bin of phi, the value
+/// of a run is the mean over its checkpoints in the bin. `columns`: the columns of Sample::y.
 std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
                          std::span<const MeasureColumn> columns) {
   const Against what = against(plot);
   const bool by_x = what == Against::number_of_run || what == Against::curve;
   struct Members {
     std::vector<const FrameRun*> runs;
-    std::vector<std::vector<double>> values;        // x, then y, of each run
+    std::vector<std::vector<double>> values;        // for each run: x, then all y
     std::vector<const std::vector<double>*> above;  // Trace::above of each run
     std::map<Missing, std::size_t> missing;
   };
@@ -457,7 +457,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
-      // Further columns are over all runs, with y or without.
+      // The means of further columns include runs without y.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {
@@ -487,7 +487,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
     const auto over = [&](std::size_t k, const auto& statistics) {
       std::vector<double> values;
       for (const std::vector<double>& of_run : members.values) values.push_back(of_run[k]);
-      // Against a measure, the runs that have both.
+      // Against a measure, only runs with both x and y count.
       for (std::size_t r = 0; what == Against::measure && r < values.size(); ++r) {
         const auto& of_run = members.values[r];
         if (!std::isfinite(of_run[0]) || !std::isfinite(of_run[1])) values[r] = std::nan("");
@@ -529,14 +529,14 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   return {std::move(name), std::move(unit)};
 }
 
-/// A number of checkpoints or of a whole run, or a curve; null if the text is none of them.
+/// Finds a number of checkpoints, a number of a whole run or a curve; null if no measure fits.
 const Measure* find_plotted(std::string_view text) {
   const Measure* measure = find_measure(text);
   if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
   return measure != nullptr ? measure : find_curve(text);
 }
 
-/// The column of such a measure, or of an expression. `name` replaces its name.
+/// The column of a measure or an expression. If `name` is not "", it replaces the column's name.
 MeasureColumn column_for(const std::string& text, const std::string& name = {}) {
   MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, ""};
   if (const Measure* measure = find_plotted(text)) column = column_of(text, measure->unit);
@@ -544,7 +544,7 @@ MeasureColumn column_for(const std::string& text, const std::string& name = {}) 
   return column;
 }
 
-/// Of y, and of further measures.
+/// The columns of y and of PlotSpec::also.
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   std::vector<MeasureColumn> columns = {column_for(plot.y, plot.column)};
   if (!plot.minus.empty()) columns[0].name += "_difference";
@@ -553,8 +553,8 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// The axis of "largest_crystallite" is named "largest crystallite". It has the unit in brackets if
-/// the name ends in it.
+/// The axis of a measure: the axis of "largest_crystallite" is named "largest crystallite". If the
+/// measure's name ends in its unit, the axis has this unit.
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
   const bool has_unit = name.size() < measure.size();
@@ -574,7 +574,7 @@ Axis axis_of(const std::string& key) {
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
 
-/// "cycle" of a shear, "step" of a stiffening, or both if the runs are of both.
+/// "cycle" if all runs are shears, "step" if all are stiffenings, otherwise "cycle or step".
 std::string_view word_for_cycle(std::span<const Selected> runs) {
   const auto stiffens = [](const Selected& one) {
     return !one.checkpoints.empty() &&
@@ -584,7 +584,7 @@ std::string_view word_for_cycle(std::span<const Selected> runs) {
   return std::ranges::all_of(runs, stiffens) ? "step" : "cycle or step";
 }
 
-/// A logarithmic axis has no fixed lower end.
+/// Sets the scale and the text of an axis. A logarithmic axis has no fixed lower end.
 void adapt(Axis& axis, const std::string& label, bool log) {
   axis.log = log;
   if (log) axis.low = {};
@@ -614,17 +614,17 @@ Series series_of(const Curve& curve) {
           .filter = {"variant", curve.variant}};
 }
 
-/// Curves of single runs, and those of a curve measure, have no symbols, which would hide them.
+/// Removes the symbols of a curve, since symbols at every point would hide it.
 void leave_out_symbol(const Curve& curve, Series& series) {
   series.point = 0;
   series.join = curve.look.join;
 }
 
-/// A thin line or a cloud of points for each run; the title once, in the key.
+/// A thin line or a cloud of points for each run. Only the first run of a curve has a title.
 std::vector<Series> series_of_runs(const Panel& panel) {
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
-    std::map<std::uint64_t, std::map<double, double>> by_seed;  // against a number of the run
+    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used if x is a number of the run
     std::vector<std::vector<ChartPoint>> traces;
     for (const Trace& trace : curve.traces) {
       std::vector<ChartPoint>& points = traces.emplace_back();
@@ -660,9 +660,9 @@ std::vector<Series> series_of_runs(const Panel& panel) {
   return all;
 }
 
-/// Where runs end at different cycles, the mean over the rest would jump. So the mean ends where
-/// the first run ends, and every run continues as a thin line. Returns whether the runs end at
-/// different cycles.
+/// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
+/// ends where the first run ends, and each other run continues as a thin line. Returns whether the
+/// runs end at different cycles.
 bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
                  std::vector<Series>& single) {
   double first_end = infinite;
@@ -695,7 +695,7 @@ bool counts_missing(const PlotSpec& plot) {
          find_measure(plot.y, MeasureKind::run) != nullptr;
 }
 
-/// The columns of the means and their names in the series.
+/// A table without rows, with the columns of the means.
 Table table_of_means(const Panel& panel, std::span<const MeasureColumn> columns) {
   const PlotSpec& plot = panel.plot;
   const Against what = against(plot);
@@ -751,7 +751,7 @@ void add_rows(const Panel& panel, const Curve& curve, std::span<const Bin> bins,
   }
 }
 
-/// Every row that is drawn of each run.
+/// The table and chart of a plot of single runs: one row for each sample.
 Table table_of_runs(const Panel& panel) {
   const PlotSpec& plot = panel.plot;
   Table table{.name = plot.name, .columns = {"variant", "seed"}};
@@ -772,7 +772,7 @@ Table table_of_runs(const Panel& panel) {
   return table;
 }
 
-/// A sentence of the caption: which checkpoints, and how many runs have no value.
+/// A sentence for the caption: the cycle that is drawn, or how many runs have no value.
 std::string note_of(const Panel& panel, std::size_t with_value) {
   if (!is_of_run(panel.plot.y)) {
     if (!std::isfinite(panel.cycle)) return "";
@@ -803,16 +803,17 @@ void require_different_titles(std::span<const Curve> curves) {
   std::set<std::string> titles;
   for (const Curve& curve : curves) {
     if (titles.insert(plain_text(curve.title)).second) continue;
-    throw AnalysisError("two curves of a figure have the label '" + plain_text(curve.title) +
-                        "'; give each its own, in the `series` of its plot or in `labels`");
+    throw AnalysisError(
+        "two curves of a figure have the label '" + plain_text(curve.title) +
+        "'; give each curve its own label, in the `series` of its plot or in `labels`");
   }
 }
 
-/// Title and look of the k-th y of a plot that draws several: as stated, else its symbol or name.
+/// Sets title and look of the k-th of several y columns. `alone`: the plot has one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
   const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
-  // Of one curve the columns differ in colour, of several in symbols.
+  // The columns of a single curve differ in colour, the columns of several curves in symbol.
   if (alone) series.colour = safe_colours[k % safe_colours.size()];
   series.point = alone ? curve_symbol(k) : series.point - static_cast<int>(k % 2);
   const Axis axis = axis_of(measure);
@@ -827,7 +828,6 @@ void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   series.title = alone ? label : series.title + Text(", ") + label;
 }
 
-/// Adds PlotSpec::mark.
 void add_mark(const Panel& panel, Table& table) {
   const MarkSpec& mark = *panel.plot.mark;
   const NumberColumn x(mark.x), y(mark.y);
@@ -867,7 +867,7 @@ Table draw(const Panel& panel) {
     series.band = what != Against::number_of_run;
     if (what == Against::phi) series.columns.x_error = "phi_standard_error";
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // Against a number of the run, the runs at each x are others.
+    // If x is a number of the run, points at different x come from different runs.
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {
@@ -875,7 +875,7 @@ Table draw(const Panel& panel) {
     }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
-      if (!series.points.empty() && k == 0) continue;  // followed
+      if (!series.points.empty() && k == 0) continue;  // follow_runs() has set the points
       drawn.points.clear();
       drawn.columns = columns_against(x, columns[k]);
       drawn.columns.x_error = series.columns.x_error;
@@ -898,8 +898,8 @@ Table draw(const Panel& panel) {
   return table;
 }
 
-/// Adds the published numbers: dashed lines, black or grey, two at the ends of an error, and points
-/// with open symbols. The key names them, the caption their sources.
+/// Adds the published numbers. A value is a dashed line, or two lines at the ends of its error.
+/// Points have open symbols. The key has the labels, and the caption has the sources.
 void add_published(const PlotSpec& plot, Chart& chart) {
   std::vector<std::string> sources;
   int point = 6;
@@ -931,7 +931,7 @@ void add_published(const PlotSpec& plot, Chart& chart) {
   if (!sources.empty()) chart.sources = fmt::format("Published: {}", fmt::join(sources, "; "));
 }
 
-/// Says so if there are more curves than looks.
+/// Adds a note to the caption if some curves look the same.
 void note_equal_looks(const Panel& panel, Table& table) {
   std::set<std::tuple<std::string, int, Join>> looks;
   std::size_t titled = 0;
@@ -946,7 +946,7 @@ void note_equal_looks(const Panel& panel, Table& table) {
           std::string("Some curves look the same, since there are more curves than styles");
 }
 
-/// Adds the value of the panel's parameter to each row, after the variant.
+/// Adds a column with the value of the panel's parameter, after the variant.
 void add_panel_column(const std::string& parameter, const json& value, Table& table) {
   if (table.place(parameter) < table.columns.size()) return;
   table.columns.insert(table.columns.begin() + 1, parameter);
@@ -956,7 +956,7 @@ void add_panel_column(const std::string& parameter, const json& value, Table& ta
   }
 }
 
-/// Gives all panels the ranges of all their data and published lines.
+/// Gives all panels the same ranges, which include the data and published lines of all panels.
 void share_ranges(std::vector<Table>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const Table& table : tables) {
@@ -993,15 +993,15 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
     std::vector<std::string> keys = names_in(plot.x);
     keys.insert(keys.end(), {plot.by, plot.panel});
     require_told_apart(plot.name, frame.runs, keys,
-                       "leave out its `by` for a curve of each variant");
+                       "remove its `by` to draw a curve for each variant");
   }
-  std::string less;                              // about what is subtracted
-  std::map<json, std::vector<Selected>> panels;  // by the value of their parameter
+  std::string less;                              // the caption's note on PlotSpec::minus
+  std::map<json, std::vector<Selected>> panels;  // by the value of PlotSpec::panel
   for (Selected& one : select(plot, frame, less)) {
     panels[plot.panel.empty() ? json() : parameter_of(*one.run, plot.panel)].push_back(
         std::move(one));
   }
-  // An empty panel, whose caption says why.
+  // An empty panel is drawn, and its caption says why it is empty.
   if (panels.empty() && !less.empty()) panels[nullptr] = {};
   const Looks looks(frame);
   FigureResult result;
@@ -1036,7 +1036,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// The cycles, first to last, of which the parts need what is simulated; none: all.
+/// First and last cycle for which the parts need simulated measures; empty: all cycles.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {
@@ -1052,7 +1052,7 @@ std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure>
   return hull;
 }
 
-/// One figure of several: its panels and verdicts are theirs.
+/// Joins figures into one figure with all their panels and verdicts.
 Figure joined(const std::string& name, const std::string& title, std::vector<Figure> parts) {
   if (parts.size() == 1 && parts.front().name == name) return std::move(parts.front());
   Figure figure{name, title.empty() ? parts.front().title : title, {}};
@@ -1101,7 +1101,7 @@ std::string variants_have(std::size_t variants, const nlohmann::json& where) {
 
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
   if (plot.minus.empty() || variants == 1) return "";
-  return fmt::format("{}; `minus` must name one.", variants_have(variants, plot.minus));
+  return fmt::format("{}; `minus` must name one variant.", variants_have(variants, plot.minus));
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {
@@ -1137,7 +1137,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question) {
-  nlohmann::ordered_map<std::string, std::vector<Figure>> figures;  // their parts
+  nlohmann::ordered_map<std::string, std::vector<Figure>> figures;  // parts of each figure
   for (const PlotSpec& plot : plots) {
     figures[figure_of(plot)].push_back(plot_figure(plot, names));
   }

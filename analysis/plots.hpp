@@ -19,23 +19,23 @@
 
 namespace shearcell {
 
-/// What a plot draws: the mean or the root mean square over runs with its error, every run, or
-/// every value as a point.
+/// What a plot draws. `mean`, `rms`: the mean or the root mean square over runs, with its error.
+/// `traces`: a line for each run. `scatter`: a point for each value.
 enum class Show : std::uint8_t { mean, rms, traces, scatter };
 template <>
 inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "rms", "traces", "scatter");
 
-/// Logarithmic axes of a plot.
+/// The axes of a plot that are logarithmic.
 enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// How the curve of the variants with these parameters is drawn. Styles that are not stated follow
+/// The style of the curve whose variants have the parameters `where`. Members that are "" follow
 /// from the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
-  std::string column = {};  ///< instead of `where`: the name of one of several y
-  std::string label = {};   ///< with formulas (formula)
+  std::string column = {};  ///< instead of `where`: the name of one of several y columns
+  std::string label = {};   ///< may have formulas (formula())
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names
 };
@@ -54,70 +54,69 @@ struct MarkSpec {
 
 struct PlotSpec {
   std::string name;
-  /// A measure of a checkpoint (a number or a curve) or of a run. Or an expression: of numbers of a
-  /// checkpoint and parameters, or of measures of a run and parameters.
+  /// A measure of a checkpoint (a number or a curve), a measure of a run, or an expression. An
+  /// expression has parameters and either numbers of a checkpoint or measures of a run.
   std::string y;
-  /// Selects runs by has_parameters(), and by "cycle" checkpoints.
+  /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
-  /// Parameters and their values that single out one variant. The plot then shows `y` minus the `y`
-  /// of that variant's run with the same packing at the same cycle. Empty: `y` itself.
+  /// Parameters and their values that select one variant. The plot then shows `y` minus the `y` of
+  /// this variant's run with the same packing at the same cycle. If empty, the plot shows `y`.
   nlohmann::json minus = nlohmann::json::object();
-  /// "cycle", a number of a checkpoint, a parameter, a number of the whole run (drawn at its mean
-  /// over the runs of each variant), or an expression of these; unused by curves.
+  /// "cycle", a number of a checkpoint, a parameter, a number of the whole run, or an expression of
+  /// these. A number of the whole run is averaged over the runs of each variant. Curves ignore x.
   std::string x = "cycle";
-  std::string by = {};      ///< a curve for each value of it; "": for each variant
-  std::string figure = {};  ///< plots and claims of one figure are drawn together; "": alone
-  std::string panel = {};   ///< a panel for each value of this parameter
+  std::string by = {};      ///< one curve for each value of this parameter; "": for each variant
+  std::string figure = {};  ///< the figure to which the plot belongs; "": `name`
+  std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< with formulas; "": from the names
+  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints are taken at
-  /// the run's first checkpoint. The first `drawn` of these columns have curves, too.
+  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints have their
+  /// values at the run's first checkpoint. The first `drawn` of these columns are drawn as curves.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
-  /// The cycle of a curve measure, or of `y` against a parameter; default: the last cycle that all
-  /// runs have.
+  /// The cycle at which a curve measure, or `y` against a parameter, is drawn. If empty, the last
+  /// cycle that all runs have.
   std::optional<std::uint64_t> cycle = {};
-  /// Cycles first to last, with the checkpoints at their phases; with traces and scatter only.
+  /// First and last cycle to draw, with all checkpoints within them; only for traces and scatter.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
-  std::string x_symbol = {}, x_unit = {};  ///< of a parameter as x; "" for none
-  /// The plot is of a shipped manifest, and the user's manifest lists its figure. Labels of the
-  /// user's manifest then replace those of `series`. Styles of `series` are used only if the runs
-  /// differ in no other parameters.
+  std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
+  /// The plot belongs to a shipped manifest, and the user's manifest lists its figure. Labels of
+  /// the user's manifest then replace the labels of `series`. The styles of `series` are used only
+  /// if the runs differ in no parameters other than those in `series`.
   bool listed = false;
 };
 
-/// The figure of the plot: as stated, or its name.
+/// The name of the plot's figure: `figure` if stated, otherwise `name`.
 inline const std::string& figure_of(const PlotSpec& plot) {
   return plot.figure.empty() ? plot.name : plot.figure;
 }
 
-/// The name of a column that occurs twice in the CSV of means against the cycle; "" if there is
-/// none.
+/// The name of a column that would occur twice in the CSV of means; "" if all names differ.
 std::string repeated_column(const PlotSpec& plot);
 
-/// Whether the plot draws every cycle, not one of them.
+/// Whether the plot draws all cycles instead of a single cycle.
 bool draws_every_cycle(const PlotSpec& plot);
 
-/// Gives variants, which are objects of keys and values, names for people.
+/// Returns readable names of variants. A variant is an object of keys and values.
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
 
-/// The figure of a plot: one panel NAME, or with PlotSpec::panel panels NAME_1, NAME_2, ... with
-/// equal ranges. Against phi, runs are averaged in bins of phi; against another measure, at each
-/// cycle; against a parameter, at one cycle. A curve measure is drawn against its own x at one
-/// cycle. `names` gives curves their titles; without it they are called "fluid=still".
+/// The figure of a plot. It has one panel NAME; with PlotSpec::panel it has panels NAME_1, NAME_2,
+/// ... with equal ranges. Against phi, runs are averaged in bins of phi; against another measure,
+/// at each cycle; against a parameter, at one cycle. A curve measure is drawn at one cycle. `names`
+/// gives the titles of curves; without it a title has the form "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
-/// "2 variants have fluid=still", "no variant has fluid=still".
+/// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".
 std::string variants_have(std::size_t variants, const nlohmann::json& where);
 
-/// A sentence on why `minus` does not name exactly one variant; "" if it does. `variants`: how many
-/// variants have its values.
+/// A sentence on why `minus` does not select exactly one variant; "" if it does. `variants`: number
+/// of variants with the values of `minus`.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
 /// The figures of a manifest, in the order of their first plots and claims. `question` is the title

@@ -19,8 +19,7 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// The rank of a variant's values among those of all variants, and how many different ones there
-/// are.
+/// Rank of a variant's values among the `count` different values of all variants.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;
@@ -36,7 +35,7 @@ Rank rank_of(const json& variant, std::span<const json> variants,
 }  // namespace
 
 Look amplitude_look(double amplitude_rad, std::size_t k) {
-  constexpr std::array<std::size_t, 5> colours = {3, 6, 2, 0, 1};  // of safe_colours
+  constexpr std::array<std::size_t, 5> colours = {3, 6, 2, 0, 1};  // indices into safe_colours
   static_assert(colours.size() == published_amplitudes.size());
   const PublishedAmplitude& nearest = published_nearest(amplitude_rad);
   const auto place = static_cast<std::size_t>(&nearest - published_amplitudes.data());
@@ -65,8 +64,8 @@ Look Looks::of(RunGroup curve, const json& key) const {
   const std::span all(keys);
   Rank first = rank_of(variant, variants_, all.first(std::min<std::size_t>(1, all.size())));
   Rank rest = rank_of(variant, variants_, all.subspan(std::min<std::size_t>(1, all.size())));
-  // Colour and symbol change together where one key varies, and where the values of more keys would
-  // need a look twice: that gives 70 looks.
+  // Colour and symbol change together if only one key varies, or if the keys have more values than
+  // there are colours or symbols. 7 colours and 10 symbols then give 70 different looks.
   std::size_t dashes = rest.rank;
   if (rest.count <= 1 || first.count > safe_colours.size() || rest.count > curve_symbols) {
     first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;

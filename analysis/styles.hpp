@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours and symbols of variants: the same in every panel and figure of an experiment.
+// Colours and symbols of variants, which are equal in every panel and figure of an experiment.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 11> marker_names = {
     "none",        "square",      "circle",        "triangle",           "triangle_down", "diamond",
     "open_square", "open_circle", "open_triangle", "open_triangle_down", "open_diamond"};
 
-/// The five filled symbols, then the open ones.
+/// Series::point of the k-th curve: five filled symbols, then five open symbols.
 inline int curve_symbol(std::size_t k) {
   return (k / 5 % 2 == 0 ? 5 : 4) + 2 * static_cast<int>(k % 5);
 }
@@ -35,23 +35,23 @@ inline constexpr std::size_t curve_symbols = 10;
 
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
-  int point = 0;            ///< as Series::point
-  Join join = Join::line;   ///< of a curve without symbols: dashes once its colour occurs twice
+  int point = 0;            ///< like Series::point
+  Join join = Join::line;   ///< of a curve without symbols; dashes if its colour repeats
 };
 
-/// The look of one of the supplement's amplitudes, the same in all figures. Other amplitudes have
-/// the look of the k-th curve.
+/// The look of a curve of one amplitude. Each amplitude of the supplement has the same look in all
+/// figures. A curve of another amplitude has the look of the k-th curve.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
-/// Looks by the values of the keys that vary in the frame: the rank of the first key's value
-/// decides the colour, the rank of the other values the symbol, as far as there are colours and
-/// symbols. The supplement's amplitudes have their own colours (amplitude_look()).
+/// Gives each variant a look by the values of the keys that vary in the frame. The rank of the
+/// first key's value decides the colour. The rank of the other values decides the symbol. The
+/// amplitudes of the supplement have the colours of amplitude_look().
 class Looks {
  public:
   explicit Looks(const Frame& frame);
 
-  /// The look of a curve. If all its runs are of one variant, its swept values decide the look;
-  /// otherwise `key` does, the values that the runs have in common.
+  /// The look of a curve. If all its runs belong to one variant, the variant's swept values decide
+  /// the look. Otherwise `key` decides, which has the values that all runs of the curve share.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

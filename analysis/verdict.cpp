@@ -26,7 +26,8 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // The spread is the mean of both sides of the interval, of which one may be much longer.
+  // The spread averages both sides of the interval. If one side is much longer, the computed number
+  // may be too small, but it must exceed the present number.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 
@@ -68,14 +69,14 @@ std::string estimate_with_interval(const Verdict& verdict) {
                      100 * verdict.level, any_end ? end(low) + " to " + end(high) : end(low));
 }
 
-/// "3.3" of log2 3.3 and of log2 (1 / 3.3).
+/// A factor or its inverse, whichever exceeds 1: "3.3" for log2(3.3) and for log2(1 / 3.3).
 std::string factor(double log2) {
   const double value = std::exp2(std::abs(log2));
   return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
 }
 
-/// "the first is 2.1 times later (90 % interval: 1.3 to 3.4 times later)", or the bound that the
-/// interval gives where it has one end or none.
+/// "the first is 2.1 times later (90 % interval: 1.3 to 3.4 times later)". If an end of the
+/// interval is infinite, the text gives the bound at the other end, or says that there is no bound.
 std::string order_of_waits(const Verdict& verdict) {
   const auto times = [](double log2) {
     return fmt::format("{} times {}", factor(log2), log2 < 0 ? "earlier" : "later");
@@ -90,8 +91,8 @@ std::string order_of_waits(const Verdict& verdict) {
                        one_side ? factor(near) : times(low), times(one_side ? far : high));
   }
   const double end = std::isfinite(low) ? low : high;
-  if (!std::isfinite(end)) return fmt::format("no bound on the order of the two ({})", level);
-  // The bound of an interval that holds both orders limits only one of them.
+  if (!std::isfinite(end)) return fmt::format("no bound on the ratio of the cycles ({})", level);
+  // An interval that allows both "earlier" and "later" has a bound on only one of them.
   const bool least = std::isfinite(low) ? low >= 0 : high < 0;
   return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
                      least     ? ""

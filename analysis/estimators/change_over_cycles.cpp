@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The change of a column from the first to the last of two cycles, or steps of a stiffening.
+// The change of a column between two cycles of a shear, or between two steps of a stiffening.
 #include <fmt/format.h>
 
 #include "analysis/estimators.hpp"
@@ -29,7 +29,7 @@ Scalar between_cycles(const ClaimSpec& claim, const char* words,
 
 const Estimator change_over_cycles = {
     .name = "change",
-    .meaning = "value at the last less that at the first of `cycles`",
+    .meaning = "value at the last cycle of `cycles` minus value at the first cycle",
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return between_cycles(claim, "change",
@@ -38,7 +38,8 @@ const Estimator change_over_cycles = {
 
 const Estimator relative_fall = {
     .name = "relative_fall",
-    .meaning = "1 less the ratio of the values at the last and the first of `cycles`",
+    .meaning =
+        "1 minus the ratio of the value at the last cycle of `cycles` to the value at the first",
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return between_cycles(claim, "relative fall",

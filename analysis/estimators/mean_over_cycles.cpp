@@ -38,7 +38,7 @@ Scalar over_cycles(const std::string& name, const std::string& column, double fi
 
 const Estimator mean_over_cycles = {
     .name = "mean_over_cycles",
-    .meaning = "mean over the checkpoints of `cycles`, or the value at `at_cycle`",
+    .meaning = "mean over the checkpoints within `cycles`, or the value at `at_cycle`",
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return over_cycles(words_of_column(claim.compare), claim.compare,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the notes of verdicts have in common.
+// Parts of the notes of verdicts.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace shearcell {
 
 inline constexpr const char* no_group =
-    "there are no such runs, or they differ in another swept parameter too";
+    "the claim selects no runs, or its runs differ in another swept parameter too";
 
 inline void add_note(std::string& note, const std::string& text) {
   note += (note.empty() ? "" : "; ") + text;

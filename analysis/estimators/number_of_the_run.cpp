@@ -8,7 +8,7 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
   if (const Measure* measure = find_measure(claim.compare, MeasureKind::run)) {
     return {std::string(measure->words), std::string(measure->reach), measure->of_run};
   }
-  // An expression lacks what the first of its measures lacks.
+  // If measures of the expression are missing, the first missing measure gives the reason.
   const auto of = [number = NumberColumn(claim.compare),
                    names = names_in(claim.compare)](const FrameRun& run) {
     for (const std::string& name : names) {
@@ -26,7 +26,8 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
 
 const Estimator number_of_the_run = {
     .name = "number_of_run",
-    .meaning = "a number of the whole run, such as `onset_size_phi`, or an expression of them",
+    .meaning =
+        "a number of the whole run, such as `onset_size_phi`, or an expression of such numbers",
     .of_run = true,
     .scalar = scalar_of_run};
 

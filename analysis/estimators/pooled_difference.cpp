@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The difference between two sides whose runs also differ in other parameters, such as the
-// amplitude. Runs are compared within strata of equal parameters, and the strata are pooled.
+// amplitude. Runs with equal other parameters form a stratum. The two sides are compared within
+// each stratum, and the differences of all strata are averaged.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-/// The means of each stratum have their own variances; the degrees of freedom are Welch's. The
-/// weights do not depend on the values.
+/// A stratum with n and m runs on the two sides has the weight n m / (n + m). Each mean has its own
+/// variance, so t has Welch's degrees of freedom.
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Scalar number = estimator_by_keys(claim).scalar(claim);
   const RunGroup sides[] = {a, b};
-  std::vector<json> others;  // parameters without those that distinguish the two sides
+  std::vector<json> others;  // parameters of each run without the keys of `between`
   for (const RunGroup side : sides) {
     for (const FrameRun* run : side) {
       json& other = others.emplace_back(run->parameters);
@@ -100,8 +101,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
 const Estimator pooled_difference = {
     .name = "pooled_difference",
     .meaning =
-        "difference between runs that are equal in all other parameters, pooled over "
-        "these; `between` may name several variants",
+        "difference between the sides of `between` for runs with equal other parameters, averaged "
+        "over these parameters; each side may have several variants",
     .of_run = std::nullopt,
     .over_variants = true,
     .decide = decide_pooled,

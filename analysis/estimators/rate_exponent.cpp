@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exponent with which the rate of nucleation grows with a number of grains (nucleation.hpp).
+// The exponent of the rate of nucleation against a number of grains (nucleation.hpp).
 #include <fmt/format.h>
 
 #include "analysis/estimators.hpp"
@@ -13,7 +13,8 @@ std::string words_of_exponent(const ClaimSpec& claim) {
   return fmt::format("exponent of the rate against {}", claim.against);
 }
 
-/// The exponent less the published one, if there is one.
+/// Decides on the exponent minus the published exponent, which is 0 if the claim has none. Throws
+/// UsageError if `against` is not the number of grains of a region.
 Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
   const Region region = claim.against == grains_of(Region::core) ? Region::core : Region::interior;
   if (claim.against != grains_of(region)) {
@@ -38,23 +39,23 @@ Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup ru
   return decide(stated, fmt::format("{} less {}", words_of_exponent(claim), published), estimate,
                 estimate ? estimate->runs : runs.size(),
                 estimate ? fmt::format("maximum likelihood, {} onsets", onsets)
-                         : "three runs, and runs of two sizes with onsets at the same phi, are "
-                           "needed",
+                         : "at least three runs are needed, and cells of two sizes with onsets "
+                           "at the same phi",
                 std::move(entered));
 }
 
 }  // namespace
 
-const Estimator rate_exponent = {
-    .name = "rate_exponent",
-    .meaning =
-        "exponent with which the rate of onsets, at equal phi and amplitude, grows with "
-        "`against`: interior_grains or core_grains",
-    .key = "against",
-    .of_run = true,
-    .over_variants = true,
-    .one_side = true,
-    .decide = decide_exponent,
-    .words = words_of_exponent};
+const Estimator rate_exponent = {.name = "rate_exponent",
+                                 .meaning =
+                                     "exponent a of rate ~ n^a, for the rate of onsets at equal "
+                                     "phi and amplitude; `against` names "
+                                     "n, which is interior_grains or core_grains",
+                                 .key = "against",
+                                 .of_run = true,
+                                 .over_variants = true,
+                                 .one_side = true,
+                                 .decide = decide_exponent,
+                                 .words = words_of_exponent};
 
 }  // namespace shearcell

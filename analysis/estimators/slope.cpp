@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The slope of a number of the run against another column, by maximum likelihood over the runs
-// (censored.hpp).
+// The slope of one number per run against another column, by maximum likelihood (censored.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@ std::string words_of_slope(const ClaimSpec& claim) {
   return fmt::format("change of {} with {}", number_of_the_run.scalar(claim).name, claim.against);
 }
 
-/// `against` is taken at the first checkpoint of each run.
+/// x is the value of the column `against` at the first checkpoint of each run.
 Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
   const Scalar number = number_of_the_run.scalar(claim);
   const NumberColumn against(claim.against);
@@ -52,7 +51,7 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 
 const Estimator slope_against = {
     .name = "slope",
-    .meaning = "slope against the column `against` at each run's first checkpoint",
+    .meaning = "slope of the number against the value of `against` at each run's first checkpoint",
     .key = "against",
     .of_run = true,
     .over_variants = true,

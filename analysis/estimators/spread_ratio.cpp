@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ratio of the standard deviations of two numbers of the same runs, which are correlated:
-// E. J. G. Pitman, Biometrika 31, 9 (1939); W. A. Morgan, Biometrika 31, 13 (1939).
+// The ratio of the standard deviations of two correlated numbers of the same runs: E. J. G. Pitman,
+// Biometrika 31, 9 (1939); W. A. Morgan, Biometrika 31, 13 (1939).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ std::string words_of_ratio(const ClaimSpec& claim) {
                      claim.against);
 }
 
-/// Standard deviations are about the mean of each variant. With F the ratio of variances and r the
-/// correlation, the interval of the true ratio of variances is
+/// Deviations are from the mean of each variant. F is the ratio of the variances, r the correlation
+/// and t Student's quantile for f degrees of freedom. The interval of the true variance ratio is
 ///
 ///     F (K -+ sqrt(K^2 - 1)),   K = 1 + 2 (1 - r^2) t^2 / f,   f = runs - variants - 1
 Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
@@ -65,8 +65,8 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 const Estimator spread_ratio = {
     .name = "spread_ratio",
     .meaning =
-        "ratio of the standard deviations, within variants, of the number and of `against` "
-        "in the same runs, less 1",
+        "standard deviation of the number within variants, divided by the standard deviation of "
+        "`against` in the same runs, minus 1",
     .key = "against",
     .of_run = true,
     .over_variants = true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ratio of two groups' waiting times for an event, by the log-rank test.
+// The ratio of the waiting times of two groups for an event, by the log-rank test.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ std::string wait_in_words(std::span<const Waiting> runs) {
                      std::ranges::count(runs, false, &Waiting::observed), runs.size());
 }
 
-/// What the runs of a claim wait for.
+/// The event whose cycles the claim compares, in words: "phi >= 0.64" or "the onset".
 std::string event_of(const ClaimSpec& claim) {
   return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
 }
@@ -76,7 +76,8 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
   } else if (runs < least_runs) {
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   } else if (!estimate) {
-    add_note(note, fmt::format("{} is at cycle 0 in every run of one group, or in no run", event));
+    add_note(note, fmt::format("no ratio: {} is at cycle 0 in every run of one group, or in no run",
+                               event));
   }
   Table entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {
@@ -102,14 +103,14 @@ bool compares_waits(const ClaimSpec& claim) {
 
 const Estimator first_cycle_reached = {
     .name = "first_cycle",
-    .meaning = "log2 of the ratio of the cycles at which the number first `reaches` a value",
+    .meaning = "log2 of the ratio of the first cycles at which the number is at least `reaches`",
     .key = "reaches",
     .decide = decide_waits,
     .words = words_of_waits};
 
 const Estimator waiting_ratio = {
     .name = "waiting_ratio",
-    .meaning = "log2 of the ratio of the cycles of the onset; of `onset_size_cycle`",
+    .meaning = "log2 of the ratio of the cycles of the onset; only for `onset_size_cycle`",
     .of_run = true,
     .decide = decide_waits,
     .words = words_of_waits};

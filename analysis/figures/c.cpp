@@ -21,22 +21,22 @@
 namespace shearcell {
 namespace {
 
-/// Crystallites of every amplitude are followed over these cycles and every amplitude's n_bin,
-/// since the critical size depends on them.
+/// Numbers of cycles over which crystallites are followed. The critical size depends on this
+/// number. The supplement's n_bin of every amplitude is among the numbers.
 std::set<std::int64_t> cycles_to_follow() {
   std::set<std::int64_t> cycles = {1, 2, 5, 10, 20};
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// At which critical sizes of different amplitudes are compared. [choice]: sizes are known best
-/// there, since crystallites hardly change in one cycle and most of them have grown after ten.
+/// Number of cycles for comparing the critical sizes of amplitudes. [choice]: it gives the smallest
+/// errors, since crystallites hardly change in one cycle and most have grown after ten cycles.
 constexpr std::int64_t cycles_compared = 5;
 
-/// "Usually 6 to 10" simulations gave each of the supplement's critical sizes.
+/// Each critical size of the supplement comes from "usually 6 to 10" simulations.
 constexpr std::size_t published_runs = 8;
 
-/// The counts of each packing with at least one crystallite that could be followed over `cycles`
-/// cycles.
+/// Growth counts over `cycles` cycles, one entry for each packing. A packing is left out if none of
+/// its crystallites could be followed.
 std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   std::vector<GrowthBySize> all;
   for (const auto& [packing, members] : by_packing(runs)) {
@@ -58,9 +58,9 @@ std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
   return GrowthCurve(runs).critical_size();
 }
 
-/// Crystallites that are followed over so many cycles.
+/// Growth of the crystallites over a fixed number of cycles.
 struct GrowthAfter {
-  std::vector<GrowthBySize> runs;  ///< of each packing
+  std::vector<GrowthBySize> runs;  ///< counts of each packing
   std::optional<Estimate> critical;
 };
 
@@ -70,14 +70,14 @@ struct AmplitudeGrowth {
   double amplitude;
   const PublishedAmplitude* published;
   std::vector<const FrameRun*> all_runs;
-  std::map<std::int64_t, GrowthAfter> after;  ///< by cycles_to_follow()
+  std::map<std::int64_t, GrowthAfter> after;  ///< by number of cycles (cycles_to_follow())
   std::optional<double> onset_cycle;          ///< median over runs
   GrowthCurve curve;
   std::optional<Estimate> without_absorbed;
   std::optional<Estimate> without_vanished;
-  Interval repeated;  ///< of 90 % of critical sizes from published_runs
+  Interval repeated;  ///< 90 % interval of critical sizes from published_runs runs
 
-  /// Followed over the supplement's n_bin cycles.
+  /// Growth over the supplement's n_bin cycles.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
 };
 
@@ -108,7 +108,7 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs)
   return all;
 }
 
-/// Points of fewer crystallites are not drawn. [choice]
+/// Points with fewer crystallites than this are not drawn. [choice]
 constexpr std::size_t least_counted = 20;
 
 std::vector<ChartPoint> smooth_points(const AmplitudeGrowth& one) {
@@ -121,7 +121,7 @@ std::vector<ChartPoint> smooth_points(const AmplitudeGrowth& one) {
   return points;
 }
 
-/// Binned data, and the smooth curve with its band.
+/// Draws binned data as points, and the smooth curve with its error band.
 Chart chart_of(std::span<const AmplitudeGrowth> all) {
   Chart chart{
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 60, .clip = true},
@@ -197,8 +197,8 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// The critical size against the number of cycles over which crystallites are followed, with the
-/// supplement's for its own number of cycles.
+/// The critical size against the number of cycles over which crystallites are followed. The
+/// supplement's critical size is shown at the supplement's n_bin.
 Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
@@ -234,8 +234,8 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// Fig. 4(b) of the main text: with method 1 of section C the onset is the phi at which a curve
-/// reaches its critical size. No crystallite counts as one grain, as in method 2.
+/// Fig. 4(b) of the main text. In method 1 of section C the onset is the phi at which a curve
+/// reaches the critical size. A packing without crystallites counts as one grain, as in method 2.
 Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   PlotSpec plot{.name = "C_largest",
                 .y = "max(1,largest_crystallite)",
@@ -257,7 +257,7 @@ Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// The counts that give a critical size, of each run.
+/// For each run, the counts from which the critical size follows.
 Table growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
   Table entered =
       entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
@@ -283,7 +283,8 @@ std::string in_grains(const std::optional<Estimate>& size) {
   return size ? in_grains(size->value) : "none";
 }
 
-/// The supplement's number is from few runs and scatters as ours from so many would.
+/// The supplement's critical size comes from few runs. It is assumed to scatter as our critical
+/// size does in repetitions with published_runs runs.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const auto& [runs, critical] = one.published_bin();
   const double published = one.published->critical_size;
@@ -332,8 +333,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   return verdict;
 }
 
-/// That of the largest amplitude over that of the smallest, among those with a critical size for
-/// the same number of cycles. Runs of both amplitudes are taken as independent.
+/// Compares the critical sizes of the largest and the smallest amplitude that have a critical size
+/// after cycles_compared cycles. Runs of different amplitudes are treated as independent.
 Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
   std::vector<const AmplitudeGrowth*> sized;
   std::string note = fmt::format("crystallites followed over {} cycles", cycles_compared);

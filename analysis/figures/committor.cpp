@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure committor: the probability that a crystallite of n grains grows, from clones of states.
-// Each run is a clone: it begins with a recorded state to which noise was added. Clones of one
-// state have the same variant and the same parent stage. The supplement has no such figure.
+// Figure committor: the probability that a crystallite of n grains grows. Each run is a clone: it
+// begins with a recorded state to which noise was added. Clones of one state have the same variant
+// and the same parent stage. The supplement has no figure of this kind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,17 +21,18 @@
 namespace shearcell {
 namespace {
 
-/// The other numbers of cycles show how the result depends on cycles_gone.
+/// A crystallite is gone after this many cycles without a descendant. Verdicts use cycles_gone. The
+/// other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
-constexpr std::size_t chosen_rule = 1;  ///< the place of cycles_gone
-/// No critical size is defined if controls grow more often than this and at least as often as the
-/// smallest crystallites. [choice]
+constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
+/// No critical size is defined if the fraction of controls that grow exceeds this value and is at
+/// least the fraction of the smallest crystallites that grow. [choice]
 constexpr double rare = 0.1;
 
-/// What became of crystallites in the clones of their states.
+/// Numbers of clones, by the fate of a crystallite in them.
 struct Fates {
-  std::array<std::size_t, 4> clones = {};  ///< by Fate
-  std::size_t revived = 0;                 ///< of those that were gone
+  std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
+  std::size_t revived = 0;                 ///< gone at first, but a descendant grew later
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -48,8 +49,8 @@ struct Fates {
 /// The fates under each rule, one entry for each element of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
-/// A crystallite of a state with the fates of the state's clones. Size 0: a control, which is a
-/// state without crystallites.
+/// A crystallite of a recorded state, with its fates in the clones of this state. Size 0 means a
+/// control: a state without a crystallite of at least least_descendant grains.
 struct Subject {
   const FrameRun* run;  ///< the first clone
   std::int32_t size;
@@ -63,10 +64,10 @@ struct Amplitude {
   double published = 0;  ///< the supplement's critical size
   std::vector<Subject> crystallites = {}, controls = {};
   std::size_t states = 0;
-  std::size_t left_out = 0;  ///< states that have a crystallite of `grown_size` grains
+  std::size_t left_out = 0;  ///< states that begin with a grown crystallite
 };
 
-/// The maps of whole cycles from 0 on, up to the first that is missing.
+/// The crystallite maps of cycles 0, 1, 2, ... up to the first missing map.
 std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   std::vector<const CrystalliteMap*> maps;
   for (const CheckpointMeasures& checkpoint : run.checkpoints) {
@@ -81,7 +82,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
   return map.size.empty() ? 0 : std::ranges::max(map.size);
 }
 
-/// Adds the clones of one state.
+/// Adds the crystallites of one state, or the state as a control, with the fates in its clones.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -130,7 +131,7 @@ std::vector<Amplitude> amplitudes_of(std::span<const FrameRun> runs) {
   return all;
 }
 
-/// Sum over the subjects of low to high - 1 grains.
+/// Sum of the fates of all subjects that have from `low` to `high` - 1 grains.
 Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t low = 0,
              std::int32_t high = grown_size) {
   Fates sum;
@@ -153,8 +154,8 @@ std::optional<double> background(const Amplitude& one) {
 }
 
 /// For each packing, the numbers of clones whose crystallite grew or was gone, by size. Merged
-/// crystallites do not count. Undecided clones count as the fate `undecided`: grown, gone, or not
-/// at all.
+/// crystallites do not count. Undecided clones count as grown or gone if `undecided` has that
+/// value; otherwise they do not count.
 std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
                                               Fate undecided = Fate::undecided) {
   std::map<std::string_view, GrowthBySize> packings;
@@ -171,10 +172,10 @@ std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t 
   return all;
 }
 
-/// Why no critical size is defined; "" if one is.
+/// Why no critical size is defined; "" if it is defined.
 std::string why_undefined(const Amplitude& one) {
   const std::optional<double> q = background(one);
-  if (!q) return "the background is not known: no state is without crystallites";
+  if (!q) return "the background is not known, since every state has crystallites";
   const auto smallest =
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
@@ -184,14 +185,14 @@ std::string why_undefined(const Amplitude& one) {
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
-/// The size at which (p - q) / (1 - q) = 1/2, which is where delta_rho = 2 p - 1 = q. Empty if no
+/// The size at which (p - q) / (1 - q) = 1/2 or, equivalently, delta_rho = 2 p - 1 = q. Empty if no
 /// critical size is defined.
 std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   if (!why_undefined(one).empty()) return std::nullopt;
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
-/// A point of the drawing needs at least this many decided clones. [choice]
+/// Points with fewer decided clones than this are not drawn. [choice]
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {
@@ -276,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The rows that enter a verdict: one for each crystallite, and one of size 0 for each control.
+/// The rows that enter a verdict: for each rule, one row for each crystallite and each control.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -322,8 +323,9 @@ Verdict size_is_published(const Amplitude& one) {
       size, packings, note, fates_of({&one}));
 }
 
-/// The supplement's critical size grows between these two amplitudes. Their clones count as
-/// independent, since states of one packing at two amplitudes have nothing else in common.
+/// Compares the critical sizes of two amplitudes. In the supplement the critical size grows from
+/// the lower to the higher amplitude. Clones of different amplitudes count as independent, since
+/// their states have at most the packing in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;
@@ -332,9 +334,10 @@ Verdict size_grows(const Amplitude& low, const Amplitude& high) {
                                      high.amplitude, low.amplitude),
                  .claimed = Relation::higher,
                  .id = "committor.growth"},
-                "ratio of the critical sizes (half of the crystallites grow), minus 1", growth,
-                growth ? growth->runs : 0, note_on(low, before) + "; " + note_on(high, after),
-                fates_of({&low, &high}), Counted::runs_per_variant);
+                "ratio of the critical sizes (at which half of the crystallites grow), minus 1",
+                growth, growth ? growth->runs : 0,
+                note_on(low, before) + "; " + note_on(high, after), fates_of({&low, &high}),
+                Counted::runs_per_variant);
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ using MakeFigure = FigureResult(const Frame& frame);
 // Table I and the parameters of the runs.
 MakeFigure figure_table1;
 
-// Growth of crystallites; where they nucleate.
+// Growth of crystallites (C), and the places where crystallites nucleate (S7).
 MakeFigure figure_c, figure_s7;
 
-// Onsets as survival data: share of runs without one, and rate of nucleation against phi; that rate
-// for the grains at least 4 d from the walls.
+// The share of runs without an onset against the cycle, and the rate of nucleation against phi.
+// figure_nucleation_core: the rate for the grains at least 4 d from the walls.
 MakeFigure figure_nucleation, figure_nucleation_core;
 
-// The probability that a crystallite grows, from clones of its state.
+// The probability that a crystallite grows, from clones of recorded states.
 MakeFigure figure_committor;
 
 }  // namespace shearcell

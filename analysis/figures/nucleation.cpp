@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures nucleation and nucleation_core: the onset as survival data. The share of runs without one
-// against the cycle, and the rate of nucleation against phi. Not in the supplement.
+// Figures nucleation and nucleation_core: the share of runs without an onset against the cycle, and
+// the rate of nucleation against phi. The supplement has no figures of this kind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,9 +37,9 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// One curve for each group. Of several amplitudes each has its colour in all figures; of one
-/// amplitude the sizes differ in colour. With bins of phi, points are side by side in their bin.
-/// The first column of the table names the group.
+/// One curve for each group, whose name is in the table's column "group". If there are several
+/// amplitudes, colours show the amplitude, as in all figures; otherwise colours show the cell size.
+/// Within a bin of phi, the points of the groups are shifted to stand side by side.
 std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
   std::vector<Series> series;
   std::set<double> amplitudes;
@@ -88,7 +88,7 @@ Table survival_table(const Groups& groups) {
   return table;
 }
 
-/// Error of a Poisson count. None for one event: its bar would reach zero on a logarithmic axis.
+/// Poisson error of the rate. Empty for one event: its bar would reach zero on a log axis.
 TableCell error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
@@ -120,9 +120,9 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
   return table;
 }
 
-/// The exponent a of n^a, n the grains of the region, for a rate proportional to the area of the
-/// walls, N^(2/3), between the smallest and the largest cells. It is less than 2/3, since the share
-/// n / N grows with N. Not a number where those cells have no such grains.
+/// The exponent a of rate ~ n^a, with n the grains of the region, if the rate is proportional to
+/// the area of the walls, N^(2/3). The smallest and the largest cells determine a, which is less
+/// than 2/3, since the fraction n / N grows with N. Not a number unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
@@ -133,8 +133,8 @@ double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
 }
 
-/// The claim that the exponent is 1. The margin is half of the distance from 1 of the exponent for
-/// the area of the walls. No verdict with cells of one size.
+/// The verdict on the claim that the exponent is 1. The margin is half of the distance between 1
+/// and exponent_of_walls(). Empty if all cells have one size or that exponent is not below 1.
 std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
                                          const std::string& id, const std::string& text) {
   if (runs_by(runs, "grains").size() < 2) return {};

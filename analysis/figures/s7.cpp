@@ -20,14 +20,14 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t density_bins = 8;
-/// Centres of such crystallites cannot lie nearer to a plane than this [d]: interior grains begin
-/// 1.875 d inside a rough plane, and the crystallite has a radius. [choice]
+/// Centres of crystallites near the critical size are at least this far from a plane [d]: interior
+/// grains are 1.875 d or more inside a rough plane, and a crystallite has a radius. [choice]
 constexpr double inaccessible = 4;
 
 struct Places {
-  std::vector<std::vector<double>> packings;  ///< those with any; of all runs that begin with it
-  std::size_t runs = 0;                       ///< with any
-  std::size_t count = 0;
+  std::vector<std::vector<double>> packings;  ///< one list for each packing with nuclei
+  std::size_t runs = 0;                       ///< runs with nuclei
+  std::size_t count = 0;                      ///< places in all packings
 };
 
 Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
@@ -45,7 +45,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   return places;
 }
 
-/// The smallest cell among the runs, for which the inaccessible layer is the largest share.
+/// The width [d] of the narrowest cell, in which the inaccessible layers are the largest share.
 double smallest_width(RunGroup runs) {
   double width = infinite;
   for (const FrameRun* run : runs) {
@@ -59,12 +59,12 @@ double smallest_width(RunGroup runs) {
 
 /// One curve of a panel.
 struct Profile {
-  TableCell key;  ///< in the first column
+  TableCell key;  ///< value in the first column
   Text title;
   Places places;
 };
 
-/// Probability density over [0, 1] of one or more distributions.
+/// Probability densities of positions in [0, 1], one curve for each profile.
 Table density_table(std::string name, std::string first_column, Text x,
                     std::span<const Profile> profiles) {
   static const std::array<const char*, 4> colours = {"#000000", "#d55e00", "#0072b2", "#009e73"};
@@ -92,9 +92,9 @@ Table density_table(std::string name, std::string first_column, Text x,
   return table;
 }
 
-/// Share of the nuclei in one part of the cell less that in another, over all runs. `side` gives 1
-/// in the one part, -1 in the other, 0 elsewhere, and nothing where a nucleus is not counted. The
-/// bootstrap draws packings with all their runs.
+/// Decides on the share of nuclei in one part of the cell minus the share in another part, over all
+/// runs. `side` returns 1 in the first part, -1 in the second part, 0 elsewhere, and nothing if
+/// nuclei at this place do not count. The bootstrap draws packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
@@ -128,7 +128,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
                 std::move(entered));
 }
 
-/// The inner half of the accessible width is compared with the outer half.
+/// Compares the inner half of the accessible width with the outer half.
 Verdict uniform_in_the_middle(RunGroup runs) {
   const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
   return share_verdict(

@@ -17,13 +17,13 @@
 namespace shearcell {
 namespace {
 
-/// One row of Table I, or the time step, which follows from two of them.
+/// A row of Table I, or the time step, which follows from two rows.
 struct Parameter {
-  const char* name;  ///< with its unit
+  const char* name;  ///< ends in its unit
   Text symbol;
   const char* unit;
   double published;
-  std::string value;  ///< an expression of keys of a manifest; sweeping one of them varies it
+  std::string value;  ///< expression of manifest keys; a sweep of any key varies it
 };
 
 constexpr double pi = std::numbers::pi;
@@ -50,8 +50,8 @@ const std::vector<Parameter>& parameters() {
 struct Found {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
-  std::size_t runs = 0;  ///< that have the parameter
-  bool varied = false;   ///< by a sweep or a stiffening
+  std::size_t runs = 0;  ///< runs that have the parameter
+  bool varied = false;   ///< varied by a sweep or by stiffening
 
   void take(double value) {
     smallest = std::min(smallest, value);
@@ -107,7 +107,7 @@ Text range_text(const Found& found) {
   return number_text(found.smallest) + " – " + number_text(found.largest);
 }
 
-/// A heading and the row of the supplement; a row for each experiment follows.
+/// The first two rows of the drawn table: the headings, and the values of the supplement.
 TextTable heading() {
   TextTable text{.widths = {170},
                  .rows = {{{"experiment"}}, {{"supplement, Table I"}}},

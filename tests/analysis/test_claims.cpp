@@ -162,7 +162,7 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
-            "there are no such runs, or they differ in another swept parameter too");
+            "the claim selects no runs, or its runs differ in another swept parameter too");
 }
 
 TEST(Compare, PairsMustIncludeMostRuns) {
@@ -192,8 +192,8 @@ TEST(Compare, EqualSidesAreNoEvidence) {
   EXPECT_FALSE(same.runs_needed);
   EXPECT_EQ(same.note,
             "4 pairs of runs that share a packing; the numbers of both sides are equal to all "
-            "digits: usually both sides are the same computation up to here, which is no evidence "
-            "that they agree");
+            "digits, usually because both sides are the same computation; this is no evidence that "
+            "they agree");
   Runs constant = group(4, 0);
   for (FrameRun& run : constant) {
     for (CheckpointMeasures& checkpoint : run.checkpoints) checkpoint.measures.numbers["phi"] = 0.5;
@@ -372,14 +372,14 @@ TEST(PlannedLooks, GiveNoVerdictBetweenThem) {
   const Verdict early = at_looks(planned({1, 2}, 0.6, {3, 6}));
   EXPECT_EQ(early.ruling, Ruling::undecided);
   EXPECT_EQ(early.look, 0U);
-  EXPECT_TRUE(has(early.note, "2 of 6 seeds have ended; the next look is at 3"));
+  EXPECT_TRUE(has(early.note, "2 of 6 seeds have ended; the next look is at 3 seeds"));
   const Verdict gap = at_looks(planned({1, 3, 4, 5, 6}, 0.6, {3, 6}));
   EXPECT_EQ(gap.ruling, Ruling::undecided) << "never the first that finished";
-  EXPECT_TRUE(has(gap.note, "1 of 6 seeds have ended; the next look is at 3"));
+  EXPECT_TRUE(has(gap.note, "1 of 6 seeds have ended; the next look is at 3 seeds"));
   const Verdict between = at_looks(planned({1, 2, 3, 4}, 0.601, {3, 6}));
   EXPECT_EQ(between.ruling, Ruling::undecided);
   EXPECT_EQ(between.runs, 4U) << "numbers of all that have ended";
-  EXPECT_TRUE(has(between.note, "the next look is at 6"));
+  EXPECT_TRUE(has(between.note, "the next look is at 6 seeds"));
   EXPECT_TRUE(has(between.note, "with probability 0."));
 }
 
@@ -430,7 +430,7 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(has(verdict.note, "unplanned look, with 4 seeds more: 0.04"));
+  EXPECT_TRUE(has(verdict.note, "unplanned look with 4 seeds beyond the plan: 0.04"));
 }
 
 }  // namespace

@@ -193,8 +193,8 @@ TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
   const nlohmann::json early = claim(2);
   EXPECT_EQ(early.at("verdict"), "undecided");
   EXPECT_EQ(early.at("look"), 0);
-  EXPECT_TRUE(
-      has(early.at("note").get<std::string>(), "2 of 4 seeds have ended; the next look is at 3"));
+  EXPECT_TRUE(has(early.at("note").get<std::string>(),
+                  "2 of 4 seeds have ended; the next look is at 3 seeds"));
   EXPECT_TRUE(early.at("primary"));
   const nlohmann::json decided = claim(3);
   EXPECT_EQ(decided.at("verdict"), "agrees");
@@ -217,7 +217,7 @@ TEST_F(DrawFigure, CurvesByAKeyHaveItsLabelsAndPoolNoOtherKey) {
   };
   EXPECT_EQ(refusal(wanted_figures(store_, {"mean"}).figures.at(0)),
             "figure mean would average over the values of amplitude_rad that experiment tiny "
-            "sweeps; leave out its `by` for a curve of each variant");
+            "sweeps; remove its `by` to draw a curve for each variant");
   const std::string of_supplement = refusal({*find_figure("C"), "tiny"});
   EXPECT_TRUE(has(of_supplement, "the values of fluid"));
   draw("own", "each");

@@ -203,11 +203,11 @@ TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {
         {std::string(
              "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, of: {walls: rough}, "
              "published: {value: 1, source: a}}]\n"),
-         "2 variants have walls=rough; `of` must name one."},
+         "2 variants have walls=rough; `of` must name one variant."},
         {std::string(
              "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, published: {value: "
              "1, source: a}}]\n"),
-         "there are 2 variants; `of` must name one."},
+         "there are 2 variants; `of` must name one variant."},
         {std::string("claims: [{name: own, margin: 1, compare: phi/2, at_cycle: 3, of: {fluid: "
                      "still}, published: {value: 1, source: a}}]\n"),
          "it needs a checkpoint at cycle 3"}}) {
