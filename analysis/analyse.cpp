@@ -170,7 +170,8 @@ std::vector<Provider> packing_providers() {
                               {.classes = {"disordered", "FCC", "HCP"},
                                .whole = true,
                                .of_wall_grains = -1}),
-                    of_grains("crystallite", "1", "number of the grain's crystallite; 0 = none",
+                    of_grains("crystallite", "1",
+                              "number of the grain's crystallite, by lowest grain id; 0 = none",
                               "crystallites", {.whole = true, .of_wall_grains = -1})},
        .compute = grains_of}};
 }

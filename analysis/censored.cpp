@@ -43,8 +43,8 @@ Term gumbel(double z, bool censored) {
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// Row k of `terms` times the vector of parameters is z of value k. The parameters are h and the
-/// components of g. A fixed parameter has a column of zeros.
+/// Row k of `terms`, multiplied by the vector of parameters, gives z of value k. The parameters are
+/// h and the components of g. A fixed parameter has a column of zeros.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;
@@ -75,8 +75,9 @@ Expansion expanded(const Sample& sample, const Eigen::Vector3d& at) {
   return sum;
 }
 
-/// Maximizes ln L by Newton's method from `at` on, and returns ln L. A step that would lower ln L
-/// is halved. If the observed values do not scatter, h has no maximum and is stopped at 1e8.
+/// Maximizes ln L by Newton's method, starting from `at`, and returns the maximum. A step that
+/// would lower ln L is halved. Without scatter of the observed values ln L has no maximum; h then
+/// stops at 1e8.
 double maximize(const Sample& sample, Eigen::Vector3d& at) {
   Expansion here = expanded(sample, at);
   double gain = 1;
@@ -100,16 +101,16 @@ struct Fit {
   double sigma = 0;
 };
 
-/// Fits the mean of the values or, if `x` is given, their slope. `t` is Student's quantile for the
-/// interval; with t = 0 there is no interval.
+/// Fits the mean of the values or, if `x` is given, the slope of the values against x. `t` is
+/// Student's quantile for the interval; with t = 0 there is no interval.
 Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());
   const double slope = x.empty() ? 0 : 1;
-  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // weight: factor of the value in mu
+  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mu contains value * weight
   std::ranges::transform(values, y.begin(), &CensoredValue::value);
   std::ranges::copy(x, weight.begin());
-  const auto centred = [n](Eigen::VectorXd& numbers) {  // to mean 0 and variance 1
+  const auto centred = [n](Eigen::VectorXd& numbers) {  // shifts and scales to mean 0, variance 1
     numbers.array() -= numbers.mean();
     const double unit = numbers.norm() / std::sqrt(n);
     if (unit > 0) numbers /= unit;

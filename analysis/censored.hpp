@@ -31,20 +31,21 @@ struct CensoredValue {
 };
 
 /// Mean of the values. The distribution of phi at the onset is skewed, since its hazard rises with
-/// phi. If a value is censored, the interval is therefore the union of the intervals for a normal
-/// distribution and for a Gumbel distribution of smallest values, whose hazard is exponential. With
-/// fewer than two observed values the estimate is infinite, and the interval begins at the smallest
-/// value if the sign test allows this bound, 2^-n <= (1 - level) / 2.
+/// phi. If a value is censored, the interval is therefore the union of two intervals, from a normal
+/// distribution and from a Gumbel distribution of smallest values, whose hazard is exponential.
+/// With fewer than two observed values the estimate is infinite, and the interval begins at the
+/// smallest value if the sign test allows this bound: 2^-n <= (1 - level) / 2.
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 
 /// Difference mean(a) - mean(b), from the normal intervals of both means. The groups may differ in
 /// sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). Independent groups have Welch's
 /// degrees of freedom. If `paired`, a[k] and b[k] share a packing, and the errors of the means are
-/// correlated like the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)); a censored value has
-/// its expected residual. Pairs with censored values count. To treat a[k] - b[k] as one censored
-/// value would be biased, since b[k] decides whether the difference is censored. Without censoring
-/// the intervals are Welch's and Student's. Empty if a group has fewer than two observed values.
+/// correlated like the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)). The residual of a
+/// censored value is its expectation. Pairs with censored values count. Treating a[k] - b[k] as one
+/// censored value would be biased, since b[k] decides whether the difference is censored. Without
+/// censoring these are the intervals of Welch and of Student (pairs). Empty if a group has fewer
+/// than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);

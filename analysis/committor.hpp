@@ -30,7 +30,7 @@ std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 struct Followed {
   /// Grains in the largest descendant, for each cycle after the start; 0: no descendant.
   std::vector<std::int32_t> sizes = {};
-  /// True if another crystallite absorbed it in the cycle after the last entry of `sizes`.
+  /// True if another crystallite absorbed the followed one after the last cycle in `sizes`.
   bool merged = false;
 };
 
@@ -53,7 +53,7 @@ struct Ending {
 };
 
 /// The first event decides: a descendant has `grown_size` grains (grown), or no descendant exists
-/// for `cycles_without` consecutive cycles (gone). Without either event it may have merged.
+/// for `cycles_without` consecutive cycles (gone). Without these events, Followed::merged decides.
 Ending ending(const Followed& crystallite, std::size_t cycles_without);
 
 }  // namespace shearcell

@@ -99,7 +99,7 @@ int signature(const Bonds& bonds, std::size_t neighbour) {
          longest_chain(bonds, common);
 }
 
-// Numbers of neighbours with signatures `first` and `second`; zeros if any has another signature.
+// Numbers of neighbours with signatures `first` and `second`; {0, 0} if a neighbour has neither.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);
@@ -121,7 +121,7 @@ Lattice close_packed(std::span<const Neighbour> near) {
 }
 
 Lattice body_centred(std::span<const Neighbour> near) {
-  double side = 0;  // of the cubic cell, as a mean over both shells
+  double side = 0;  // mean side of the cubic cell, from both shells
   for (std::size_t a = 0; a < near.size(); ++a) {
     side += near[a].distance * (a < 8 ? 2 / std::numbers::sqrt3 : 1) / 14;
   }
@@ -131,8 +131,9 @@ Lattice body_centred(std::span<const Neighbour> near) {
 
 /// Adaptive common neighbour analysis of each grain (Stukowski, Modelling Simul. Mater. Sci. Eng.
 /// 20, 045021 (2012)). Wall grains are neighbours too. FCC and HCP are recognized by the 12 nearest
-/// neighbours, BCC by 14. Bonds are at most (1 + sqrt 2) / 2 times the mean distance of the 12
-/// neighbours, for BCC the side of the cubic cell. With fewer neighbours within 1.5 d, it is none.
+/// neighbours, BCC by 14. The longest bond is (1 + sqrt 2) / 2 times the mean distance of the 12
+/// neighbours or, for BCC, times the side of the cubic cell. A grain with fewer neighbours within
+/// 1.5 d has no lattice.
 std::vector<Lattice> lattices_of(const Checkpoint& c) {
   std::vector<Lattice> lattices;
   for (const std::vector<Neighbour>& of_grain :
@@ -165,9 +166,12 @@ std::vector<Provider> lattice_providers() {
            .parameters = interior_criteria(),
            .measures = {{"cna_crystalline_percent", "%",
                          "FCC and HCP grains among interior grains, by common neighbour analysis"},
-                        {"cna_fcc_percent", "%", "FCC grains, by common neighbour analysis"},
-                        {"cna_hcp_percent", "%", "HCP grains, by common neighbour analysis"},
-                        {"cna_bcc_percent", "%", "BCC grains, by common neighbour analysis"}},
+                        {"cna_fcc_percent", "%",
+                         "FCC grains among interior grains, by common neighbour analysis"},
+                        {"cna_hcp_percent", "%",
+                         "HCP grains among interior grains, by common neighbour analysis"},
+                        {"cna_bcc_percent", "%",
+                         "BCC grains among interior grains, by common neighbour analysis"}},
            .compute = compute},
           {.name = "grain_lattices",
            .parameters = nlohmann::json::object(),

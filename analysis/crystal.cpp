@@ -22,8 +22,8 @@ constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
 
-/// Sums of weight times Y_6m over bonds. Instead of Y_6m, (x + iy)^m times a polynomial in z is
-/// used, without the coefficient of Y_6m.
+/// Sums over bonds of weight times Y_6m(x, y, z), without the coefficient of Y_6m. What remains of
+/// Y_6m is (x + iy)^m times a polynomial in z.
 struct HarmonicSums {
   double order0 = 0;
   std::array<double, 6> real{};
@@ -79,8 +79,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   return values;
 }
 
-/// Throws AnalysisError unless ids ascend, each label belongs to a crystallite, sizes equal the
-/// counts of grains, no crystallite is empty, and centres and the cell are finite.
+/// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, sizes equal
+/// the counts of grains, no crystallite is empty, and centres and the cell are finite.
 void check(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
   if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");

@@ -34,7 +34,7 @@ Structure structure(double phi_local, double q6, double least_phi_local = crysta
                     double tolerance = q6_tolerance);
 
 struct Crystallites {
-  /// Number of each grain's crystallite, -1 for none. Numbers follow the lowest grain id.
+  /// Number of each grain's crystallite, -1 for none. Crystallites are ordered by lowest grain id.
   std::vector<std::int32_t> label;
   std::vector<std::int32_t> size;  ///< grains in each crystallite
   std::int32_t largest = 0;        ///< grains in the largest crystallite; 0 if there is none

@@ -66,7 +66,7 @@ template <>
 inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoint", "ends before",
                                                                 "begins after", "undefined");
 
-/// One number of a run.
+/// One number of a run, or the reason why it is missing.
 struct RunValue {
   double value = 0;
   Missing missing = Missing::nothing;
@@ -124,7 +124,7 @@ std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<co
 bool is_within(const nlohmann::json& value, const nlohmann::json& wanted);
 
 std::vector<const FrameRun*> pointers(std::span<const FrameRun> runs);
-/// Groups runs by a parameter, in ascending order. Runs in which it is not a number are left out.
+/// Groups runs by a parameter, ascending. Runs whose parameter is not a number are left out.
 std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun> runs,
                                                        const std::string& parameter);
 /// The number of variants among the runs.
@@ -136,8 +136,8 @@ const std::string& packing_of(const FrameRun& run);
 /// Groups the runs by packing_of(), in the order of `group`.
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
 PackingGroups by_packing(RunGroup group);
-/// Mean of `values`, which has one value for each run, over the runs of each packing, in the order
-/// of the runs. Values that are not finite are left out.
+/// For each packing the mean of the values of its runs. `values` has one value for each run; values
+/// that are not finite are left out. Packings are in the order of the runs.
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// Mean over runs of the measure at the first checkpoint of each run; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
@@ -145,9 +145,8 @@ double at_start(RunGroup runs, const std::string& measure);
 /// Writes parameters and their values as a text such as "fluid=still, walls=rough".
 std::string words_of(const nlohmann::json& values);
 
-/// Returns as few of the `keys` as distinguish all variants: without one of the returned keys, two
-/// variants would be equal. Of keys that change together only the first is returned. `variants` are
-/// objects of swept keys and values.
+/// Reduces `keys` to the keys that are needed to distinguish all variants. Of keys that change
+/// together only the first is returned. `variants` are objects of swept keys and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 /// The swept keys that distinguish the variants, by keys_telling_apart(). If `first` and other keys
@@ -157,8 +156,8 @@ std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
 /// The swept keys that distinguish the variants of the runs.
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
-/// For plots that draw one curve for each combination of the values of `keys`: a swept key over
-/// whose values a curve would average, or "" if there is none.
+/// A plot draws one curve for each combination of values of `keys`. Returns a swept key over whose
+/// values a curve would average; "" if there is none.
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
 /// Throws UsageError if averaged_key() finds a key. A key that changes together with `keys` is
 /// allowed. The message ends with `remedy`.

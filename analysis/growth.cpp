@@ -39,7 +39,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// Smooth delta_rho for each row of the sums. If all crystallites have one size, it is constant.
+/// Smooth delta_rho for each row of the sums; constant if all crystallites have one size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
@@ -67,8 +67,8 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size at which the summed excess has its maximum; minus infinity if size 1 has it
-/// too, infinity if the excess is nowhere positive.
+/// The largest size at which the summed excess has its maximum. Minus infinity if size 1 has the
+/// same maximum; infinity if no excess is positive.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -113,8 +113,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   }
   struct Outcome {
     std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
-    std::int32_t most = 0;                           // grains in the later crystallite `end`
-    std::size_t end = 0;                             // the one with most grains
+    std::int32_t most = 0;                           // grains in the crystallite `end`
+    std::size_t end = 0;                             // later crystallite with most of the grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {
@@ -140,7 +140,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     GrowthCount& count = counts[size];
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
-    } else if (2 * (size - larger - same) > size) {  // in smaller crystallites or in none
+    } else if (2 * (size - larger - same) > size) {  // most are in smaller ones or in none
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

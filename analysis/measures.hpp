@@ -27,7 +27,7 @@ struct FrameRun;  // analysis/frame.hpp
 struct RunValue;
 
 /// Increase this version with every change that may alter a bit of any result. Stored results of
-/// other versions are recomputed. tests/analysis/test_derived_measures.cpp has results to compare.
+/// other versions are recomputed. tests/analysis/test_derived_measures.cpp checks some results.
 inline constexpr std::uint64_t analysis_version = 2;
 
 /// A function measured on one packing, such as g(r): values y at ascending x.
@@ -72,7 +72,7 @@ struct Measure {
   /// The name in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
-  bool waits = false;           ///< it is the cycle of an event, and a run may end before the event
+  bool waits = false;           ///< cycle of an event; a run may end before the event
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
@@ -81,7 +81,7 @@ struct CycleEnergies {
 };
 
 /// Data of a checkpoint's run that providers need. The runner provides these data
-/// (experiments/runner/measure_sources.hpp), since analysis includes no manifests or protocols.
+/// (experiments/runner/measure_sources.hpp), since analysis depends on no manifests or protocols.
 struct RunFacts {
   nlohmann::json parameters = {};   ///< by key of the manifest
   std::optional<Drive> drive = {};  ///< only of a shear
@@ -121,21 +121,22 @@ struct Provider {
   nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
   std::vector<Measure> measures = {};  ///< either all or none are measures of each grain
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
-  /// each grain is an array. A measure that needs a missing checkpoint or a shear is left out.
+  /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
+  /// the measure needs.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
-  std::uint64_t cycles_back = 0;  ///< from the earlier checkpoint that is needed; 0: none
+  std::uint64_t cycles_back = 0;  ///< cycles to the earlier checkpoint that is needed; 0: none
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< computing time of a simulation, in words
   /// Reads and checks the parts of a result that are not measures.
   void (*read_more)(const nlohmann::json& result, Measures& measures) = nullptr;
 
-  /// Name and parameters as one text. Providers with equal texts make the same computation.
+  /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Results of `record` and `history` are cheap, and measures of each
-  /// grain would need more space than the checkpoint.
+  /// Whether results are stored. Results of `record` and `history` are cheap to compute, and
+  /// measures of each grain would need more space than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
-  /// Adds a result to `measures`. Throws AnalysisError if it is not a result of this provider.
+  /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.
   void read(const nlohmann::json& result, Measures& measures) const;
 };
 
@@ -154,7 +155,7 @@ inline constexpr const char* cost_provider = "cost";
 std::vector<const Measure*> all_measures(MeasureKind kind);
 /// The measure with this name and kind, or null. Numbers include counts.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
-/// The provider that computes a measure. It must exist.
+/// The provider that computes `measure`, which must belong to a provider.
 const Provider& provider_of(const Measure& measure);
 
 /// Encodes a result exactly, as CBOR (RFC 8949). Equal results have equal bytes.

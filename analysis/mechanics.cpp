@@ -59,7 +59,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
   const auto add = [&](const Contact& contact) {
     sums.squares += contact.overlap * contact.overlap;
-    // The arm ends in the middle of the overlap or, for a wall plane, on the plane.
+    // arm: from the grain's centre to the middle of the overlap or, for a wall plane, to the plane.
     const double arm = contact.kind == Contact::Kind::wall_plane ? 0.5 - contact.overlap
                                                                  : 0.5 * (1 - contact.overlap);
     const double moment = contact.overlap * arm;
@@ -79,7 +79,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   return sums;
 }
 
-// Sum over interior grains of (velocity - mean flow)^2 [d^2/s^2]. The flow is linear in y.
+// Sum over interior grains of (velocity - mean flow)^2 [d^2/s^2]. The mean flow is linear in y.
 double fluctuation(const State& state, GrainMask interior) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double count = 0, height = 0;

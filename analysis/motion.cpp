@@ -27,9 +27,8 @@ struct Motion {
   /// x. Affine shear of the whole cell displaces no grain.
   Eigen::Matrix3Xd displacement;
   /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998), as a mean over the neighbours at the
-  /// earlier time [d^2]: their squared relative motion after subtraction of the best affine
-  /// deformation. NaN for a grain with fewer than four neighbours, or with all of them in one
-  /// plane.
+  /// earlier time [d^2]: their squared relative motion without the best affine deformation. NaN for
+  /// a grain with fewer than four neighbours, or with all neighbours in one plane.
   std::vector<double> nonaffine;
 
   double square(std::size_t grain) const {  ///< squared displacement [d^2]
@@ -114,7 +113,7 @@ std::optional<Motion> motion_of(const MeasureInput& input) {
   return motion(*earlier, *input.checkpoint);
 }
 
-/// Means over interior grains. `lag` is the end of each name.
+/// Means over interior grains. The names of the means end in `lag`.
 nlohmann::json means_of(const Motion& moved, const GrainMeasures& grains, const std::string& lag) {
   const auto square = [&](std::size_t i) { return moved.square(i); };
   const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };

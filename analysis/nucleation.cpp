@@ -53,7 +53,7 @@ const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
   double logarithm = 0;    ///< up to a constant
-  double score = 0;        ///< derivative by the exponent; it falls as the exponent grows
+  double score = 0;        ///< derivative of `logarithm` by the exponent; falls with the exponent
   double information = 0;  ///< minus the derivative of the score
   std::map<std::string, double> score_of;  ///< score of each packing
 };

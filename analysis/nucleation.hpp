@@ -27,15 +27,15 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
-/// begins d outside the left plane and has the unit width + 2 d. y begins at the bottom plane and
-/// has the unit height. Positions are in [0, 1], but above 1 in cells higher than 1.675 L. [choice]
+/// begins d outside the left plane, in units of width + 2 d. y begins at the bottom plane, in units
+/// of the height. Positions are in [0, 1], but above 1 in cells higher than 1.675 L. [choice]
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
   double low = 0;
   double high = 0;
   double density = 0;           ///< P; its integral over [0, 1] is 1
-  std::optional<double> error;  ///< bootstrap, since one crystallite is seen many times
+  std::optional<double> error;  ///< by bootstrap, since one crystallite is seen many times
 };
 
 /// Density of all positions together; empty without positions. Each group has the positions of one
@@ -52,10 +52,11 @@ std::string grains_of(Region region);
 struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
-  std::size_t events = 0;   ///< number of onsets
-  double grain_cycles = 0;  ///< sum over runs of grains of the region times cycles without an onset
-  double rate = 0;          ///< events per grain and cycle
-  Interval interval;        ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
+  std::size_t events = 0;  ///< number of onsets
+  double grain_cycles =
+      0;              ///< grains of the region times cycles without an onset, summed over runs
+  double rate = 0;    ///< events per grain and cycle
+  Interval interval;  ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
 };
 
 /// Rates in ascending bins of phi. Bins in which no run spent time are left out. The time between
@@ -63,7 +64,7 @@ struct NucleationRate {
 /// growing crystallite. Runs that begin with a critical crystallite are left out.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
-/// Contribution of one run to a rate, from the time before its onset with phi in some range.
+/// Contribution of one run to a rate: the time before its onset while phi is in some range.
 struct Exposure {
   double phi = 0;  ///< mean over the cycles
   double cycles = 0;
@@ -80,11 +81,11 @@ inline constexpr double rate_step = 0.0005;
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
 /// each amplitude. The interval comes from the profile likelihood, since a run has at most one
 /// event (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). If runs share a packing, the
-/// interval allows a larger drop of the log-likelihood. The factor is the variance of the score
-/// between packings, divided by the variance between independent runs, but at least 1 (L. Pace, A.
-/// Salvan, N. Sartori, Stat. Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Also
-/// empty unless runs of a larger cell (more grains N) were at about the phi of some event, and runs
-/// of a smaller cell at about the phi of some event.
+/// interval allows a larger drop of the log-likelihood. The drop is multiplied by the ratio of the
+/// variance of the score between packings to the variance between independent runs, if the ratio is
+/// above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129 (2011)). Empty for fewer than
+/// least_runs packings. Also empty unless, for some event, a larger cell (more grains N) had about
+/// the same phi, and for some event a smaller cell.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -19,7 +19,7 @@ inline constexpr double interior_distance = 1.5;
 /// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls phi is lower
 /// and hardly any crystallite nucleates (experiments/results/README.md). [choice]
 inline constexpr double core_distance = 4;
-/// Distance of the wall surfaces inside the wall planes [d].
+/// How far the wall surfaces lie inside the wall planes [d].
 inline double wall_surface(const Cell& cell) {
   return cell.wall_grains.empty() ? 0.0 : rough_wall_surface;
 }

@@ -67,7 +67,8 @@ inline TwoSites operator*(const TwoSites& a, const TwoSites& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-// Values of a plane wave at a block of sites. All waves of such a small block fit into the cache.
+// Values of a plane wave at a block of sites. Blocks are small, so that all waves fit into the
+// cache.
 using Wave = std::array<TwoSites, 16>;
 constexpr auto kBlock = static_cast<Eigen::Index>(2 * std::tuple_size_v<Wave>);
 
@@ -93,7 +94,7 @@ std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
   return found;
 }
 
-using WaveVector = std::array<int, 3>;  // components in the reciprocal lattice
+using WaveVector = std::array<int, 3>;  // components in the basis of the reciprocal lattice
 
 // Largest component along each axis of wave vectors with |k| up to largest_wave_per_d.
 WaveVector largest_components(const InteriorRegion& region) {
@@ -107,7 +108,7 @@ WaveVector largest_components(const InteriorRegion& region) {
 
 constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
-// Calls visit(bin, n) for one of each pair k, -k up to largest_wave_per_d, in lexical order.
+// Calls visit(bin, n) for one of each pair k, -k with |k| < largest_wave_per_d, in lexical order.
 template <class Visit>
 void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
                           const Visit& visit) {
@@ -173,7 +174,7 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   struct Sum {
     std::size_t bin;
     WaveVector n;
-    TwoSites at;  // sums over sites of even and of odd index
+    TwoSites at;  // sums over sites with even and with odd index
   };
   std::vector<Sum> sums;
   for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector& n) {
@@ -182,7 +183,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
     ++taken[bin];
     sums.push_back({bin, n, {}});
   });
-  // An odd number of sites ends with a block of one site, which is added to the sum over all sites.
+  // If the number of sites is odd, the last block has one site. It is added to the total of both
+  // sums.
   for (Eigen::Index from = 0, size = 0; from < sites.cols(); from += size) {
     size = std::min(kBlock, sites.cols() - from);
     if (size > 1) size -= size % 2;

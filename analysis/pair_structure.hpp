@@ -6,8 +6,8 @@
 
 namespace shearcell {
 
-/// The region in which the centres of interior grains lie. Its borders in x and y are parallel to
-/// the walls; in z it is periodic.
+/// The region in which the centres of interior grains lie. The borders of the region are parallel
+/// to the walls; in z it is periodic.
 struct InteriorRegion {
   double left = 0;    ///< x of the left border at y = bottom [d]
   double bottom = 0;  ///< y of the lower border [d]

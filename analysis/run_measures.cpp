@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double rest_s = 0.1;
-/// Steps between samples of an energy ledger. They last one period of the fastest vibration at the
-/// time step of Table I.
+/// Steps between samples of an energy ledger. At the time step of Table I these steps last one
+/// period of the fastest vibration.
 constexpr std::uint64_t ledger_stride = 8;
 
 json drive_of(const MeasureInput& input) {
@@ -72,7 +72,7 @@ std::vector<Provider> run_providers() {
       {.name = "drive",
        .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
                     {"shear_rate_per_s", "1/s",
-                     "rate of change of shear_strain; after a pause, the rate at its end"}},
+                     "rate of change of shear_strain; after a pause, rate of the next shear"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
       // protocols/ledger.hpp defines the energy balance.
@@ -90,7 +90,7 @@ std::vector<Provider> run_providers() {
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
        .cost = "3 to 4 times as long as the cycle"},
-      // For protocols whose checkpoints have different shear rates (protocols/rest.hpp).
+      // Compares protocols whose checkpoints have different shear rates (protocols/rest.hpp).
       {.name = "rest",
        .parameters = {{"rest_s", rest_s}},
        .measures = {{.name = "phi_at_rest",
@@ -120,8 +120,8 @@ std::vector<Provider> run_providers() {
                      .unit = "s",
                      .meaning = "processor time of all steps of the run, over all attempts and "
                                 "machines, without its packing. A run counts in full for each "
-                                "experiment that shares it. Without a record it is wall-clock time "
-                                "times the number of processes",
+                                "experiment that shares it. If it was not recorded, it is "
+                                "wall-clock time times the number of processes",
                      .kind = MeasureKind::run,
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",

@@ -33,9 +33,9 @@ double least_squares_slope(std::span<const std::pair<double, double>> points);
 /// generator is counter-based, so the same input gives the same values.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
-/// Standard error of a statistic: its standard deviation over the selections times sqrt(runs /
-/// (runs - 1)), which for a mean agrees with over_runs(). Empty for fewer than two runs, or if
-/// fewer than half of the selections have a finite value.
+/// Standard error of a statistic: its standard deviation over the selections times the root of runs
+/// / (runs - 1). For a mean it agrees with over_runs(). Empty for fewer than two runs, or if fewer
+/// than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
 /// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
@@ -61,12 +61,12 @@ struct Interval {
 struct Estimate {
   double value = 0;
   Interval interval;       ///< an end may be infinite
-  std::size_t runs = 0;    ///< runs or pairs; of two groups, in the smaller one
+  std::size_t runs = 0;    ///< number of runs or pairs, or of runs in the smaller group
   std::size_t groups = 1;  ///< 1, or 2 independent groups
   double spread = 0;       ///< with n runs per group the standard error would be spread / sqrt(n)
 };
 
-/// Makes an estimate. The interval reaches `quantile` standard errors to both sides of its middle.
+/// Makes an estimate from an interval with a half-width of `quantile` standard errors.
 Estimate estimate_with(double value, const Interval& interval, double quantile, std::size_t runs);
 
 /// Applies an increasing function to the value and the interval, but not to the spread.
@@ -79,16 +79,16 @@ double normal_quantile(double probability);
 /// Mean of one value per run or pair of runs, with Student's interval, mean +- t s / sqrt(n).
 std::optional<Estimate> mean_of(std::span<const double> values, double level = confidence_level);
 
-/// mean(a) - mean(b) of two independent groups that may differ in variance: B. L. Welch,
+/// Difference mean(a) - mean(b) of two independent groups, whose variances may differ: B. L. Welch,
 /// Biometrika 34, 28 (1947).
 std::optional<Estimate> difference_of_means(std::span<const double> a, std::span<const double> b,
                                             double level = confidence_level);
 
 /// Estimates any statistic by the bootstrap, with the expanded percentile interval: T. C.
-/// Hesterberg, The American Statistician 69, 371 (2015). For a mean it is as long as Student's
-/// interval. The statistic of a selection may be infinite. A selection whose statistic is NaN
-/// widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or if the statistic
-/// of all runs together is not finite.
+/// Hesterberg, The American Statistician 69, 371 (2015). For a mean, this interval is as long as
+/// Student's interval. The statistic of a selection may be infinite. A selection whose statistic is
+/// NaN widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or if the
+/// statistic of all runs together is not finite.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
                                      double level = confidence_level);
 
@@ -97,8 +97,7 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
 /// if `runs` is less than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
 
-/// Standard deviation between the true means of groups, if the groups are a sample of many (one-way
-/// random effects).
+/// Standard deviation between the true means of groups in a one-way random-effects model.
 struct SpreadBetween {
   double value = 0;        ///< sqrt((variance between groups - variance within) / group size)
   double upper_limit = 0;  ///< exceeds the true value with the probability (1 + level) / 2
@@ -116,21 +115,21 @@ struct SpreadBetween {
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
-/// Ratio a / b of two independent estimates of positive quantities. Each end of the interval is at
-/// the root of the sum of squares of two errors: those of ln a and ln b that move the ratio to this
-/// end (G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008)).
+/// Ratio a / b of two independent estimates of positive quantities. At each end of the interval the
+/// errors of ln a and ln b that move the ratio to this end are added in quadrature: G. Y. Zou and
+/// A. Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
 /// Number of runs per group, or of pairs, for which an interval excludes a value at `distance` from
-/// the truth with 90 % probability; with `both_sides`, values on both sides of the truth. Normal
-/// theory, with Student's t for errors of both kinds: Chow, Shao and Wang, Sample Size Calculations
-/// in Clinical Research (2008), section 3.2. Empty if the number is more than 10000. The spread of
-/// a few runs is uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and
-/// 0.5 to 4 times the number found from 6 runs.
+/// the truth with 90 % probability. With `both_sides` it excludes the values on both sides of the
+/// truth. Normal theory, with Student's t for errors of both kinds: Chow, Shao and Wang, Sample
+/// Size Calculations in Clinical Research (2008), section 3.2. Empty if the number is more than
+/// 10000. The spread of a few runs is uncertain: the true number is 0.3 to 20 times the number
+/// found from 3 runs, and 0.5 to 4 times the number found from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
-// Waiting times, such as the cycle of the onset. A run that stops before its onset is censored.
+// Waiting times, such as the cycle of the onset. A run that stops before its event is censored.
 
 /// One run: the cycle of the event, or the last cycle if no event was observed (censored).
 struct Waiting {

@@ -56,7 +56,7 @@ constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
 constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
     {{0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}}};
 
-/// Number of the corner of t with this vertex. One of the corners must have it.
+/// Number of the corner of t with this vertex; one of the four corners must have it.
 std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
   return (t.vertex[1] == vertex ? 1U : 0U) + (t.vertex[2] == vertex ? 2U : 0U) +
          (t.vertex[3] == vertex ? 3U : 0U);
@@ -67,17 +67,15 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
 /// even if many sites share a plane or a sphere, and no bounded tetrahedron is flat. Circumcentres
 /// are computed in doubles if an error bound allows it, otherwise in exact arithmetic. Tetrahedra
-/// on one sphere therefore have one centre, and the faces between them have no area except
-/// rounding.
+/// on one sphere thus have one centre, and the faces between them have no area except rounding.
 ///
 /// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
-/// meet in a circumcentre use the same coordinates of it and the same decision whether it is inside
-/// a wall, so cells fit together without gaps. The polygon sides on a wall are the borders of the
-/// cells' faces on that wall.
+/// meet in a circumcentre use the same coordinates and the same decision whether the circumcentre
+/// is inside a wall, so cells fit together without gaps. The polygon sides on a wall are the
+/// borders of the cells' faces on that wall.
 ///
 /// Eight guards at the corners of a large cube bound every cell. They are farther away in z than
-/// any image that a cell may need, so no cell that passes the test in measure() has a face with a
-/// guard.
+/// any image that a cell may need. So no cell that passes the test in measure() touches a guard.
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
@@ -125,8 +123,8 @@ class Tessellation {
     std::int32_t value = -1;
   };
   using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Number, Kernel>;
-  // A number fits into the padding of CGAL's cell, a circumcentre does not. The small cells save a
-  // tenth of the time.
+  // CGAL's cell stores only a number, which fits into the padding of the cell. With the
+  // circumcentre in the cell, the computation would take a tenth longer.
   using CellBase =
       CGAL::Triangulation_cell_base_with_info_3<Number, Kernel,
                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
@@ -273,7 +271,7 @@ class Tessellation {
     return {-walls_[wall].normal[0], -walls_[wall].normal[1], 0};
   }
 
-  /// Updates reach_ with the sphere around a corner of a cell, through the site of the cell.
+  /// Updates reach_ with the sphere that has its centre at `corner` and passes through the site.
   void note_reach(const Eigen::Vector3d& corner, std::int32_t vertex) {
     const double radius = (corner - point(vertex)).norm();
     reach_ = std::max({reach_, corner.z() + radius - cell_.depth, radius - corner.z()});
@@ -337,8 +335,8 @@ class Tessellation {
   }
 
   /// Returns twice the vector area of the part of a face that lies inside the walls in `beyond`.
-  /// Also adds the contributions of its sides on walls to the areas of the wall faces of both
-  /// cells. The area of a wall face is the integral of -z du along its border, where u is
+  /// Also adds the contributions of the face's sides on walls to the areas of the wall faces of
+  /// both cells. The area of a wall face is the integral of -z du along its border, where u is
   /// horizontal. Sides along the edges of the box contribute nothing, since u is constant there.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();

@@ -24,7 +24,7 @@ struct VoronoiFace {
   NeighbourKind kind;
 };
 
-/// Arrays are indexed by the permanent ids of the grains; `faces` has the faces of all grains.
+/// Arrays have one entry per grain, by permanent id; `faces` has the faces of all grains.
 struct VoronoiDiagram {
   std::vector<double> volume;      ///< V_cell,i [d^3]
   std::vector<double> surface;     ///< A_i, the area of all faces, also on wall planes [d^2]
