@@ -24,7 +24,7 @@ struct PackingMeasures {
   double fcc_percent = 0;               ///< FCC grains among interior grains [%]
   double hcp_percent = 0;               ///< HCP grains among interior grains [%]
   double mean_overlap = 0;              ///< mean over touching pairs of grains, Eq. S3 [d]
-  double contacts_per_grain = 0;        ///< mean number, with grains and wall grains
+  double contacts_per_grain = 0;        ///< mean number of contacts with grains and wall grains
   std::size_t crystallites = 0;         ///< number of crystallites of interior grains
   std::size_t largest_crystallite = 0;  ///< grains in the largest crystallite
 };

@@ -140,7 +140,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     GrowthCount& count = counts[size];
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
-    } else if (2 * (size - larger - same) > size) {  // most are in smaller ones or in none
+    } else if (2 * (size - larger - same) > size) {
+      // Most grains are in smaller crystallites or in none.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

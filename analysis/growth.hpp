@@ -81,8 +81,7 @@ class GrowthCurve {
   std::optional<Estimate> critical_size() const;
   /// The size for which the excess of growing over shrinking crystallites of this size and above is
   /// largest. There the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer
-  /// et al., Ann. Math. Stat. 26, 641 (1955)). It is a check of critical_size() and has a larger
-  /// error.
+  /// et al., Ann. Math. Stat. 26, 641 (1955)). This checks critical_size(), with a larger error.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -80,8 +80,8 @@ struct CycleEnergies {
   double work_of_walls = 0, dissipation = 0, stored = 0;
 };
 
-/// Data of a checkpoint's run that providers need. The runner provides these data
-/// (experiments/runner/measure_sources.hpp), since analysis depends on no manifests or protocols.
+/// What providers know about the run of a checkpoint. The runner fills it in, since analysis does
+/// not depend on manifests and protocols (experiments/runner/measure_sources.hpp).
 struct RunFacts {
   nlohmann::json parameters = {};   ///< by key of the manifest
   std::optional<Drive> drive = {};  ///< only of a shear

@@ -48,7 +48,7 @@ std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touc
 struct ContactSums {
   Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();             // of interior grains [k d^2]
   double squares = 0;                                           // of overlaps [d^2]
-  Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // on each wall, by WallSide [k d]
+  Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // force on each wall [k d]
   std::vector<Touch> touches;
   std::vector<double> trace;  // virial trace of each grain [k d^2]
 };

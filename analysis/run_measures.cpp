@@ -80,12 +80,13 @@ std::vector<Provider> run_providers() {
        .parameters = {{"stride", ledger_stride}},
        .measures =
            {{"work_of_walls_per_cycle_J", "J",
-             "work of the tilting walls on all grains over the cycle that ends at the checkpoint"},
+             "work of the tilting walls on all grains in the cycle before the checkpoint"},
             {"dissipation_per_cycle_J", "J",
-             "energy that all grains and the moving wall lost by drag over this cycle"},
+             "energy that all grains and the moving wall lost by drag in the cycle before the "
+             "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
              "change of the elastic, kinetic and gravitational energy of all grains and of the "
-             "energy of the load over this cycle"}},
+             "energy of the load in the cycle before the checkpoint"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,

@@ -151,9 +151,9 @@ std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 /// wait between two cycles, the middle of these cycles. Empty if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
-/// The log-rank statistic: the events of `a`, minus the events expected if both groups wait alike,
-/// divided by the standard deviation of this difference. Positive if `a` has the earlier events; 0
-/// without events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
+/// The log-rank statistic: the events of `a`, minus the events expected if both groups wait equally
+/// long, divided by the standard deviation of this difference. Positive if `a` has the earlier
+/// events; 0 without events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
 /// log2 of the factor by which `a` waits longer than `b`. If the waits of `b` are multiplied by
