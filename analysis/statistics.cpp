@@ -317,7 +317,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   double negative = edges.front();  // the statistic is negative below this factor
   double positive = edges.back();   // the statistic is positive above this factor
   Interval kept{infinite, -infinite};
-  for (std::size_t k = 0; k <= edges.size(); ++k) {  // intervals between the edges
+  for (std::size_t k = 0; k <= edges.size(); ++k) {  // each interval between edges
     const double low = k == 0 ? -infinite : edges[k - 1];
     const double high = k == edges.size() ? infinite : edges[k];
     const double factor = k == 0 ? high - 1 : k == edges.size() ? low + 1 : (low + high) / 2;

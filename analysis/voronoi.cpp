@@ -103,10 +103,10 @@ class Tessellation {
     widen(first_margin_spacings * spacing);
   }
 
-  /// A cell is correct if each sphere around one of its corners and through its site lies within
-  /// the margin. More images can only make cells smaller, so the reach of these spheres is a
-  /// sufficient margin. A guard may make the reach far too large, so each pass at most doubles the
-  /// margin.
+  /// The sphere around a corner of a cell passes through the site of the cell. A cell is correct if
+  /// the spheres around all its corners lie within the margin. More images only make cells smaller,
+  /// so the reach of the spheres is a sufficient margin. A guard may make the reach far too large,
+  /// so each pass at most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
