@@ -35,9 +35,9 @@ Analysis analyse(const Checkpoint& checkpoint) {
   const Cell& cell = checkpoint.cell;
   const WallPose pose = pose_of(checkpoint);
   const Eigen::Matrix3Xd& positions = checkpoint.state.position;
-  // In a shallower cell a grain would overlap its own image.
+  // In a cell less than 1 d deep a grain would overlap its own periodic image.
   if (!(cell.depth >= 1)) {
-    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; 1 d is the least");
+    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; minimum: 1 d");
   }
   Analysis analysis;
   PackingMeasures& all = analysis.measures;
@@ -89,7 +89,7 @@ std::vector<Provider> packing_providers() {
   using enum MeasureKind;
   const auto scalars_of = [](const MeasureInput& input) -> nlohmann::json {
     const PackingMeasures& m = input.analysis->measures;
-    return {{"grains", m.grains},  // N is a parameter of the run, so it is not a measure
+    return {{"grains", m.grains},  // N is not a measure, because it is a parameter of the run
             {"interior_grains", m.interior_grains},
             {"phi", m.phi},
             {"phi_uncorrected", m.phi_uncorrected},
@@ -132,10 +132,10 @@ std::vector<Provider> packing_providers() {
                      .words = "N_inves"},
                     {"phi", "1", "volume fraction of interior grains (Eq. S4)"},
                     {"phi_uncorrected", "1",
-                     "phi_u, the same without a correction for overlaps (Eq. S2)"},
+                     "phi_u, volume fraction without correction for overlaps (Eq. S2)"},
                     {.name = "crystalline_percent",
                      .unit = "%",
-                     .meaning = "crystalline grains among interior grains",
+                     .meaning = "crystalline (FCC or HCP) grains among interior grains",
                      .words = "percentage crystalline"},
                     {"fcc_percent", "%", "FCC grains among interior grains"},
                     {"hcp_percent", "%", "HCP grains among interior grains"},
@@ -153,24 +153,25 @@ std::vector<Provider> packing_providers() {
        .read_more =
            [](const nlohmann::json&, Measures& measures) {
              const double phi = measures.number("phi");
-             if (phi < 0 || phi > 1) throw AnalysisError("a cached phi is not in 0 to 1");
+             if (phi < 0 || phi > 1) throw AnalysisError("a cached phi is not between 0 and 1");
            }},
       {.name = "grains",
        .parameters = crystal_criteria(),
-       .measures = {of_grains("phi_local", "1", "volume fraction of its cell", "phi_local",
-                              {.low = 0.55, .high = 0.74}),
+       .measures = {of_grains("phi_local", "1", "volume fraction in the grain's Voronoi cell",
+                              "phi_local", {.low = 0.55, .high = 0.74}),
                     of_grains("q6", "1", "bond order (Eq. S1)", "q6", {.low = 0.2, .high = 0.6}),
-                    of_grains("overlap", "d", "largest overlap", "largest overlap",
-                              {.low = 0, .high = 0.02}),
-                    of_grains("grain_pressure_Pa", "Pa", "of its contacts over its cell",
+                    of_grains("overlap", "d", "largest overlap with a grain or wall grain",
+                              "largest overlap", {.low = 0, .high = 0.02}),
+                    of_grains("grain_pressure_Pa", "Pa", "mean contact stress in the grain's cell",
                               "pressure", {.low = 0, .high = 3, .parameter = "pressure_Pa"}),
                     of_grains("contacts", "1", "contacts with grains and wall grains", "contacts",
                               {.low = 0, .high = 12, .whole = true}),
-                    of_grains("structure", "1", "0 disordered, 1 FCC, 2 HCP", "structure",
+                    of_grains("structure", "1", "0 = disordered, 1 = FCC, 2 = HCP", "structure",
                               {.classes = {"disordered", "FCC", "HCP"},
                                .whole = true,
                                .of_wall_grains = -1}),
-                    of_grains("crystallite", "1", "0 none; 1, 2, ... by their lowest grain id",
+                    of_grains("crystallite", "1",
+                              "number of the grain's crystallite, by lowest grain id; 0 = none",
                               "crystallites", {.whole = true, .of_wall_grains = -1})},
        .compute = grains_of}};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A column against volume fraction. Runs reach the same phi at different cycles, so they are
-// averaged at equal phi.
+// Means of a column in bins of the volume fraction phi. Runs reach the same phi at different
+// cycles, so runs are averaged at equal phi.
 #pragma once
 
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace shearcell {
 
-/// Width of the bins in phi, which begin at whole multiples of it. [choice]
+/// Width of the bins in phi. Bins begin at integer multiples of this width. [choice]
 inline constexpr double phi_bin = 0.002;
 
-/// Means over a run's checkpoints in one bin of phi.
+/// Means over the checkpoints of one run in one bin of phi.
 struct PhiMean {
   double phi = 0;
   double value = 0;
 };
 
-/// The bins in which a run has the column; ascending. Checkpoints without a finite phi are left
-/// out.
+/// Means of the column in each bin of phi, in ascending order. Checkpoints without a finite phi and
+/// bins without a finite value are left out.
 std::vector<PhiMean> means_over_phi(const FrameRun& run, const NumberColumn& column);
 
 }  // namespace shearcell

@@ -16,13 +16,13 @@ namespace {
 
 using CensoredValues = std::span<const CensoredValue>;
 
-/// Density over Q(z) of the standard normal distribution.
+/// Hazard of the standard normal distribution: its density divided by Q(z).
 double normal_hazard(double z) {
-  if (z > 25) return z + 1 / z - 2 / (z * z * z);  // erfc is 0 at about 38
+  if (z > 25) return z + 1 / z - 2 / (z * z * z);  // std::erfc underflows near z = 38
   return std::sqrt(2 / std::numbers::pi) * std::exp(-z * z / 2) / std::erfc(z / std::sqrt(2.0));
 }
 
-/// What one value at z = (y - mu) / sigma adds to ln L, and minus its derivatives.
+/// ln L of one value at z = (y - mu) / sigma, and minus its first and second derivatives by z.
 struct Term {
   double logarithm = 0;
   double first = 0;
@@ -37,25 +37,25 @@ Term normal(double z, bool censored) {
   return {z > -30 ? tail : 0, hazard, hazard * (hazard - z)};
 }
 
-/// Of smallest values; z is 0 at the mean.
+/// Gumbel distribution of smallest values, shifted so that z is 0 at the mean.
 Term gumbel(double z, bool censored) {
   const double power = std::exp(z -= std::numbers::egamma);
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// z of value k is row k of `terms` times the parameters: h, and those of g that are not fixed,
-/// whose columns are not 0.
+/// Row k of `terms`, multiplied by the vector of parameters, gives z of value k. The parameters are
+/// h and the components of g. A fixed parameter has a column of zeros.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;
   Distribution distribution;
 };
 
-/// ln L and its derivatives; the curvature has the opposite sign.
+/// ln L, its gradient (`slope`), and minus its matrix of second derivatives (`curvature`).
 struct Expansion {
   double logarithm = 0;
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d curvature = Eigen::Matrix3d::Identity() * 1e-12;  // columns of 0 do not move
+  Eigen::Matrix3d curvature = Eigen::Matrix3d::Identity() * 1e-12;  // keeps it invertible
 };
 Expansion expanded(const Sample& sample, const Eigen::Vector3d& at) {
   Expansion sum;
@@ -75,8 +75,9 @@ Expansion expanded(const Sample& sample, const Eigen::Vector3d& at) {
   return sum;
 }
 
-/// Moves to the most likely parameters by Newton's method. A step that would lower ln L is halved.
-/// Returns ln L. Without scatter of the observed values h is unlimited: it stops at 1e8.
+/// Maximizes ln L by Newton's method, starting from `at`, and returns the maximum. A step that
+/// would lower ln L is halved. Without scatter of the observed values ln L has no maximum; h then
+/// stops at 1e8.
 double maximize(const Sample& sample, Eigen::Vector3d& at) {
   Expansion here = expanded(sample, at);
   double gain = 1;
@@ -100,16 +101,16 @@ struct Fit {
   double sigma = 0;
 };
 
-/// The mean of the values, or with `x` their slope. `t` is the quantile for the interval,
-/// 0 for none.
+/// Fits the mean of the values or, if `x` is given, the slope of the values against x. `t` is
+/// Student's quantile for the interval; with t = 0 there is no interval.
 Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());
   const double slope = x.empty() ? 0 : 1;
-  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // weight: of the parameter in mu
+  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mu contains value * weight
   std::ranges::transform(values, y.begin(), &CensoredValue::value);
   std::ranges::copy(x, weight.begin());
-  const auto centred = [n](Eigen::VectorXd& numbers) {  // and of variance 1
+  const auto centred = [n](Eigen::VectorXd& numbers) {  // shifts and scales to mean 0, variance 1
     numbers.array() -= numbers.mean();
     const double unit = numbers.norm() / std::sqrt(n);
     if (unit > 0) numbers /= unit;
@@ -154,7 +155,7 @@ std::vector<double> plain(CensoredValues values) {
   return numbers;
 }
 
-/// (y - mean) / sigma, of a censored value its expectation, less their mean.
+/// Residuals (y - mean) / sigma, minus their mean. A censored value has its expected residual.
 Eigen::VectorXd residuals(CensoredValues values, const Fit& fit) {
   Eigen::VectorXd found(std::ssize(values));
   std::ranges::transform(values, found.begin(), [&fit](const CensoredValue& one) {
@@ -224,7 +225,7 @@ std::optional<Estimate> censored_slope(CensoredValues values, std::span<const do
   const double t = quantile_at(level, static_cast<double>(values.size() - 2));
   const Fit found = fitted(values, x, t);
   Estimate slope = estimate_with(found.value, found.interval, t, values.size());
-  double low = infinite, high = -infinite;  // x of the observed values
+  double low = infinite, high = -infinite;  // range of x of the observed values
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!values[k].censored) low = std::min(low, x[k]), high = std::max(high, x[k]);
   }

@@ -20,12 +20,11 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
   return grains;
 }
 
-/// Grains that a crystallite shares with the followed one and with crystallites of the cycle
-/// before.
+/// Grains that a crystallite shares with crystallites of earlier cycles.
 struct Origin {
-  std::size_t own = 0;                           ///< followed
-  std::size_t last = 0;                          ///< of the descendants that were last
-  std::map<std::int32_t, std::size_t> of_other;  ///< by label; without followed grains
+  std::size_t own = 0;                           ///< remembered grains of the followed crystallite
+  std::size_t last = 0;                          ///< grains of the last descendants
+  std::map<std::int32_t, std::size_t> of_other;  ///< grains from other crystallites, by label
 
   bool continues_another() const {
     return std::ranges::any_of(of_other, [&](const auto& other) { return other.second > own; });
@@ -55,7 +54,7 @@ Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t labe
     const CrystalliteMap &before = *maps[cycle - 1], &now = *maps[cycle];
     Grains own;
     for (const Grains& grains : recent) own.insert(grains.begin(), grains.end());
-    std::map<std::int32_t, std::int32_t> other;  // labels of grains that were in other crystallites
+    std::map<std::int32_t, std::int32_t> other;  // label by grain, if not followed
     for (std::size_t k = 0; k < before.grain.size(); ++k) {
       const bool is_other =
           !descendants.contains(before.label[k]) && !own.contains(before.grain[k]);

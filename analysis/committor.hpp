@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fates of a crystallite in the clones of a recorded state: grown, gone or merged.
+// Whether a crystallite grows, disappears or merges in each clone of a recorded state.
 #pragma once
 
 #include <cstddef>
@@ -11,51 +11,49 @@
 
 namespace shearcell {
 
-/// Fewest grains of a descendant. A state whose crystallites all have fewer grains is a control.
-/// [choice]
+/// Fewest grains of a descendant. A state with only smaller crystallites is a control. [choice]
 inline constexpr std::int32_t least_descendant = 3;
-/// Grains of a descendant from which on the followed crystallite has grown. [choice]
+/// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;
-/// A crystallite is gone after this many cycles in a row without a descendant. [choice]
+/// A crystallite is gone after this number of consecutive cycles without a descendant. [choice]
 inline constexpr std::size_t cycles_gone = 2;
-/// Size bins of the followed crystallites: 3 and 4 grains, 5 to 7, 8 to 12, 13 to 20. In each state
-/// at most one crystallite of each bin is followed. [choice]
+/// Lower limits of the size bins of followed crystallites: 3 to 4, 5 to 7, 8 to 12 and 13 to 20
+/// grains. In each state at most one crystallite of each bin is followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// The grains of a descendant are remembered for this many cycles. [choice]
+/// Number of cycles for which the grains of descendants are remembered. [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
-/// Labels of the crystallites to follow: in each size bin, the one with the lowest grain id.
+/// Labels of the crystallites to follow: in each size bin the one with the lowest grain id.
 std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 
-/// A crystallite in one clone.
+/// The followed crystallite in one clone.
 struct Followed {
-  /// Grains of its largest descendant, one number for each cycle after the start; 0 in a cycle
-  /// without a descendant.
+  /// Grains in the largest descendant, for each cycle after the start; 0: no descendant.
   std::vector<std::int32_t> sizes = {};
-  /// Another crystallite swallowed it in the cycle after the last of `sizes`, where following ends.
+  /// True if another crystallite absorbed the followed one after the last cycle in `sizes`.
   bool merged = false;
 };
 
-/// Follows crystallite `label` of the first map through the other maps, one for each cycle.
+/// Follows crystallite `label` of maps[0] through the later maps. There is one map for each cycle.
 ///
-/// The remembered grains are the grains of all descendants in the last three cycles that had a
-/// descendant. A later crystallite of at least `least_descendant` grains is a descendant if it has
-/// a remembered grain, unless it shares more grains with a crystallite of the previous cycle that
-/// was no descendant: then it continues that crystallite. The followed crystallite is swallowed if
-/// there is no descendant and a continued crystallite has at least half of the last descendants'
-/// grains.
+/// Remembered grains are the grains of all descendants in the last `remembered_cycles` cycles that
+/// had a descendant. A crystallite of at least `least_descendant` grains is a descendant if it has
+/// a remembered grain. The exception is a crystallite that shares more grains with a crystallite of
+/// the previous cycle that was not a descendant: it continues that other crystallite. The followed
+/// crystallite has merged if there is no descendant, and a crystallite that continues another one
+/// has at least half of the grains of the last descendants.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
-/// `undecided`: the clone ends before the fate is known.
+/// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.
 enum class Fate { undecided, grown, gone, merged };
 
 struct Ending {
   Fate fate = Fate::undecided;
-  bool revived = false;  ///< a descendant appeared and grew after the crystallite was gone
+  bool revived = false;  ///< a descendant reached `grown_size` after the crystallite was gone
 };
 
-/// The first of these events decides: a descendant has `grown_size` grains (grown), or there has
-/// been no descendant for `cycles_without` cycles in a row (gone).
+/// The first event decides: a descendant has `grown_size` grains (grown), or no descendant exists
+/// for `cycles_without` consecutive cycles (gone). Without these events, Followed::merged decides.
 Ending ending(const Followed& crystallite, std::size_t cycles_without);
 
 }  // namespace shearcell

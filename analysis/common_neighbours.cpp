@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lattice of each grain by common neighbours, wall grains included.
+// Lattice of each grain by common neighbour analysis. Wall grains count as neighbours.
 
 #include <algorithm>
 #include <array>
@@ -18,11 +18,11 @@ namespace {
 
 enum class Lattice : std::uint8_t { none, fcc, hcp, bcc };
 
-constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are within 1.2
+constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are within 1.2 d
 constexpr std::size_t kMost = 14;
-using Bonds = std::array<std::uint32_t, kMost>;  // a bit for each neighbour it is bonded to
+using Bonds = std::array<std::uint32_t, kMost>;  // bit b of entry a: neighbours a and b are bonded
 
-// Halfway between the first and the second shell of FCC, in units of the first.
+// Longest bond: halfway between the first and second shells of FCC, in units of the first.
 const double kCut = 0.5 * (1 + std::numbers::sqrt2);
 
 struct Neighbour {
@@ -31,7 +31,7 @@ struct Neighbour {
   Eigen::Vector3d separation;  // from the grain to the neighbour's nearest image [d]
 };
 
-// The neighbours of each grain, nearest first; at equal distances in the order of the sites.
+// Neighbours of each grain, sorted by distance and, at equal distance, by site number.
 std::vector<std::vector<Neighbour>> neighbours_of_all(const Cell& cell, const WallPose& pose,
                                                       const Eigen::Matrix3Xd& grains) {
   std::vector<std::vector<Neighbour>> near(static_cast<std::size_t>(grains.cols()));
@@ -64,7 +64,7 @@ Bonds find_bonds(std::span<const Neighbour> near, double cut) {
   return bonds;
 }
 
-// Bonds among the neighbours `members`.
+// Number of bonds between the neighbours in the bit set `members`.
 int bonds_among(const Bonds& bonds, std::uint32_t members) {
   int ends = 0;
   for (std::uint32_t rest = members; rest != 0; rest &= rest - 1) {
@@ -73,7 +73,7 @@ int bonds_among(const Bonds& bonds, std::uint32_t members) {
   return ends / 2;
 }
 
-// Number of bonds in the largest connected part of the graph of the members.
+// Number of bonds in the largest connected group of neighbours in `members`.
 int longest_chain(const Bonds& bonds, std::uint32_t members) {
   int longest = 0;
   for (std::uint32_t left = members; left != 0;) {
@@ -90,15 +90,16 @@ int longest_chain(const Bonds& bonds, std::uint32_t members) {
   return longest;
 }
 
-// The indices of Honeycutt and Andersen, J. Phys. Chem. 91, 4950 (1987), of a pair of neighbours:
-// common neighbours, bonds among them, bonds of the longest chain; 421 as one number.
+// Indices of Honeycutt and Andersen, J. Phys. Chem. 91, 4950 (1987), for a grain and one neighbour:
+// number of common neighbours, of bonds between these, and of bonds in their longest chain. The
+// three digits form one number, such as 421.
 int signature(const Bonds& bonds, std::size_t neighbour) {
   const std::uint32_t common = bonds[neighbour];
   return 100 * std::popcount(common) + 10 * bonds_among(bonds, common) +
          longest_chain(bonds, common);
 }
 
-// Number of neighbours with each of two signatures; zeros if a neighbour has another signature.
+// Numbers of neighbours with signatures `first` and `second`; {0, 0} if a neighbour has neither.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);
@@ -120,7 +121,7 @@ Lattice close_packed(std::span<const Neighbour> near) {
 }
 
 Lattice body_centred(std::span<const Neighbour> near) {
-  double side = 0;  // of the cubic cell, from both shells
+  double side = 0;  // mean side of the cubic cell, from both shells
   for (std::size_t a = 0; a < near.size(); ++a) {
     side += near[a].distance * (a < 8 ? 2 / std::numbers::sqrt3 : 1) / 14;
   }
@@ -128,10 +129,11 @@ Lattice body_centred(std::span<const Neighbour> near) {
   return first_shell == 8 && second_shell == 6 ? Lattice::bcc : Lattice::none;
 }
 
-/// Adaptive common neighbour analysis (Stukowski, Modelling Simul. Mater. Sci. Eng. 20, 045021
-/// (2012)) of each grain. Wall grains are neighbours too. FCC and HCP are decided by the 12 nearest
-/// neighbours, with bonds up to (1 + sqrt 2) / 2 times their mean distance, BCC by 14. A grain with
-/// fewer neighbours within 1.5 d is in no lattice.
+/// Adaptive common neighbour analysis of each grain (Stukowski, Modelling Simul. Mater. Sci. Eng.
+/// 20, 045021 (2012)). Wall grains are neighbours too. FCC and HCP are recognized by the 12 nearest
+/// neighbours, BCC by 14. The longest bond is (1 + sqrt 2) / 2 times the mean distance of the 12
+/// neighbours or, for BCC, times the side of the cubic cell. A grain with fewer neighbours within
+/// 1.5 d has no lattice.
 std::vector<Lattice> lattices_of(const Checkpoint& c) {
   std::vector<Lattice> lattices;
   for (const std::vector<Neighbour>& of_grain :
@@ -164,15 +166,18 @@ std::vector<Provider> lattice_providers() {
            .parameters = interior_criteria(),
            .measures = {{"cna_crystalline_percent", "%",
                          "FCC and HCP grains among interior grains, by common neighbour analysis"},
-                        {"cna_fcc_percent", "%", "FCC grains likewise"},
-                        {"cna_hcp_percent", "%", "HCP grains likewise"},
-                        {"cna_bcc_percent", "%", "BCC grains likewise"}},
+                        {"cna_fcc_percent", "%",
+                         "FCC grains among interior grains, by common neighbour analysis"},
+                        {"cna_hcp_percent", "%",
+                         "HCP grains among interior grains, by common neighbour analysis"},
+                        {"cna_bcc_percent", "%",
+                         "BCC grains among interior grains, by common neighbour analysis"}},
            .compute = compute},
           {.name = "grain_lattices",
            .parameters = nlohmann::json::object(),
            .measures = {{.name = "lattice",
                          .unit = "1",
-                         .meaning = "by common neighbours: 0 none, 1 FCC, 2 HCP, 3 BCC",
+                         .meaning = "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
                          .kind = MeasureKind::grains,
                          .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
                                    .whole = true,

@@ -17,12 +17,13 @@ namespace shearcell {
 namespace {
 
 // (4 pi / 13) times the square of the coefficient of Y_6m, for m = 0..6. Orders m and -m give equal
-// squares, so those above 0 count twice.
+// squares, so each order m > 0 counts twice.
 constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
 
-/// Sums over bonds of w Y_6m(x, y, z) without its coefficient: (x + iy)^m times a polynomial in z.
+/// Sums over bonds of weight times Y_6m(x, y, z), without the coefficient of Y_6m. What remains of
+/// Y_6m is (x + iy)^m times a polynomial in z.
 struct HarmonicSums {
   double order0 = 0;
   std::array<double, 6> real{};
@@ -59,7 +60,7 @@ struct HarmonicSums {
 
 using nlohmann::json;
 
-static_assert(std::endian::native == std::endian::little, "stored maps hold native numbers");
+static_assert(std::endian::native == std::endian::little, "stored maps are little-endian");
 
 json packed(const std::vector<std::int32_t>& values) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
@@ -67,39 +68,39 @@ json packed(const std::vector<std::int32_t>& values) {
 }
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw AnalysisError("these are not the crystallites of a checkpoint: " + why);
+  throw AnalysisError("the stored map of crystallites is invalid: " + why);
 }
 
 std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   const auto& bytes = result.at(key).get_binary();
-  if (bytes.size() % 4 != 0) refuse(std::string(key) + " has a broken number");
+  if (bytes.size() % 4 != 0) refuse(std::string(key) + " has an incomplete number");
   std::vector<std::int32_t> values(bytes.size() / 4);
   std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(values.data()));
   return values;
 }
 
-/// Throws unless ids ascend, labels name crystallites, sizes count their grains, no crystallite is
-/// empty, and centres and the cell are finite.
+/// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, sizes equal
+/// the counts of grains, no crystallite is empty, and centres and the cell are finite.
 void check(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
   if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
   std::vector<std::int32_t> count(map.size.size());
   for (std::size_t k = 0; k < map.grain.size(); ++k) {
     const std::int32_t before = k == 0 ? -1 : map.grain[k - 1];
-    if (map.grain[k] <= before) refuse("grains do not ascend");
+    if (map.grain[k] <= before) refuse("grain ids do not ascend");
     const auto label = static_cast<std::size_t>(map.label[k]);
-    if (map.label[k] < 0 || label >= count.size()) refuse("a label without a crystallite");
+    if (map.label[k] < 0 || label >= count.size()) refuse("a label has no crystallite");
     ++count[label];
   }
-  if (count != map.size) refuse("sizes do not count the grains");
-  if (std::ranges::count(count, 0) > 0) refuse("a crystallite without grains");
+  if (count != map.size) refuse("sizes differ from the counts of grains");
+  if (std::ranges::count(count, 0) > 0) refuse("a crystallite has no grains");
   const bool finite =
       std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&
       std::isfinite(map.width) && std::isfinite(map.top - map.bottom);
-  if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("they lie in no cell");
+  if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("a centre or the cell is invalid");
 }
 
-/// Writes arrays as little-endian bytes and reals as JSON numbers.
+/// Writes arrays of integers as little-endian bytes and real numbers as JSON numbers.
 json packed_map(const MeasureInput& input) {
   const CrystalliteMap& map = input.analysis->crystallites;
   json centres = json::array();
@@ -113,7 +114,7 @@ json packed_map(const MeasureInput& input) {
           {"top_d", map.top}};
 }
 
-/// Reads what the function above wrote. Throws AnalysisError if the arrays do not fit together.
+/// Reads the result of packed_map(). Throws AnalysisError if the arrays do not match.
 void read_map(const json& result, Measures& measures) {
   CrystalliteMap map;
   map.grain = unpacked(result, "grain");
@@ -162,7 +163,7 @@ Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::ui
   }
   Crystallites result;
   result.label.assign(count, -1);
-  std::vector<std::int32_t> label_of(count, -1);  // of the set that a grain stands for
+  std::vector<std::int32_t> label_of(count, -1);  // label of each set, by its representative grain
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
     std::int32_t& label = label_of[sets.find_set(i)];

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error that analysis throws when its input is not a packing that it can measure.
+// The error of the analysis for input that it cannot measure.
 #pragma once
 
 #include <stdexcept>
 
 namespace shearcell {
 
-/// Says which grain, figure or file is at fault, and why.
+/// The message names the grain, figure or file at fault, and the reason.
 class AnalysisError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -29,20 +29,19 @@ bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Numbers, names and other single characters, without spaces; of a text that is too long only the
-/// beginning, because std::regex recurses for each character.
+/// Splits a text into numbers, names and other single characters, without spaces. The end of a text
+/// that is too long is left out, because std::regex recurses for each character.
 std::vector<std::string> tokens_of(std::string_view text) {
   text = text.substr(0, longest_expression + 1);
   static const std::regex token("[0-9.][0-9.]*(?:[eE][-+]?[0-9]*)?|[A-Za-z_][A-Za-z_0-9]*|[^ ]");
   return {std::cregex_token_iterator(text.data(), text.data() + text.size(), token), {}};
 }
 
-/// Whether a token is the name of a function: a bracket follows.
+/// Whether token k is the name of a function: a bracket follows it.
 bool is_called(const std::vector<std::string>& tokens, std::size_t k) {
   return k + 1 < tokens.size() && tokens[k + 1] == "(";
 }
 
-/// A parser that knows the names, and pi.
 struct Parser {
   mu::Parser parser;
   std::vector<std::string> names;

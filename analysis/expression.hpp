@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arithmetic of named numbers, as plots and claims of a manifest state it: "1/period_s". The text
-// is not trusted.
+// Arithmetic expressions of named numbers, such as "1/period_s" in the plots and claims of a
+// manifest. The text of an expression is not trusted.
 #pragma once
 
 #include <functional>
@@ -10,25 +10,26 @@
 
 namespace shearcell {
 
-/// Whether the text is more than a name: it has an operator or a number.
+/// Whether the text has an operator or a bracket, or begins with a digit. Otherwise it is a name.
 bool is_expression(std::string_view text);
 
-/// The names in an expression, each once, in order. Of a name alone, that name.
+/// The names of numbers in the text, each once, in the order in which they appear.
 std::vector<std::string> names_in(std::string_view text);
 
-/// What an expression may contain, for messages.
+/// Describes for error messages what an expression may contain.
 std::string expression_syntax();
 
-/// What is wrong with the expression, whatever its names mean, such as "is not an expression:
-/// ..."; "" if it can be evaluated. Wrong is anything outside expression_syntax() and a text of
-/// more than 200 bytes.
+/// Returns why the text cannot be evaluated, such as "is not an expression: ..."; "" if it can be
+/// evaluated. The meaning of names is not checked. A text that does not follow expression_syntax()
+/// or has more than 200 bytes is an error.
 std::string wrong_in_expression(const std::string& text);
 
-/// The value of a name.
+/// Returns the number that a name stands for.
 using ValueOf = std::function<double(const std::string& name)>;
 
-/// Evaluates a sound expression, also of a name alone. Not a number where the result, or a value
-/// that it takes, is not finite. The locale has no effect. One thread at a time may call it.
+/// Makes an evaluator for a name or an expression that wrong_in_expression() accepts. The result is
+/// NaN if the result or the number of a name is not finite. The locale has no effect. Only one
+/// thread at a time may call an evaluator.
 using Evaluate = std::function<double(const ValueOf& value_of)>;
 Evaluate evaluator_of(const std::string& text);
 

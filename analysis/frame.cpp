@@ -128,7 +128,7 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 }
 
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys) {
-  std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // with its first variant
+  std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // first variant of each curve
   for (const FrameRun& run : runs) {
     std::vector<nlohmann::json> curve;
     for (const std::string& key : keys) curve.push_back(parameter_of(run, key));

@@ -14,15 +14,15 @@ using Selection = std::span<const std::size_t>;
 using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
-/// Rows of GrowthCurve::Sums: moments 0 to 2 of the crystallites, moments 0 and 1 of the excess of
-/// growing crystallites, and the excess summed from the size on.
+/// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
+/// the excess of growing crystallites, and the excess summed over this size and larger ones.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
   return std::log(static_cast<double>(k + 1));
 }
 
-/// The weight of the crystallites of each size (columns) in the moment of each (rows).
+/// The matrix that turns counts by size (columns) into moments near each size (rows).
 const FromSize& moment(int power) {
   static const std::array<FromSize, 3> all = [] {
     std::array<FromSize, 3> made;
@@ -39,7 +39,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// delta_rho of each row of the sums. The line has no slope where all crystallites have one size.
+/// Smooth delta_rho for each row of the sums; constant if all crystallites have one size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
@@ -48,8 +48,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size at which delta_rho rises through zero: infinite if no size grows, negatively infinite
-/// if all sizes grow.
+/// The size at which delta_rho rises through zero; infinity if no size grows, minus infinity if all
+/// sizes grow.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -67,7 +67,8 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size that maximizes the excess summed from it on; negative if all sizes do.
+/// The largest size at which the summed excess has its maximum. Minus infinity if size 1 has the
+/// same maximum; infinity if no excess is positive.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -78,7 +79,7 @@ double best_division(const Sums& sums) {
   return excess[0] < greatest ? static_cast<double>(k + 1) : -infinite;
 }
 
-/// Standard error for independent crystallites; it is not zero even if all of them grew.
+/// Standard error for independent crystallites. It is not zero even if all crystallites grew.
 double standard_error(const GrowthCount& count) {
   const auto larger = static_cast<double>(count.larger()) + 1;
   const auto smaller = static_cast<double>(count.smaller()) + 1;
@@ -103,7 +104,7 @@ GrowthCount& GrowthCount::operator+=(const GrowthCount& other) {
 }
 
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by both labels
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by labels
   std::size_t l = 0;  // both lists of grains ascend
   for (std::size_t k = 0; k < now.grain.size(); ++k) {
     while (l < later.grain.size() && later.grain[l] < now.grain[k]) ++l;
@@ -111,14 +112,13 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
   struct Outcome {
-    std::int32_t larger = 0, same = 0,
-                 smaller = 0;  // grains in larger, equal and smaller crystallites
-    std::int32_t most = 0;     // grains in the crystallite `end`
-    std::size_t end = 0;
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
+    std::int32_t most = 0;                           // grains in the crystallite `end`
+    std::size_t end = 0;                             // later crystallite with most of the grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {
-    std::int32_t most = 0, size = 0;  // of the crystallite that a later one has most grains of
+    std::int32_t most = 0, size = 0;  // shared grains and size of the main earlier crystallite
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {
@@ -140,8 +140,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     GrowthCount& count = counts[size];
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
-    } else if (2 * (size - larger - same) >
-               size) {  // most grains are in smaller crystallites or in none
+    } else if (2 * (size - larger - same) > size) {
+      // Most grains are in smaller crystallites or in none.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }
@@ -171,7 +171,7 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
   std::vector<GrowthRate> rates;
   GrowthRate bin;
   double log_sizes = 0;
-  std::vector<GrowthCount> of_run(runs.size());  // the counts of the bin
+  std::vector<GrowthCount> of_run(runs.size());  // counts of each run in the bin
   for (const auto& [size, count] : all) {
     const auto counted = static_cast<double>(count.larger() + count.smaller());
     bin.count += count;

@@ -15,7 +15,7 @@ namespace shearcell {
 
 using nlohmann::json;
 
-// Each is defined in the file that computes the measures.
+// Each function is defined in the file that computes its measures.
 using MakeProviders = std::vector<Provider>();
 MakeProviders packing_providers, crystallite_providers, mechanics_providers, lattice_providers,
     pair_structure_providers, profile_providers, motion_providers, onset_providers, run_providers;
@@ -117,7 +117,7 @@ void Provider::read(const json& result, Measures& into) const try {
   }
   if (read_more != nullptr) read_more(result, into);
 } catch (const json::exception& problem) {
-  throw AnalysisError(std::string("a cached result is not what its name says: ") + problem.what());
+  throw AnalysisError(std::string("a cached result does not fit its provider: ") + problem.what());
 }
 
 std::vector<std::byte> encode_result(const json& result) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures by their names, for tables, plots, claims, exports, the report and Python.
+// Measures by name, for tables, plots, claims, exports, the report and Python.
 //
-// A provider computes some measures of a checkpoint, or of a whole run, in one function. To add
-// measures, write a provider beside the function that computes them and add it to the providers of
-// that file, which measures.cpp lists. Elsewhere only single measures are named, where a figure or
-// a page needs them.
+// A provider is one function that computes some measures of a checkpoint or of a whole run. To add
+// measures, write a provider in the file that computes them, and add it to the providers of this
+// file; measures.cpp lists these files. Figures and pages may name the single measures they need.
 #pragma once
 
 #include <cstddef>
@@ -24,57 +23,56 @@
 
 namespace shearcell {
 
-struct FrameRun;  // analysis/figure.hpp
+struct FrameRun;  // analysis/frame.hpp
 struct RunValue;
 
-/// Raise this version with every change that may alter a bit of any result: results stored with
-/// another version are recomputed. tests/analysis/test_derived_measures.cpp pins results to it.
+/// Increase this version with every change that may alter a bit of any result. Stored results of
+/// other versions are recomputed. tests/analysis/test_derived_measures.cpp checks some results.
 inline constexpr std::uint64_t analysis_version = 2;
 
-/// A function measured on one packing, as g(r): values at ascending x.
+/// A function measured on one packing, such as g(r): values y at ascending x.
 struct MeasuredCurve {
   std::vector<double> x, y;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(MeasuredCurve, x, y)
 };
 
-/// What was measured on one checkpoint, by the names of the measures.
+/// The results of one checkpoint, by the names of the measures.
 struct Measures {
   std::map<std::string, double, std::less<>> numbers = {};
   std::map<std::string, MeasuredCurve, std::less<>> curves = {};
   std::map<std::string, std::vector<double>, std::less<>> of_grains = {};  ///< by grain id
   std::optional<CrystalliteMap> crystallite_map = {};
 
-  /// Not a number where it was not measured.
+  /// The number of a measure; NaN if it was not measured.
   double number(std::string_view name) const;
 };
 
-/// A `count` is a whole number. `grains` has one number for each grain. `run` is one number of a
-/// whole run.
+/// What a measure is: a number, a whole number (`count`), a function (`curve`), one number for each
+/// grain (`grains`), or one number of a whole run (`run`).
 enum class MeasureKind { number, count, curve, grains, run };
 
-/// How a measure of each grain is shown: numbers from `low` to `high`, or 0, 1, ... for classes.
+/// How a measure of each grain is displayed: from `low` to `high`, or as classes 0, 1, ...
 struct GrainScale {
   double low = 0, high = 0;
-  std::string_view parameter = {};  ///< parameter of the run: the unit of `low` and `high`
+  std::string_view parameter = {};  ///< parameter of the run that multiplies `low` and `high`
   bool logarithmic = false;
   std::vector<std::string> classes = {};
   bool whole = false;         ///< a whole number, such as a class
-  double of_wall_grains = 0;  ///< the value that exports give wall grains
+  double of_wall_grains = 0;  ///< the value of wall grains in exports
 };
 
 struct Measure {
-  std::string_view name;  ///< ends in its unit, unless it is a count or a pure number
-  std::string_view unit;  ///< "1" for none
+  std::string_view name;  ///< ends in the unit, unless the measure is a count or a pure number
+  std::string_view unit;  ///< "1" if it has no unit
   std::string_view meaning;
   MeasureKind kind = MeasureKind::number;
-  std::string_view x = {}, x_unit = {};  ///< of a curve
-  GrainScale scale = {};                 ///< of a measure of each grain
+  std::string_view x = {}, x_unit = {};  ///< x axis of a curve
+  GrainScale scale = {};                 ///< for a measure of each grain
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// The name in sentences; "": `name`. Required for numbers of a whole run and measures of each
-  /// grain.
+  /// The name in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
-  std::string_view reach = {};  ///< what a run must reach to have it
-  bool waits = false;           ///< the cycle of an event, before which a run may end
+  std::string_view reach = {};  ///< the event that a run must reach to have the measure
+  bool waits = false;           ///< cycle of an event; a run may end before the event
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
@@ -82,24 +80,24 @@ struct CycleEnergies {
   double work_of_walls = 0, dissipation = 0, stored = 0;
 };
 
-/// What measures need to know of the run of a checkpoint. The runner fills it in
-/// (experiments/runner/measure_sources.hpp), since analysis knows neither manifests nor protocols.
+/// What providers know about the run of a checkpoint. The runner fills it in, since analysis does
+/// not depend on manifests and protocols (experiments/runner/measure_sources.hpp).
 struct RunFacts {
-  nlohmann::json parameters = {};   ///< by their keys in a manifest
-  std::optional<Drive> drive = {};  ///< of a shear
-  /// The state `seconds` after the checkpoint, between upright walls that are held in place. `rest`
-  /// and `next_cycle` throw NumericalFailure.
+  nlohmann::json parameters = {};   ///< by key of the manifest
+  std::optional<Drive> drive = {};  ///< only of a shear
+  /// Simulates `seconds` after the checkpoint, between upright walls that are held in place. Both
+  /// `rest` and `next_cycle` throw NumericalFailure.
   std::function<State(const Checkpoint& from, double seconds)> rest = {};
-  /// Energies of the cycle that begins at the checkpoint, sampled every `stride` steps.
+  /// Simulates the cycle that begins at the checkpoint, with a sample every `stride` steps.
   std::function<CycleEnergies(const Checkpoint& from, std::uint64_t stride)> next_cycle = {};
 
-  /// A number among the parameters; not a number if there is none.
+  /// The parameter as a number; NaN if it is not a number.
   double number(const char* key) const;
 };
 
-/// What measures of a checkpoint are computed from.
+/// The input from which a provider computes measures of a checkpoint.
 struct MeasureInput {
-  /// The packing of the checkpoint; may be null for a provider that simulates.
+  /// Analysis of the checkpoint's packing; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
   const Checkpoint* checkpoint = nullptr;
   /// Returns the checkpoint of this run that is `Provider::cycles_back` cycles earlier; null if the
@@ -109,64 +107,63 @@ struct MeasureInput {
   const RunFacts* run = nullptr;
 };
 
-/// SI values of the units of Mechanics at the checkpoint, after any stiffening; not a number if the
-/// run's parameters are unknown.
+/// SI values of the units of Mechanics, with the raised stiffness if the checkpoint was stiffened.
+/// NaN if the run's parameters are unknown.
 MechanicalUnits mechanical_units(const MeasureInput& input);
 
-/// What a provider needs: `record`, the checkpoint's record in the log; `checkpoint`, its file;
-/// `simulation`, a simulation that begins at the checkpoint, which takes longer than an analysis;
-/// `history`, the measured checkpoints of a whole run.
+/// What a provider needs. `record`: the checkpoint's record in the log. `checkpoint`: its file.
+/// `simulation`: a simulation that begins at the checkpoint, which takes longer than an analysis.
+/// `history`: the measured checkpoints of a whole run.
 enum class ComputedFrom { record, checkpoint, simulation, history };
 
 struct Provider {
   std::string name;
-  nlohmann::json parameters =
-      nlohmann::json::object();        ///< what results depend on besides the checkpoint
-  std::vector<Measure> measures = {};  ///< all of each grain, or none
+  nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
+  std::vector<Measure> measures = {};  ///< either all or none are measures of each grain
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
-  /// each grain is an array. A measure is left out if the run lacks the checkpoint or the shear
-  /// that it needs.
+  /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
+  /// the measure needs.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
-  std::uint64_t cycles_back = 0;  ///< to the earlier checkpoint that it needs; 0 for none
+  std::uint64_t cycles_back = 0;  ///< cycles to the earlier checkpoint that is needed; 0: none
   ComputedFrom from = ComputedFrom::checkpoint;
-  std::string_view cost = {};  ///< cost of a simulation, in words
-  /// Reads what a result has besides its measures, and checks it.
+  std::string_view cost = {};  ///< computing time of a simulation, in words
+  /// Reads and checks the parts of a result that are not measures.
   void (*read_more)(const nlohmann::json& result, Measures& measures) = nullptr;
 
-  /// Name and parameters as one text: equal texts, equal computation.
+  /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Results of `record` follow from the log, and measures of each
-  /// grain would take more room than the checkpoint.
+  /// Whether results are stored. Results of `record` and `history` are cheap to compute, and
+  /// measures of each grain would need more space than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
-  /// Adds a result to the measures. Throws AnalysisError if another provider made the result.
+  /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.
   void read(const nlohmann::json& result, Measures& measures) const;
 };
 
-/// All providers, in the order of the columns of tables.
+/// All providers, in the order of table columns.
 std::span<const Provider> all_providers();
-/// The provider of that name, which must exist.
+/// The provider with this name, which must exist.
 const Provider& provider(std::string_view name);
-/// The names of the providers for which the function returns true.
+/// The names of the providers for which fits() is true.
 std::vector<std::string> provider_names(bool (*fits)(const Provider&));
-/// The provider of volume fractions and numbers of crystallites, which every measured frame has.
+/// Provider of volume fractions and numbers of crystallites. Each measured frame has its results.
 inline constexpr const char* scalars_provider = "scalars";
-/// The provider of the computing time, which follows from the log (FrameRun::core_time_s).
+/// Provider of the computing time, which is read from the log (FrameRun::core_time_s).
 inline constexpr const char* cost_provider = "cost";
 
-/// The measures of one kind, of all providers. Numbers include counts.
+/// The measures of one kind from all providers. Numbers include counts.
 std::vector<const Measure*> all_measures(MeasureKind kind);
-/// The measure of that name and kind, or null. Numbers include counts.
+/// The measure with this name and kind, or null. Numbers include counts.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
-/// The provider of a measure that exists.
+/// The provider that computes `measure`, which must belong to a provider.
 const Provider& provider_of(const Measure& measure);
 
-/// CBOR (RFC 8949): every double and integer exactly, equal results in equal bytes.
+/// Encodes a result exactly, as CBOR (RFC 8949). Equal results have equal bytes.
 std::vector<std::byte> encode_result(const nlohmann::json& result);
-/// Throws AnalysisError when the bytes are not CBOR.
+/// Decodes CBOR. Throws AnalysisError if the bytes are not CBOR.
 nlohmann::json decode_result(std::span<const std::byte> bytes);
 
-// Parameters of providers.
+// Parameters of providers. with() adds `more` to `parameters`.
 nlohmann::json with(nlohmann::json parameters, const nlohmann::json& more);
 nlohmann::json surface_criteria();
 nlohmann::json interior_criteria();

@@ -15,7 +15,7 @@ namespace {
 
 using GrainMask = std::span<const std::uint8_t>;
 
-// A frictionless sphere is held by four contacts or more.
+// At least four contacts hold a frictionless sphere in place.
 constexpr int kHeld = 4;
 
 struct Touch {
@@ -23,7 +23,7 @@ struct Touch {
 };
 
 // A grain with fewer than four contacts is a rattler. Contacts with rattlers do not count, so
-// grains are removed until each of the others has at least four.
+// rattlers are removed until each remaining grain has at least four contacts.
 std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touch> touches) {
   std::vector<std::uint8_t> rattler(grains, 0);
   for (bool any_more = true; any_more;) {
@@ -45,13 +45,12 @@ std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touc
   return rattler;
 }
 
-// Sums over all contacts.
 struct ContactSums {
   Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();             // of interior grains [k d^2]
   double squares = 0;                                           // of overlaps [d^2]
-  Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // on each wall, by WallSide [k d]
+  Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // force on each wall [k d]
   std::vector<Touch> touches;
-  std::vector<double> trace;  // of each grain's own contacts [k d^2]
+  std::vector<double> trace;  // virial trace of each grain [k d^2]
 };
 
 ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
@@ -60,7 +59,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
   const auto add = [&](const Contact& contact) {
     sums.squares += contact.overlap * contact.overlap;
-    // The contact point is in the middle of the overlap; with a plane, it is on the plane.
+    // arm: from the grain's centre to the middle of the overlap or, for a wall plane, to the plane.
     const double arm = contact.kind == Contact::Kind::wall_plane ? 0.5 - contact.overlap
                                                                  : 0.5 * (1 - contact.overlap);
     const double moment = contact.overlap * arm;
@@ -80,7 +79,7 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   return sums;
 }
 
-// Sum over the interior grains of the squares of their velocities less the mean flow [d^2/s^2].
+// Sum over interior grains of (velocity - mean flow)^2 [d^2/s^2]. The mean flow is linear in y.
 double fluctuation(const State& state, GrainMask interior) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double count = 0, height = 0;
@@ -217,34 +216,31 @@ std::vector<Provider> mechanics_providers() {
             {"stress_yy_Pa", "Pa", "normal stress of interior grains, positive in compression"},
             {"stress_zz_Pa", "Pa", "normal stress of interior grains, positive in compression"},
             {"stress_xy_Pa", "Pa",
-             "shear stress of interior grains; negative while shear_strain grows, since "
-             "compression "
-             "is positive"},
+             "shear stress of interior grains, negative while shear_strain grows"},
             {"stress_xz_Pa", "Pa", "shear stress of interior grains"},
             {"stress_yz_Pa", "Pa", "shear stress of interior grains"},
             {"kinetic_pressure_Pa", "Pa",
-             "kinetic part of the pressure, of velocities less the mean flow"},
+             "kinetic part of the pressure, from velocities minus the mean flow"},
             {"coordination", "1", "contacts per interior grain"},
             {"rattlers_percent", "%",
-             "interior grains with fewer than four contacts with walls and grains that are not "
+             "interior grains with fewer than four contacts (rattlers), not counting contacts with "
              "rattlers"},
             {"coordination_without_rattlers", "1",
-             "contacts of interior grains that are not rattlers with walls and such grains, per "
-             "such grain"},
-            {"force_bottom_x_N", "N", "force of the grains on the bottom wall"},
-            {"force_bottom_y_N", "N", "force of the grains on the bottom wall"},
-            {"force_top_x_N", "N", "force of the grains on the top wall"},
-            {"force_top_y_N", "N", "force of the grains on the top wall"},
-            {"force_left_x_N", "N", "force of the grains on the left wall"},
-            {"force_left_y_N", "N", "force of the grains on the left wall"},
-            {"force_right_x_N", "N", "force of the grains on the right wall"},
-            {"force_right_y_N", "N", "force of the grains on the right wall"},
+             "contacts per interior grain that is not a rattler, without contacts with rattlers"},
+            {"force_bottom_x_N", "N", "x component of the force of the grains on the bottom wall"},
+            {"force_bottom_y_N", "N", "y component of the force of the grains on the bottom wall"},
+            {"force_top_x_N", "N", "x component of the force of the grains on the top wall"},
+            {"force_top_y_N", "N", "y component of the force of the grains on the top wall"},
+            {"force_left_x_N", "N", "x component of the force of the grains on the left wall"},
+            {"force_left_y_N", "N", "y component of the force of the grains on the left wall"},
+            {"force_right_x_N", "N", "x component of the force of the grains on the right wall"},
+            {"force_right_y_N", "N", "y component of the force of the grains on the right wall"},
             {"elastic_energy_per_grain_J", "J",
-             "elastic energy of all contacts over the number of grains"},
+             "elastic energy of all contacts, divided by the number of grains"},
             {"kinetic_energy_per_grain_J", "J",
-             "kinetic energy over the number of grains, half a time step earlier"},
+             "kinetic energy half a time step earlier, divided by the number of grains"},
             {"gravitational_energy_per_grain_J", "J",
-             "weight times mean height above the bottom wall"}},
+             "weight of a grain times mean height above the bottom wall"}},
        .compute = compute}};
 }
 

@@ -11,31 +11,32 @@
 
 namespace shearcell {
 
-/// Units are the spring constant k and the grain's mass m and diameter d; MechanicalUnits has their
-/// SI values. The stress of the interior grains is positive in compression: sigma = 1/V sum_i sum_j
-/// f_ij (x) l_ij, with V the volume of their Voronoi cells and l_ij from the contact to the centre
-/// of the grain (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech. 48, 339 (1981)). A growing
-/// shear strain du_x/dy is resisted by a negative sigma_xy. Means over no grain are not a number.
+/// Units are made of the spring constant k and the mass m and diameter d of a grain;
+/// MechanicalUnits has their SI values. The stress of interior grains is positive in compression:
+/// sigma = 1/V sum_i sum_j f_ij (x) l_ij, with V the volume of their Voronoi cells and l_ij from
+/// the contact to the centre of grain i (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech.
+/// 48, 339 (1981)). sigma_xy is negative while the shear strain du_x/dy grows. Means over zero
+/// grains are NaN.
 struct Mechanics {
-  Eigen::Matrix3d stress;  ///< of contacts [k/d]
+  Eigen::Matrix3d stress;  ///< from contacts [k/d]
   double pressure = 0;     ///< trace / 3 [k/d]
   double deviator = 0;     ///< sqrt(s:s / 2), s the deviator [k/d]
-  /// Kinetic part of the pressure [m/(d s^2)], from velocities minus their mean; from v_x its
-  /// linear profile in y is subtracted.
+  /// Kinetic part of the pressure [m/(d s^2)], from velocities minus the mean flow: the mean
+  /// velocity and a profile of v_x that is linear in y.
   double kinetic_pressure = 0;
   double coordination = 0;  ///< contacts per interior grain
-  /// Interior grains [%] with fewer than four contacts with walls and grains that are not rattlers.
+  /// Percentage of interior grains that are rattlers. A rattler has fewer than four contacts with
+  /// walls and grains that are not rattlers.
   double rattlers = 0;
-  /// Coordination without rattlers: contacts among interior grains that are not rattlers, and with
-  /// walls, per such grain.
+  /// Contacts per interior grain that is not a rattler. Contacts with rattlers do not count.
   double coordination_without_rattlers = 0;
-  /// x and y of the force of all grains on each wall, by WallSide [k d].
+  /// x and y components of the force of all grains on each wall, columns by WallSide [k d].
   Eigen::Matrix<double, 2, 4, Eigen::DontAlign> wall_force;
-  double elastic_energy = 0;  ///< of contacts, those with walls included, per grain [k d^2]
+  double elastic_energy = 0;  ///< of all contacts, also with walls, per grain [k d^2]
   double kinetic_energy = 0;  ///< per grain, half a time step before the checkpoint [m d^2/s^2]
-  double height = 0;          ///< mean, above the bottom wall's plane [d]
-  /// Pressure of each grain [k/d]: trace / 3 of the sum over the contacts of the grain, also with
-  /// walls, over the volume of its cell.
+  double height = 0;          ///< mean height of grains above the plane of the bottom wall [d]
+  /// Pressure of each grain [k/d]: the trace of f (x) l, summed over its contacts with grains and
+  /// walls, divided by three times the volume of its cell.
   std::vector<double> grain_pressure;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How grains moved between two checkpoints of one run.
+// Motion of the grains between two checkpoints of one run.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -16,23 +16,22 @@
 namespace shearcell {
 namespace {
 
-/// Neighbours of a grain for its motion are at most this far away [d]: about the first minimum of
-/// g(r).
+/// Largest distance of neighbours in the analysis of motion [d], near the first minimum of g(r).
 constexpr double motion_neighbour_d = 1.5;
-/// A grain has returned if it is within this distance of its earlier place [d].
+/// A grain has returned if it is at most this far from its earlier position [d].
 constexpr double reversible_d = 0.01;
 
 /// One column or entry per grain, by grain id.
 struct Motion {
-  /// In the frame of the tilted walls, x - (y - y_top) tan(theta), so that a cell that has only
-  /// been sheared moves no grain [d].
+  /// Displacement in the frame of the tilted walls [d], with x - (y - y_top) tan(theta) in place of
+  /// x. Affine shear of the whole cell displaces no grain.
   Eigen::Matrix3Xd displacement;
   /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998), as a mean over the neighbours at the
-  /// earlier time [d^2]: what is left of their relative motion after the best affine deformation.
-  /// Not a number for a grain with fewer than four neighbours, or all in one plane.
+  /// earlier time [d^2]: their squared relative motion without the best affine deformation. NaN for
+  /// a grain with fewer than four neighbours, or with all neighbours in one plane.
   std::vector<double> nonaffine;
 
-  double square(std::size_t grain) const {  ///< of the displacement [d^2]
+  double square(std::size_t grain) const {  ///< squared displacement [d^2]
     return displacement.col(static_cast<Eigen::Index>(grain)).squaredNorm();
   }
 };
@@ -44,11 +43,11 @@ Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   return position;
 }
 
-// Sums over one grain's neighbours, from which the best affine deformation follows.
+// Sums over the neighbours of one grain that determine the best affine deformation.
 struct Neighbours {
   Eigen::Matrix3d product = Eigen::Matrix3d::Zero();  // later x earlier
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();   // earlier x earlier
-  double later = 0;                                   // sum of squares
+  double later = 0;                                   // sum of squared distances
   int count = 0;
 
   void add(const Eigen::Vector3d& earlier_r, const Eigen::Vector3d& later_r) {
@@ -58,7 +57,7 @@ struct Neighbours {
     ++count;
   }
 
-  // With the best deformation F = X Y^-1, sum |r' - F r|^2 = sum |r'|^2 - tr(F X^T).
+  // The best deformation F = product square^-1 gives sum |r' - F r|^2 = later - tr(F product^T).
   double nonaffine() const {
     // Neighbours in one plane do not determine the deformation.
     const double flat = 1e-9 * std::pow(square.trace() / 3, 3);
@@ -70,7 +69,7 @@ struct Neighbours {
   }
 };
 
-/// Throws AnalysisError if the checkpoints do not have the same grains.
+/// Throws AnalysisError if the checkpoints have different numbers of grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   if (earlier.state.position.cols() != later.state.position.cols()) {
     throw AnalysisError("two checkpoints of one run have different numbers of grains");
@@ -94,8 +93,8 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
-/// One entry per grain: 1 for a crystalline grain with a neighbour that is not crystalline; else 0.
-/// `crystalline` has 1 or 0 for each grain.
+/// One entry per grain: 1 for a crystalline grain with a neighbour that is not crystalline, else 0.
+/// `crystalline` is 1 or 0 for each grain.
 std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
                                            std::span<const std::uint8_t> crystalline) {
   std::vector<std::uint8_t> boundary(crystalline.size(), 0);
@@ -108,14 +107,13 @@ std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
   return boundary;
 }
 
-/// Motion since the earlier checkpoint; empty without an earlier checkpoint.
 std::optional<Motion> motion_of(const MeasureInput& input) {
   const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
   if (earlier == nullptr) return std::nullopt;
   return motion(*earlier, *input.checkpoint);
 }
 
-/// Means over the interior grains, with names that end in `lag`.
+/// Means over interior grains. The names of the means end in `lag`.
 nlohmann::json means_of(const Motion& moved, const GrainMeasures& grains, const std::string& lag) {
   const auto square = [&](std::size_t i) { return moved.square(i); };
   const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
@@ -130,7 +128,6 @@ nlohmann::json motion_over_cycles(const MeasureInput& input) {
   return means_of(*moved, input.analysis->grains, fmt::format("{}_cycles_d2", cycles));
 }
 
-/// Motion over one cycle, in total and by the structure of the grains.
 nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
   const std::optional<Motion> moved = motion_of(input);
   if (!moved) return nlohmann::json::object();
@@ -168,59 +165,59 @@ std::vector<Provider> motion_providers() {
     return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
             {"d2min_d2", moved->nonaffine}};
   };
-  // One provider for each lag: where the file of one earlier checkpoint is pruned, the others
-  // count.
-  return {
-      {.name = "motion",
-       .parameters = with(crystal_criteria(),
-                          {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
-       .measures =
-           {{"msd_1_cycle_d2", "d^2",
-             "mean squared displacement of interior grains over 1 cycle, in the frame of the "
-             "walls"},
-            {"d2min_1_cycle_d2", "d^2",
-             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
-            {"reversible_percent", "%",
-             "interior grains at most 0.01 d from where they were a cycle before"},
-            {"msd_inside_crystal_d2", "d^2",
-             "mean squared displacement over 1 cycle of crystalline grains among crystalline ones"},
-            {"msd_crystal_boundary_d2", "d^2",
-             "the same of crystalline grains with other neighbours"},
-            {"msd_disordered_d2", "d^2", "the same of grains that are not crystalline"}},
-       .compute = motion_over_one_cycle,
-       .cycles_back = 1},
-      {.name = "motion_10",
-       .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
-       .measures = {{"msd_10_cycles_d2", "d^2",
-                     "mean squared displacement of interior grains over 10 cycles"},
-                    {"d2min_10_cycles_d2", "d^2",
-                     "mean D^2_min of interior grains over 10 cycles"}},
-       .compute = motion_over_cycles<10>,
-       .cycles_back = 10},
-      {.name = "motion_100",
-       .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
-       .measures = {{"msd_100_cycles_d2", "d^2",
-                     "mean squared displacement of interior grains over 100 cycles"},
-                    {"d2min_100_cycles_d2", "d^2",
-                     "mean D^2_min of interior grains over 100 cycles"}},
-       .compute = motion_over_cycles<100>,
-       .cycles_back = 100},
-      {.name = "grain_motion",
-       .parameters = {{"neighbour_d", motion_neighbour_d}},
-       .measures = {{.name = "displacement_d",
-                     .unit = "d",
-                     .meaning = "displacement over the cycle before",
-                     .kind = MeasureKind::grains,
-                     .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
-                     .words = "displacement in a cycle"},
-                    {.name = "d2min_d2",
-                     .unit = "d^2",
-                     .meaning = "D^2_min over the cycle before",
-                     .kind = MeasureKind::grains,
-                     .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
-                     .words = "non-affine motion in a cycle"}},
-       .compute = compute,
-       .cycles_back = 1}};
+  // Each lag has its own provider, so a pruned checkpoint affects only the lag that needs it.
+  return {{.name = "motion",
+           .parameters = with(crystal_criteria(), {{"neighbour_d", motion_neighbour_d},
+                                                   {"reversible_d", reversible_d}}),
+           .measures =
+               {{"msd_1_cycle_d2", "d^2",
+                 "mean squared displacement of interior grains over 1 cycle, in the frame of the "
+                 "walls"},
+                {"d2min_1_cycle_d2", "d^2",
+                 "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
+                {"reversible_percent", "%",
+                 "interior grains at most 0.01 d from their position one cycle earlier"},
+                {"msd_inside_crystal_d2", "d^2",
+                 "mean squared displacement over 1 cycle of crystalline grains inside a crystal"},
+                {"msd_crystal_boundary_d2", "d^2",
+                 "mean squared displacement over 1 cycle of crystalline grains next to disordered "
+                 "grains"},
+                {"msd_disordered_d2", "d^2",
+                 "mean squared displacement over 1 cycle of disordered grains"}},
+           .compute = motion_over_one_cycle,
+           .cycles_back = 1},
+          {.name = "motion_10",
+           .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
+           .measures = {{"msd_10_cycles_d2", "d^2",
+                         "mean squared displacement of interior grains over 10 cycles"},
+                        {"d2min_10_cycles_d2", "d^2",
+                         "mean D^2_min of interior grains over 10 cycles"}},
+           .compute = motion_over_cycles<10>,
+           .cycles_back = 10},
+          {.name = "motion_100",
+           .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
+           .measures = {{"msd_100_cycles_d2", "d^2",
+                         "mean squared displacement of interior grains over 100 cycles"},
+                        {"d2min_100_cycles_d2", "d^2",
+                         "mean D^2_min of interior grains over 100 cycles"}},
+           .compute = motion_over_cycles<100>,
+           .cycles_back = 100},
+          {.name = "grain_motion",
+           .parameters = {{"neighbour_d", motion_neighbour_d}},
+           .measures = {{.name = "displacement_d",
+                         .unit = "d",
+                         .meaning = "displacement over the previous cycle",
+                         .kind = MeasureKind::grains,
+                         .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
+                         .words = "displacement in a cycle"},
+                        {.name = "d2min_d2",
+                         .unit = "d^2",
+                         .meaning = "D^2_min over the previous cycle",
+                         .kind = MeasureKind::grains,
+                         .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
+                         .words = "non-affine motion in a cycle"}},
+           .compute = compute,
+           .cycles_back = 1}};
 }
 
 }  // namespace shearcell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of grains within a distance, whether they touch or not.
+// Pairs of grains within a given distance, whether they touch or not.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,9 @@
 
 namespace shearcell {
 
-/// Calls visit(i, j, r) for every pair i < j of `sites` (3 x n [d], z unwrapped) that are at most
-/// `reach` [d] apart, with r from j's nearest image to i. `reach` must not exceed half the depth
-/// of the cell, beyond which images would be missed.
+/// Calls visit(i, j, r) for each pair i < j of `sites` (3 x n [d], z unwrapped) that is at most
+/// `reach` [d] apart. r is the vector from the nearest image of j to i. `reach` must not exceed
+/// half the depth of the cell, because periodic images would then be missed.
 template <class Visit>
 void for_each_pair(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
                    double reach, const Visit& visit) {

@@ -33,7 +33,7 @@ Interval poisson_interval(std::size_t events) {
   return {events == 0 ? 0 : quantile(tail, 2 * n), quantile(1 - tail, 2 * n + 2)};
 }
 
-/// What one run contributes in one range of phi.
+/// Contribution of one run in one range of phi.
 struct Share {
   double grains;  ///< N
   const std::string* packing;
@@ -41,25 +41,25 @@ struct Share {
   double log_cycles;
   double log_size;
   double events;          ///< 0 or 1
-  Eigen::Vector3d terms;  ///< of ln c: 1, phi and its square, from the onset on, in bins
+  Eigen::Vector3d terms;  ///< of ln c: 1, u and u^2 with u = (phi - onset phi) / phi_bin
 };
 
 using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
-/// 1 / variance of the normal priors on the terms of ln c. The linear and the quadratic term have
-/// standard deviations of 3 and 0.5 (runs show 1 and 0.1), so that the likelihood of a few events
-/// has a maximum. [choice]
+/// 1 / variance of the normal priors on the terms of ln c. The priors of the linear and quadratic
+/// terms have standard deviations of 3 and 0.5 (runs have about 1 and 0.1), so that the likelihood
+/// of a few events has a maximum. [choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
   double logarithm = 0;    ///< up to a constant
-  double score = 0;        ///< its derivative by the exponent, which falls with the exponent
-  double information = 0;  ///< the slope of that fall
-  std::map<std::string, double> score_of;  ///< the part of each packing
+  double score = 0;        ///< derivative of `logarithm` by the exponent; falls with the exponent
+  double information = 0;  ///< minus the derivative of the score
+  std::map<std::string, double> score_of;  ///< score of each packing
 };
 
-/// Adds one amplitude's log-likelihood, maximized over ln c by Newton's method: it is concave. A
-/// step that would lower it is halved.
+/// Adds the log-likelihood of one amplitude, maximized over the terms of ln c. It is concave in
+/// these terms. Newton's method halves a step that would lower the log-likelihood.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {
@@ -81,7 +81,7 @@ void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihoo
     return all;
   };
   Eigen::Matrix3d curvature;
-  Eigen::Vector3d slope, with_size;  // with_size: the curvature by c and the exponent
+  Eigen::Vector3d slope, with_size;  // with_size: mixed second derivatives by c and the exponent
   double reached = logarithm();
   double moved = 1;
   for (int step = 0; step < 100 && moved > 1e-9; ++step) {
@@ -118,9 +118,9 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether some event could as well have happened in a larger cell (same amplitude, about the same
-/// phi), and some event in a smaller cell: only then do the runs show how the rate depends on size.
-/// Cells are compared by N, since interior grains differ a little between seeds of one N.
+/// Whether the runs show how the rate depends on size. For some event there must be a larger cell
+/// at the same amplitude and about the same phi, and for some event a smaller cell. Cells are
+/// compared by N, since the number of interior grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {
@@ -136,7 +136,7 @@ bool is_bounded(const Shares& amplitudes) {
   return larger && smaller;
 }
 
-/// Factor on the allowed drop of the log-likelihood where runs share a packing.
+/// Factor for the allowed drop of the log-likelihood if runs share a packing; at least 1.
 double variance_between_packings(const Likelihood& at) {
   double squares = 0;
   for (const auto& [packing, score] : at.score_of) squares += score * score;
@@ -202,7 +202,7 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
     result.push_back(
         {low, low + width, density_of(every), bootstrap_error(groups.size(), density_of)});
   }
-  if (std::isnan(result.front().density)) result.clear();  // no places
+  if (std::isnan(result.front().density)) result.clear();  // no positions
   return result;
 }
 
@@ -276,7 +276,7 @@ std::optional<Estimate> size_exponent(RunGroup runs, Region region, double level
            {1, u, u * u}});
     }
   }
-  constexpr double widest = 30;  // n^30 is still a number
+  constexpr double widest = 30;  // n^30 does not overflow
   const bool bounded = is_bounded(amplitudes) && likelihood(amplitudes, -widest).score > 1e-9 &&
                        likelihood(amplitudes, widest).score < -1e-9;
   if (packings.size() < least_runs || !bounded) return std::nullopt;

@@ -113,19 +113,19 @@ std::vector<Provider> onset_providers() {
       {.name = "onsets",
        .measures =
            {of_run("critical_size",
-                   "grains of a critical crystallite in the supplement, by the nearest amplitude",
-                   +critical, "the critical size"),
+                   "critical size in the supplement at the nearest amplitude, in grains", +critical,
+                   "the critical size"),
             of_run("onset_size_cycle",
                    "cycle of the onset by method 1, where the largest crystallite reaches the "
                    "critical size",
                    at_onset<onset_by_size, &R::cycle>, "the cycle of the onset", true),
-            of_run("onset_size_phi", "volume fraction at that onset",
+            of_run("onset_size_phi", "volume fraction at the onset by method 1",
                    at_onset<onset_by_size, &R::phi>, "phi at the onset"),
             of_run("onset_slope_cycle",
-                   "cycle of the onset by method 2, where the logarithm of its size rises most "
-                   "steeply",
+                   "cycle of the onset by method 2, where the logarithm of the size of the largest "
+                   "crystallite rises most steeply with phi",
                    at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by its slope"),
-            of_run("onset_slope_phi", "volume fraction at that onset",
+            of_run("onset_slope_phi", "volume fraction at the onset by method 2",
                    at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
        .from = ComputedFrom::history}};
 }

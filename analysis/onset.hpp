@@ -12,8 +12,9 @@
 
 namespace shearcell {
 
-/// A run is censored if its onset lies before its first or after its last checkpoint. `unclear`:
-/// the onset lies between them, but the method finds no phi.
+/// Whether a run shows its onset. The run is censored if its onset is before its first checkpoint
+/// (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is between these
+/// checkpoints, but the method finds no phi.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>
 inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",
@@ -21,20 +22,20 @@ inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "n
 
 struct RunOnset {
   Observed observed = Observed::never;
-  double phi = 0;    ///< only when observed
-  double cycle = 0;  ///< likewise; between checkpoints
+  double phi = 0;    ///< at the onset; if `never`, at the last checkpoint
+  double cycle = 0;  ///< of the onset; if `never`, of the last checkpoint
 };
 
-/// Method 1: the first time that the largest crystallite has the critical size. phi and cycle are
-/// interpolated linearly in the size between this checkpoint and the checkpoint before. A run that
-/// begins with a critical crystallite is censored at its start.
+/// Method 1: the first time at which the largest crystallite has the critical size. phi and cycle
+/// are interpolated linearly in the size between this checkpoint and the previous one. A run that
+/// begins with a critical crystallite is `before_start`.
 RunOnset onset_by_size(const FrameRun& run);
 
-/// Method 2: where ln(largest crystallite) against phi is steepest. The slope at phi is the slope
-/// of the least-squares line through the checkpoints within `slope_window / 2` of phi. These must
-/// be at least four and span half of the window; a run without such a window is unclear. A packing
-/// without a crystallite counts as one grain. A run whose largest crystallite never has the
-/// critical size is censored. [choice]
+/// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi
+/// is the slope of the least-squares line through the checkpoints within `slope_window / 2` of phi.
+/// At least four such checkpoints must span half of the window; a run without such a window is
+/// `unclear`. A packing without crystallites counts as size 1. A run in which the largest
+/// crystallite never has the critical size is `never`. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

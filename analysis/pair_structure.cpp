@@ -31,9 +31,9 @@ Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
   return found;
 }
 
-// Volume of all pairs (r, r + s) with both ends in the region and from <= |s| < to [d^6].
-// Averaged over directions n, the set covariance is D <(W - s |a n|)(H - s |b n|)>, with a = (1,
-// -tan theta, 0) and b = (0, 1, 0).
+// Volume of the set of pairs (r, r + s) with both ends in the region and from <= |s| < to [d^6].
+// The set covariance of the region (width W, height H, depth D), averaged over directions n of s,
+// is D <(W - |s| |a n|)(H - |s| |b n|)>, with a = (1, -tan theta, 0) and b = (0, 1, 0).
 double pair_volume(const InteriorRegion& region, double from, double to) {
   const double a = std::sqrt(1 + region.tan_theta * region.tan_theta);
   const double cosine = -region.tan_theta / a;
@@ -48,7 +48,7 @@ double pair_volume(const InteriorRegion& region, double from, double to) {
   return 4 * kPi * region.depth * (integral(to) - integral(from));
 }
 
-/// Curves are at the middles of equal bins, and not a number where nothing was counted.
+/// A curve with x in the middles of equal bins. y is NaN until a bin is filled.
 MeasuredCurve empty_bins(double width, std::size_t count) {
   MeasuredCurve function;
   for (std::size_t b = 0; b < count; ++b) {
@@ -58,7 +58,7 @@ MeasuredCurve empty_bins(double width, std::size_t count) {
   return function;
 }
 
-// A wave at two sites.
+// Values of a plane wave at two sites.
 struct TwoSites {
   Eigen::Array2d re = {0, 0}, im = {0, 0};
 };
@@ -67,12 +67,13 @@ inline TwoSites operator*(const TwoSites& a, const TwoSites& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-// A wave at a block of sites. Blocks are small, so that all waves of a block fit into the cache.
+// Values of a plane wave at a block of sites. Blocks are small, so that all waves fit into the
+// cache.
 using Wave = std::array<TwoSites, 16>;
 constexpr auto kBlock = static_cast<Eigen::Index>(2 * std::tuple_size_v<Wave>);
 
-// exp(2 pi i n s) for n = -most ... most of the fractional coordinates s of at most kBlock sites.
-// The waves are 0 at missing sites.
+// exp(2 pi i n s) for n = -most ... most, at the fractional coordinates s of at most kBlock sites.
+// If there are fewer sites, the remaining values are 0.
 std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
   std::vector<Wave> found(2 * static_cast<std::size_t>(most) + 1);
   const auto middle = found.begin() + most;
@@ -93,21 +94,21 @@ std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
   return found;
 }
 
-using WaveVector = std::array<int, 3>;  // in the reciprocal lattice
+using WaveVector = std::array<int, 3>;  // components in the basis of the reciprocal lattice
 
-// Largest components of wave vectors up to the largest |k|.
+// Largest component along each axis of wave vectors with |k| up to largest_wave_per_d.
 WaveVector largest_components(const InteriorRegion& region) {
   const auto within = [](double length) {
     return static_cast<int>(largest_wave_per_d * length / (2 * kPi));
   };
-  // Where the walls are tilted, the first component of k adds to the second.
+  // If the walls are tilted, k_y depends on the first and the second component.
   return {within(region.width), within(region.height * (1 + std::abs(region.tan_theta))),
           within(region.depth)};
 }
 
 constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
-// Calls visit(bin, n) for one of each pair k, -k up to the largest |k|, in lexical order.
+// Calls visit(bin, n) for one of each pair k, -k with |k| < largest_wave_per_d, in lexical order.
 template <class Visit>
 void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
                           const Visit& visit) {
@@ -125,10 +126,10 @@ void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
   }
 }
 
-/// Pair correlation of the interior grains: the number of pairs at a distance r over the expected
-/// number for as many grains placed at random in the same region. The expected number follows
-/// exactly from the set covariance of the region, a parallelepiped (Ohser, Math. Operationsforsch.
-/// Statist. 14, 63 (1983)).
+/// g(r) of the interior grains: the number of pairs at a distance r, divided by the number expected
+/// if the grains were placed at random in the region. The expected number follows exactly from the
+/// set covariance of the region, a parallelepiped (Ohser, Math. Operationsforsch. Statist. 14, 63
+/// (1983)).
 MeasuredCurve pair_correlation(const MeasureInput& input) {
   const Cell& cell = input.checkpoint->cell;
   const WallPose pose = pose_of(*input.checkpoint);
@@ -153,15 +154,15 @@ MeasuredCurve pair_correlation(const MeasureInput& input) {
   return g;
 }
 
-/// Structure factor of the interior grains, |sum exp(i k r)|^2 / n, as a mean over wave vectors of
-/// the region's reciprocal lattice, for which a uniform density gives zero. Each bin in |k| takes
-/// at most 48 vectors, evenly spaced in their lexical order.
+/// S(k) of the interior grains: |sum exp(i k r)|^2 / n, averaged over wave vectors in bins of |k|.
+/// Wave vectors are from the reciprocal lattice of the region, for which a uniform density gives
+/// zero. Each bin uses at most 48 wave vectors, evenly spaced in their lexical order.
 MeasuredCurve structure_factor(const MeasureInput& input) {
   const InteriorRegion region = interior_region(input.checkpoint->cell, pose_of(*input.checkpoint));
   const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
-  // Of a packing the sum is at most a third of this. A forged cell may be far larger.
+  // For a packing the sum is at most a third of this limit. A forged cell may be far larger.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;
@@ -173,7 +174,7 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   struct Sum {
     std::size_t bin;
     WaveVector n;
-    TwoSites at;  // sums over the sites at even and at odd places
+    TwoSites at;  // sums over sites with even and with odd index
   };
   std::vector<Sum> sums;
   for_each_wave_vector(region, most, [&](std::size_t bin, const WaveVector& n) {
@@ -182,7 +183,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
     ++taken[bin];
     sums.push_back({bin, n, {}});
   });
-  // An odd number of sites ends with a block of one, which is added to the sum of both.
+  // If the number of sites is odd, the last block has one site. It is added to the total of both
+  // sums.
   for (Eigen::Index from = 0, size = 0; from < sites.cols(); from += size) {
     size = std::min(kBlock, sites.cols() - from);
     if (size > 1) size -= size % 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures against the height above the bottom wall and the distance from the nearest wall, and
-// against the criteria of supplement A.
+// Measures as functions of the height above the bottom wall, of the distance from the nearest wall,
+// and of the criteria of supplement A.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// The layer of each grain, or `layers` for one near a side wall.
+// Layer of each grain, counted from the bottom; `layers` for a grain near a side wall.
 std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose& pose,
                                    std::size_t layers) {
   const double least = interior_margin(checkpoint.cell);
@@ -31,7 +31,7 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
   return found;
 }
 
-/// phi of the grains whose distance from the walls is in [low, high).
+/// phi of the grains whose distance from the wall surfaces is in [low, high) [d].
 double phi_between(const GrainMeasures& grains, std::span<const double> distance, double low,
                    double high) {
   std::vector<std::uint8_t> inside;
@@ -46,9 +46,9 @@ double crystalline_percent(const GrainMeasures& grains, double least_phi_local, 
   });
 }
 
-/// One entry per layer of one diameter, from the plane of the bottom wall to the plane of the top
-/// wall. Grains count in the layer of their centre if they are at least 1.5 d from the surfaces of
-/// the side walls. Values of a layer without grains are not numbers.
+/// Curves with one entry per layer. Layers are one diameter thick, from the plane of the bottom
+/// wall to the plane of the top wall. A grain counts in the layer of its centre if it is at least
+/// 1.5 d from the surfaces of the side walls. A layer without grains has NaN.
 json profiles_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const GrainMeasures& grains = input.analysis->grains;
@@ -83,7 +83,7 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", crystalline}};
 }
 
-/// phi in layers of half a diameter; not a number for a layer without grains.
+/// phi in layers of half a diameter, by distance from the walls; NaN for a layer without grains.
 MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   constexpr double layer = 0.5;
   const std::vector<double> distance =
@@ -97,7 +97,7 @@ MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeas
   return found;
 }
 
-/// phi is not a number without grains.
+/// Number and phi of the core grains; phi is NaN without core grains.
 json core_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const std::vector<double> distance =
@@ -108,7 +108,7 @@ json core_of(const MeasureInput& input) {
                                    std::numeric_limits<double>::infinity())}};
 }
 
-/// Crystalline percentage with one criterion changed; the other criteria stay the same.
+/// Crystalline percentage against the window of q6; the other criteria do not change.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
   MeasuredCurve found;
   for (int n = 1; n <= 20; ++n) {
@@ -127,7 +127,7 @@ MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
   return found;
 }
 
-/// Needs the Voronoi cells, which it computes again.
+/// Size of the largest crystallite against the connecting face. Computes the Voronoi cells again.
 MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
@@ -152,8 +152,8 @@ std::vector<Provider> profile_providers() {
   return {
       {.name = "core",
        .parameters = with(surface_criteria(), {{"core_distance_d", core_distance}}),
-       .measures = {{"core_grains", "1", "grains at least 4 d from the wall surfaces"},
-                    {"core_phi", "1", "volume fraction of those grains (Eq. S4)"}},
+       .measures = {{"core_grains", "1", "core grains, at least 4 d from the wall surfaces"},
+                    {"core_phi", "1", "volume fraction of core grains (Eq. S4)"}},
        .compute = core_of},
       {.name = "profiles",
        .parameters = with(crystal_criteria(), {{"units", "SI"}}),
@@ -181,14 +181,14 @@ std::vector<Provider> profile_providers() {
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains, if |q6 - q6 of a lattice| is below this", curve,
+                     "crystalline grains against the upper limit of |q6 - q6 of a lattice|", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains, if phi_local is above this", curve, "phi_local_threshold",
-                     "1"},
+                     "crystalline grains against the lower limit of phi_local", curve,
+                     "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
-                     "grains in the largest crystallite, if grains are connected by faces of at "
-                     "least this share of the mean cell surface",
+                     "grains in the largest crystallite against the smallest connecting face, as a "
+                     "fraction of the mean cell surface",
                      curve, "connecting_face", "1"}},
        .compute = sensitivity}};
 }

@@ -10,7 +10,8 @@
 
 namespace shearcell {
 
-/// Table I: what every simulation has, unless its own section varies it. omega is pi rad/s.
+/// Table I: parameters of all simulations, unless a section of the supplement varies them. omega is
+/// pi rad/s.
 inline constexpr double published_mass_kg = 2.0e-5;
 inline constexpr double published_diameter_m = 3.0e-3;
 inline constexpr double published_stiffness_N_per_m = 6.54e2;
@@ -20,12 +21,12 @@ inline constexpr double published_period_s = 2;
 inline constexpr double published_steps_per_cycle = 45600;
 inline constexpr double published_gravity_m_per_s2 = 9.81;
 
-/// Section C. n_bin of A = 0.04 is not stated; the value is n_bin of A = 0.05. [choice]
+/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used. [choice]
 struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;                ///< grains
   std::int64_t n_bin;                  ///< cycles over which a crystallite is followed
-  const char* cannot_be_decided = "";  ///< as Claim::cannot_be_decided, of the critical size
+  const char* cannot_be_decided = "";  ///< Claim::cannot_be_decided of the critical size
 };
 inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.04, 10, 300}, PublishedAmplitude{0.05, 10, 300},
@@ -39,13 +40,13 @@ inline constexpr std::array published_amplitudes = {
         "our size, 25.3 grains in 40 runs, is at the upper edge of the margin, 25 "
         "grains, and in 8 runs, about as many as the supplement has, it scatters over "
         "both sides of the edge"}};
-/// As Claim::cannot_be_decided, of the growth of the critical size with A.
+/// Claim::cannot_be_decided of the growth of the critical size with A.
 inline constexpr const char* growth_cannot_be_decided =
     "whether the size grows with A depends on the cycles that crystallites are followed: followed "
     "over one cycle it grows, over 20 it falls, and over 5 the ratio is near 1, the edge of the "
     "claim";
 
-/// The stated amplitude nearest to `amplitude_rad`: others have its numbers. [choice]
+/// The published amplitude nearest to `amplitude_rad`, whose numbers are then used. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);
@@ -55,19 +56,19 @@ inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
 /// phi at the onset of crystallization in the limit of small A, Figs. S5(b) and S6.
 inline constexpr double published_onset_phi = 0.646;
 
-/// Section E: sizes of the crystallites of Fig. S7.
+/// Section E: smallest and largest crystallites in Fig. S7 [grains].
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
-// Margins: two results that differ by less agree. Those of computed figures are stated here, before
-// the runs are made, all others in manifests. The uncertainty of a published number is part of its
-// margin.
+// Margins: two results agree if they differ by less than the margin. Margins of computed figures
+// are stated here, before the runs are made; all others are stated in manifests. The uncertainty of
+// a published critical size is part of the interval, not of the margin (README.md).
 
-/// Critical size, relative to the published one: published sizes differ by a quarter between
-/// neighbouring amplitudes.
+/// Margin of the critical size, relative to the published size. Published sizes of neighbouring
+/// amplitudes differ by a quarter.
 inline constexpr double margin_critical_size = 0.25;
-/// Share of nuclei in one part of the cell less that in another: 60 % against 40 % is the least
-/// that shows in Fig. S7.
+/// Margin of the difference between the shares of nuclei in two parts of the cell. The smallest
+/// difference that can be seen in Fig. S7 is 60 % against 40 %.
 inline constexpr double margin_share = 0.2;
 
 }  // namespace shearcell

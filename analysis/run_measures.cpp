@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures that need the run of a checkpoint: its drive, what the engine recorded, simulations that
-// begin at the checkpoint, and what the run took to compute.
+// Measures that need the run of a checkpoint: its drive, the values that the engine recorded,
+// simulations that begin at the checkpoint, and the computing time of the run.
 #include <numbers>
 
 #include "analysis/error.hpp"
@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double rest_s = 0.1;
-/// Steps between samples of an energy ledger: a period of the fastest vibration at Table I's time
-/// step.
+/// Steps between samples of an energy ledger. At the time step of Table I these steps last one
+/// period of the fastest vibration.
 constexpr std::uint64_t ledger_stride = 8;
 
 json drive_of(const MeasureInput& input) {
@@ -70,29 +70,28 @@ json record_of(const MeasureInput& input) {
 std::vector<Provider> run_providers() {
   return {
       {.name = "drive",
-       .measures = {{"shear_strain", "1", "tan(theta), theta the tilt of the side walls"},
+       .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
                     {"shear_rate_per_s", "1/s",
-                     "rate of change of shear_strain; after a pause, of the shear that follows"}},
+                     "rate of change of shear_strain; after a pause, rate of the next shear"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
-      // The balance is that of protocols/ledger.hpp. It takes three to four times as long as the
-      // cycle.
+      // protocols/ledger.hpp defines the energy balance.
       {.name = "ledger",
        .parameters = {{"stride", ledger_stride}},
        .measures =
            {{"work_of_walls_per_cycle_J", "J",
-             "work of the tilting walls on all grains in the cycle that ends here"},
+             "work of the tilting walls on all grains in the cycle before the checkpoint"},
             {"dissipation_per_cycle_J", "J",
-             "energy that all grains and the moving wall lost by drag in that cycle"},
+             "energy that all grains and the moving wall lost by drag in the cycle before the "
+             "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
-             "change of all elastic, kinetic and gravitational energy and of the load's in that "
-             "cycle"}},
+             "change of the elastic, kinetic and gravitational energy of all grains and of the "
+             "energy of the load in the cycle before the checkpoint"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
        .cost = "3 to 4 times as long as the cycle"},
-      // Compares protocols whose checkpoints are recorded at different rates of shear
-      // (protocols/rest.hpp).
+      // Compares protocols whose checkpoints have different shear rates (protocols/rest.hpp).
       {.name = "rest",
        .parameters = {{"rest_s", rest_s}},
        .measures = {{.name = "phi_at_rest",
@@ -105,25 +104,25 @@ std::vector<Provider> run_providers() {
        .cost = "a twentieth of a cycle"},
       {.name = "record",
        .measures = {{"time_s", "s", "simulated time since the stage began"},
-                    {"cell_height_d", "d", "distance of the bottom and top wall"},
+                    {"cell_height_d", "d", "distance between the bottom and top walls"},
                     {"largest_overlap_d", "d",
                      "largest overlap of two grains, or of a grain and a wall grain"},
                     {"kinetic_energy_per_grain_m_d2_per_s2", "m d^2/s^2",
-                     "mean kinetic energy; m is the mass of a grain"},
+                     "mean kinetic energy of a grain of mass m"},
                     {"wall_force_imbalance", "1",
-                     "load less contact force on the moving wall, over P A_w"},
-                    {"raised_stiffness_N_per_m", "N/m", "spring constant of a stiffening"},
+                     "load minus contact force on the moving wall, divided by P A_w"},
+                    {"raised_stiffness_N_per_m", "N/m", "raised spring constant in a stiffening"},
                     {"force_residual_P_d2", "P d^2",
-                     "largest net force on a grain of a stiffening over P d^2"}},
+                     "largest net force on a grain in a stiffening, divided by P d^2"}},
        .compute = record_of,
        .from = ComputedFrom::record},
       {.name = cost_provider,
        .measures = {{.name = "core_time_s",
                      .unit = "s",
-                     .meaning = "processor time of the run's steps up to its end, over all "
-                                "attempts on whatever machines; without its packing, and in "
-                                "full for each experiment that shares the run. Where none was "
-                                "recorded, wall-clock time times processes",
+                     .meaning = "processor time of all steps of the run, over all attempts and "
+                                "machines, without its packing. A run counts in full for each "
+                                "experiment that shares it. If it was not recorded, it is "
+                                "wall-clock time times the number of processes",
                      .kind = MeasureKind::run,
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",

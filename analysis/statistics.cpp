@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// The statistic of each selection of `chosen` runs; selections without a statistic are left out.
+/// The statistic of each selection of `chosen` runs. NaN values are left out.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);
@@ -44,8 +44,8 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
   return values;
 }
 
-/// The interval that leaves out a share `tail` of the selections at each end. Selections without a
-/// value widen it at both ends.
+/// The interval without the fraction `tail` of the selections at each end. Selections without a
+/// value widen the interval at both ends.
 Interval percentiles(std::vector<double> values, double tail) {
   const std::size_t missing = bootstrap_selections - values.size();
   values.insert(values.end(), missing, infinite);
@@ -227,7 +227,7 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
 }
 
 Estimate ratio(const Estimate& a, const Estimate& b) {
-  const auto log_factor = [](double high, double low) {  // an end below zero is unbounded
+  const auto log_factor = [](double high, double low) {  // a negative lower end gives infinity
     return std::log(std::max(high, 0.0) / std::max(low, 0.0));
   };
   const double value = a.value / b.value;
@@ -248,7 +248,7 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   constexpr double power = 0.9;
   const double hit = both_sides ? (1 + power) / 2 : power;
   const double ratio = estimate.spread / distance;
-  // Student's quantiles exceed the normal quantiles, so the normal ones give a lower limit.
+  // Student's quantiles exceed normal quantiles, so normal quantiles give a lower limit for n.
   const double least = std::pow((normal_quantile(upper()) + normal_quantile(hit)) * ratio, 2);
   if (!(least <= most)) return std::nullopt;
   for (auto n = std::max(least_runs, static_cast<std::size_t>(least)); n <= most; ++n) {
@@ -304,7 +304,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
                                         double level) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
-  std::set<double> factors;  // log2 of those at which the order of the two groups changes
+  std::set<double> factors;  // log2 of the factors at which two runs change their order
   for (const Waiting& x : a) {
     for (const Waiting& y : b) {
       if (x.cycle > 0 && y.cycle > 0) factors.insert(std::log2(x.cycle / y.cycle));
@@ -315,9 +315,9 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   const double limit = student_quantile(upper(level), static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
   double negative = edges.front();  // the statistic is negative below this factor
-  double positive = edges.back();   // and positive above this one
+  double positive = edges.back();   // the statistic is positive above this factor
   Interval kept{infinite, -infinite};
-  for (std::size_t k = 0; k <= edges.size(); ++k) {  // between the edges
+  for (std::size_t k = 0; k <= edges.size(); ++k) {  // each interval between edges
     const double low = k == 0 ? -infinite : edges[k - 1];
     const double high = k == edges.size() ? infinite : edges[k];
     const double factor = k == 0 ? high - 1 : k == edges.size() ? low + 1 : (low + high) / 2;
@@ -328,7 +328,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
     if (z > 0 && k > 0) positive = std::min(positive, low);
   }
   double value = (negative + positive) / 2;
-  // Without an event in one group only a bound is known.
+  // If one group has no event, only a bound of the factor is known.
   if (event_cycles(a).empty()) value = infinite;
   if (event_cycles(b).empty()) value = -infinite;
   kept = {std::min(kept.low, value), std::max(kept.high, value)};

@@ -25,60 +25,57 @@ namespace shearcell {
 namespace {
 
 constexpr double smallest_face = 1e-13;         // [d^2]
-constexpr double coincidence_distance = 1e-10;  // Sites closer than this count as one [d].
-// In a dense packing, images farther away touch no cell. Other packings need a second pass.
+constexpr double coincidence_distance = 1e-10;  // closer sites coincide [d]
+// In a dense packing, images farther away do not affect a cell. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
-// A circumcentre is computed exactly if its error may be larger than this, relative to the larger
-// of 1 d and the radius of the sphere.
+// A circumcentre is computed in exact arithmetic if its error in doubles may exceed this value,
+// relative to the larger of 1 d and the radius of the sphere.
 constexpr double worst_centre_error = 1e-12;
 
 constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
 
-/// A site moved by a whole number of periods in z; image 0 is the site itself.
+/// A site shifted by a whole number of periods in z. Image 0 is the site itself.
 struct SiteImage {
-  std::int32_t site;  // -1: a guard
+  std::int32_t site;  // -1 for a guard (see Tessellation)
   std::int32_t image;
 
   auto operator<=>(const SiteImage&) const = default;
 };
 
-/// One cache line, since walks around edges visit tetrahedra in no order.
+/// Aligned to a cache line, since walks around edges access tetrahedra in irregular order.
 struct alignas(64) Tetrahedron {
-  std::array<std::int32_t, 4> vertex;     // below the number of sites: that site; -1: at infinity
-  std::array<std::int32_t, 4> neighbour;  // across the face opposite to each vertex
-  Eigen::Vector3d centre;                 // of its sphere, if one vertex is a measured site
-  std::uint8_t beyond;                    // a bit for each wall that the centre is not inside of
-  std::uint8_t edges_done;                // a bit for each edge
+  std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
+  std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
+  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
+  std::uint8_t beyond;                    // bit w: the centre is not inside wall w
+  std::uint8_t edges_done;                // a bit for each edge whose face was measured
 };
 
-/// The edges of a tetrahedron by the numbers of its corners.
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-/// The bit of the edge between two corners.
 constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
     {{0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}}};
 
-/// Number of the corner that is `vertex`, which must be one of the four.
+/// Number of the corner of t with this vertex; one of the four corners must have it.
 std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
   return (t.vertex[1] == vertex ? 1U : 0U) + (t.vertex[2] == vertex ? 2U : 0U) +
          (t.vertex[3] == vertex ? 3U : 0U);
 }
 
-/// The Voronoi cells of the first `measured` sites as the dual of a Delaunay triangulation.
+/// Computes the Voronoi cells of the first `measured` sites from a Delaunay triangulation.
 ///
-/// Predicates are exact, so this is the true triangulation of the positions as they are stored,
-/// however many of them share a plane or a sphere, and no bounded tetrahedron is flat.
-/// Circumcentres are computed in doubles where a forward error bound allows, and else in exact
-/// arithmetic. So tetrahedra on one sphere have one centre, and the faces between them no area but
-/// rounding.
+/// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
+/// even if many sites share a plane or a sphere, and no bounded tetrahedron is flat. Circumcentres
+/// are computed in doubles if an error bound allows it, otherwise in exact arithmetic. Tetrahedra
+/// on one sphere thus have one centre, and the faces between them have no area except rounding.
 ///
 /// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
-/// meet in a circumcentre use the same coordinates and the same decision whether it is inside a
-/// wall, so cells fit together without gaps. The sides of the polygons that lie on a wall bound the
-/// cells' faces on that wall.
+/// meet in a circumcentre use the same coordinates and the same decision whether the circumcentre
+/// is inside a wall, so cells fit together without gaps. The polygon sides on a wall are the
+/// borders of the cells' faces on that wall.
 ///
-/// Eight guards, the corners of a large cube, make every cell bounded. They are farther away in z
-/// than any image that a cell may need, so no cell that passes the test in measure() touches them.
+/// Eight guards at the corners of a large cube bound every cell. They are farther away in z than
+/// any image that a cell may need. So no cell that passes the test in measure() touches a guard.
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
@@ -106,9 +103,10 @@ class Tessellation {
     widen(first_margin_spacings * spacing);
   }
 
-  /// A cell is right if the sphere around each of its corners, through the site, lies within the
-  /// margin. More images can only make cells smaller, so a margin as wide as those spheres reach is
-  /// enough. Twice the margin is tried first, since a guard may bound a cell that lacks images.
+  /// The sphere around a corner of a cell passes through the site of the cell. A cell is correct if
+  /// the spheres around all its corners lie within the margin. More images only make cells smaller,
+  /// so the reach of the spheres is a sufficient margin. A guard may make the reach far too large,
+  /// so each pass at most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
@@ -125,8 +123,8 @@ class Tessellation {
     std::int32_t value = -1;
   };
   using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Number, Kernel>;
-  // A number fits into the padding of CGAL's cell; a centre would not. The smaller cells take a
-  // tenth less time.
+  // CGAL's cell stores only a number, which fits into the padding of the cell. With the
+  // circumcentre in the cell, the computation would take a tenth longer.
   using CellBase =
       CGAL::Triangulation_cell_base_with_info_3<Number, Kernel,
                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
@@ -134,13 +132,13 @@ class Tessellation {
       CGAL::Delaunay_triangulation_3<Kernel,
                                      CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
-  /// A face as seen from one of its sites.
+  /// A face as seen from one of its two sites.
   struct Side {
     SiteImage to;
     double area;
   };
 
-  /// A corner of a polygon, and on which wall the side to the next corner lies.
+  /// A corner of a polygon, and the wall on which the side to the next corner lies.
   struct Corner {
     Eigen::Vector3d at;
     std::size_t wall;
@@ -151,7 +149,7 @@ class Tessellation {
     return point_[static_cast<std::size_t>(vertex)];
   }
 
-  /// Adds the images in z whose distance from [0, depth) is less than `margin`.
+  /// Adds the periodic images whose distance in z from [0, depth) is less than `margin`.
   void widen(double margin) {
     const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
     for (std::int32_t k = 1; (k - 1) * cell_.depth < margin; ++k) {
@@ -228,7 +226,7 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // The origin is near the other sites, so that only edges to guards are long.
+    // With a measured site as origin, only the edges to guards are long.
     if (!is_measured(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
                        return is_measured(vertex);
@@ -245,8 +243,8 @@ class Tessellation {
     const double determinant = a.dot(bc);
     const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
 
-    // Forward error of Cramer's rule: numerator and determinant each lose a few roundoffs of the
-    // sum of the sizes of their terms. 32 covers the operations counted one by one.
+    // Forward error of Cramer's rule. The errors of numerator and determinant are a few roundoffs
+    // times the sum of the magnitudes of their terms; a count of the operations gives less than 32.
     constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
     const double radius = v.norm();
     const double la = std::sqrt(aa);
@@ -273,7 +271,7 @@ class Tessellation {
     return {-walls_[wall].normal[0], -walls_[wall].normal[1], 0};
   }
 
-  /// Notes how far the sphere around a cell's corner, through a site, reaches beyond the period.
+  /// Updates reach_ with the sphere that has its centre at `corner` and passes through the site.
   void note_reach(const Eigen::Vector3d& corner, std::int32_t vertex) {
     const double radius = (corner - point(vertex)).norm();
     reach_ = std::max({reach_, corner.z() + radius - cell_.depth, radius - corner.z()});
@@ -292,7 +290,7 @@ class Tessellation {
     }
   }
 
-  /// Measures the face between the sites at corners i and j of a tetrahedron.
+  /// Measures the face of the edge between corners i and j of tetrahedron `start`.
   void measure_face(std::size_t start, std::size_t i, std::size_t j) {
     const std::int32_t a = tetrahedra_[start].vertex[i];
     const std::int32_t b = tetrahedra_[start].vertex[j];
@@ -336,10 +334,10 @@ class Tessellation {
     } while (k != start);
   }
 
-  /// Twice the vector area of what the walls in `beyond` leave of a face. The sides that lie on
-  /// walls are added to the boundaries of the wall faces of the two cells. A wall face has the area
-  /// of the integral of -z du around it, where u is horizontal; its sides along the edges of the
-  /// box add nothing, since u is constant there.
+  /// Returns twice the vector area of the part of a face that lies inside the walls in `beyond`.
+  /// Also adds the contributions of the face's sides on walls to the areas of the wall faces of
+  /// both cells. The area of a wall face is the integral of -z du along its border, where u is
+  /// horizontal. Sides along the edges of the box contribute nothing, since u is constant there.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {
@@ -364,7 +362,7 @@ class Tessellation {
     return twice;
   }
 
-  /// Cuts off what is not inside a wall (Sutherland and Hodgman, Commun. ACM 17, 32 (1974)).
+  /// Cuts off the part outside a wall (Sutherland and Hodgman, Commun. ACM 17, 32 (1974)).
   void clip(std::size_t wall) {
     clipped_.clear();
     for_each_side(polygon_, [&](const Corner& p, const Corner& q) {
@@ -388,7 +386,7 @@ class Tessellation {
   VoronoiDiagram collect() {
     VoronoiDiagram diagram;
     diagram.faces.reserve(
-        16 * static_cast<std::size_t>(grains_));  // a little more than a dense packing has
+        16 * static_cast<std::size_t>(grains_));  // a little more than in a dense packing
     diagram.first.push_back(0);
     for (std::int32_t i = 0; i < grains_; ++i) {
       const std::size_t first = diagram.faces.size();
@@ -436,15 +434,15 @@ class Tessellation {
   std::int32_t measured_;
   double margin_ = 0;
   Triangulation triangulation_;
-  // By vertex: the sites, the guards, then images.
+  // By vertex number: the sites, then the guards, then images.
   std::vector<SiteImage> image_;
   std::vector<Eigen::Vector3d> point_;
-  std::size_t inserted_ = 0;  // so many of them are in the triangulation
+  std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
-  double reach_ = 0;  // of all spheres around corners, beyond the period in z [d]
+  double reach_ = 0;  // largest extent of a sphere around a corner beyond the period in z [d]
   std::vector<std::vector<Side>> sides_;          // by measured site
   std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
-  std::vector<Corner> polygon_;                   // the face at hand
+  std::vector<Corner> polygon_;                   // current face
   std::vector<Corner> clipped_;
 };
 

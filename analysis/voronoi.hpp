@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Voronoi cells of the grains in a sheared cell: wall grains as further sites, walls as clips.
+// Voronoi cells of the grains in a sheared cell. Wall grains are sites too; walls clip the cells.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,21 +16,21 @@ enum class NeighbourKind : std::uint8_t { grain, wall_grain, wall_plane };
 
 /// One face of a grain's Voronoi cell.
 struct VoronoiFace {
-  /// From the grain to the nearest image of the neighbour; for a wall plane, to the grain's mirror
-  /// image behind it [d].
+  /// Vector from the grain to the periodic image of the neighbour across the face [d]. For a wall
+  /// plane it ends at the grain's mirror image behind the plane.
   Eigen::Vector3d to_neighbour;
   double area;             ///< A_ij [d^2]
-  std::int32_t neighbour;  ///< grain id, place in Cell::wall_grains, or WallSide
+  std::int32_t neighbour;  ///< grain id, index in Cell::wall_grains, or WallSide
   NeighbourKind kind;
 };
 
-/// Column i of each array belongs to the grain with permanent id i.
+/// Arrays have one entry per grain, by permanent id; `faces` has the faces of all grains.
 struct VoronoiDiagram {
   std::vector<double> volume;      ///< V_cell,i [d^3]
-  std::vector<double> surface;     ///< A_i, the sum over all faces, wall planes included [d^2]
-  std::vector<std::size_t> first;  ///< n + 1 entries: faces of grain i are first[i] .. first[i+1]
+  std::vector<double> surface;     ///< A_i, the area of all faces, also on wall planes [d^2]
+  std::vector<std::size_t> first;  ///< n + 1 entries: grain i has faces first[i] to first[i+1] - 1
   std::vector<VoronoiFace> faces;
-  /// Volumes of the wall grains' cells inside the walls [d^3]; empty unless asked for.
+  /// Volumes of the wall grains' cells inside the walls [d^3]; empty with WallGrainCells::skip.
   std::vector<double> wall_grain_volume;
 
   std::span<const VoronoiFace> faces_of(std::size_t grain) const {
@@ -40,20 +40,20 @@ struct VoronoiDiagram {
 
 enum class WallGrainCells : std::uint8_t { skip, measure };
 
-/// Cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth), inside the walls in the
-/// given pose. With WallGrainCells::measure the volumes of all cells add up to that of the sheared
-/// box.
+/// Computes the cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth) inside the
+/// walls at `pose`. With WallGrainCells::measure the volumes of all cells add up to the volume of
+/// the sheared box.
 ///
-/// Cells are the dual of CGAL's Delaunay triangulation of sites and images: polygons of
-/// circumcentres, clipped by the walls. The faces of a grain are in ascending order of kind,
-/// neighbour and image. Faces no larger than 1e-13 d^2 are rounding and left out.
+/// The cells are dual to CGAL's Delaunay triangulation of the sites and their periodic images:
+/// faces are polygons of circumcentres, clipped by the walls. The faces of a grain are in ascending
+/// order of kind, neighbour and image. Faces of at most 1e-13 d^2 are rounding errors and left out.
 ///
-/// Throws AnalysisError, naming the grains, when two sites coincide or a grain lies on or outside a
-/// wall plane, and when the cell has no volume.
+/// Throws AnalysisError, with the numbers of the grains, if two sites coincide or a grain is on or
+/// outside a wall plane; also if a position is not finite or the cell has no volume.
 VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains,
                        WallGrainCells wall_grain_cells = WallGrainCells::skip);
 
-/// Sites for neighbour searches: the grains, then the wall grains, with z wrapped into one period.
+/// Sites for neighbour searches: grains, then wall grains, with z wrapped into one period.
 Eigen::Matrix3Xd wrapped_sites(const Cell& cell, const WallPose& pose,
                                const Eigen::Matrix3Xd& grains);
 
