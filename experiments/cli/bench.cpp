@@ -47,14 +47,14 @@ void add_speed(CLI::App& bench, Context& context) {
       bench, context, "speed",
       "Measure particle-steps per second in a sheared cell, and the time of each part of a step",
       speed);
-  add_number(*command, "--size", options->sizes, "Numbers of grains to measure", "N", 1, 100'000'000)
+  add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
   add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024)
       ->capture_default_str();
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)
       ->capture_default_str();
-  add_number(*command, "--seconds", options->seconds_per_repeat, "Duration of one timing [s]", "S", 0.01,
+  add_number(*command, "--seconds", options->seconds_per_repeat, "Seconds of one timing", "S", 0.01,
              60)
       ->capture_default_str();
   add_json_option(*command, context);

@@ -145,9 +145,8 @@ void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
     }
     const std::uint64_t low = std::stoull(first), high = std::stoull(last);
     if (high < low || high - low >= ManifestLimits::runs) {
-      refuse(fmt::format(
-          "a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
-          ManifestLimits::runs, part));
+      refuse(fmt::format("a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
+                         ManifestLimits::runs, part));
     }
     for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
   }
@@ -282,12 +281,13 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
     });
   });
   if (left_out == 0) return;
-  warn(context,
-       fmt::format(
-           "{}: the store's newest manifest of experiment {} differs from this file and has {} that "
-           "this plan lacks. After this manifest is run, figures omit these runs. To show all runs, "
-           "run one manifest that lists the runs of both; only missing runs are computed.",
-           manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
+  warn(
+      context,
+      fmt::format(
+          "{}: the store's newest manifest of experiment {} differs from this file and has {} that "
+          "this plan lacks. After this manifest is run, figures omit these runs. To show all, run "
+          "one manifest that lists the runs of both; only missing runs are computed.",
+          manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 
 }  // namespace
@@ -340,7 +340,7 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 }
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
-  command.add_option("--engine", options.engine, "Program that computes the shear (default: shearcell)")
+  command.add_option("--engine", options.engine, "Program for the shear (default: shearcell)")
       ->check(one_of<EngineKind>())
       ->type_name("NAME");
 }

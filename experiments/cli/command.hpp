@@ -42,7 +42,7 @@ struct Context {
 /// Prints a warning to standard error and appends it to `context.warnings` for JSON output.
 void warn(Context& context, const std::string& warning);
 
-/// Sets the exit code, unless a more serious one is set already. Most serious first: 4, 3, 2, 1, 85.
+/// Sets the exit code, unless a more serious one is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
 
 /// Opens the store for reading. Returns nothing if the folder does not exist or is empty.
@@ -82,8 +82,6 @@ bool is_stream(const std::string& out);
 /// Writes `text` to the stream `out`, or with write_output() to the file `out`. Control characters
 /// are escaped on a terminal.
 void write_result(const std::string& out, const std::string& text);
-
-/// Adds the option --json.
 void add_json_option(CLI::App& command, Context& context);
 
 /// Adds a subcommand that calls run(options, context). The options exist as long as the parser.
@@ -146,10 +144,7 @@ CLI::IsMember one_of() {
   return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
 }
 
-/// Adds the option --threads T.
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);
-
-/// Adds the option --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 
 /// Returns the folder of the store if it exists, else its nearest parent folder that exists.

@@ -55,7 +55,7 @@ Check disk(const fs::path& place) {
   shape.grains = 5200;
   return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
           free > 1e9 ? "ok" : "low",
-          free > 0 ? fmt::format("enough for {:.0f} checkpoints of 5200 grains",
+          free > 0 ? fmt::format("room for {:.0f} checkpoints of 5200 grains",
                                  free / checkpoint_bytes(shape))
                    : ""};
 }
@@ -69,9 +69,8 @@ Check filesystem(const fs::path& place) {
   if (std::ranges::count(network, type) == 0) {
     return {"file system", fmt::format("local (type {:#x})", type), "ok", ""};
   }
-  return {
-      "file system", fmt::format("network (type {:#x})", type), "slow",
-      "keep the store on a local disk and `merge` it later; SQLite's locks fail on a network"};
+  return {"file system", fmt::format("network (type {:#x})", type), "slow",
+          "keep the store on a local disk and `merge` it later; SQLite's locks fail on a network"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {
@@ -165,7 +164,7 @@ void doctor(const DoctorOptions& options, Context& context) {
 void add_doctor(CLI::App& app, Context& context) {
   const auto [command, options] =
       add_command(app, context, "doctor", "Check this machine and measure its speed", doctor);
-  command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (about five seconds)");
+  command->add_flag("--no-speed", options->no_speed, "Do not measure the speed (5 seconds)");
   add_common_options(
       *command, context,
       "The exit code is 1 if a store cannot be written in the folder of --store.\n"

@@ -49,17 +49,16 @@ bool is_folder(const ExportFormat& format) {
   return *format.ending == '\0';
 }
 
-// To add a format, add one entry here.
 const std::array kFormats = {
     ExportFormat{"h5md", "H5MD 1.1, one file for MDAnalysis, h5py and VMD; lengths in nm", ".h5md",
                  [](const auto& out, auto frames, auto) { return h5md_writer(out, frames); }},
-    ExportFormat{"extxyz", "extended XYZ, one file for OVITO, ASE and MDAnalysis; lengths in d", ".xyz",
-                 [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
+    ExportFormat{"extxyz", "extended XYZ, one file for OVITO, ASE, MDAnalysis; lengths in d",
+                 ".xyz", [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder for ParaView; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "LAMMPS data and scripts that continue the run, a folder for LAMMPS and OVITO; SI units", "",
+    ExportFormat{"lammps", "LAMMPS data and scripts, a folder for LAMMPS and OVITO; SI units", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
-    ExportFormat{"contacts", "contacts with overlap and force as CSV, and run.json, a folder for pandas", "",
+    ExportFormat{"contacts", "overlaps and forces as CSV, and run.json, a folder for pandas", "",
                  [](const auto& out, auto, auto) { return contacts_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
@@ -132,12 +131,12 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
     if (all.empty()) {
       throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", stage.id));
     }
-    throw std::invalid_argument(fmt::format(
-        "run {:.8} has no stored checkpoint{}{}; {}", stage.id, cycles.empty() ? "" : " in cycles ",
-        cycles,
-        pruned > 0 ? "`shearcell regenerate` recomputes the pruned checkpoints"
-                   : fmt::format("the run has checkpoints of cycles {} to {}", all.front().cycle,
-                                 all.back().cycle)));
+    throw std::invalid_argument(
+        fmt::format("run {:.8} has no stored checkpoint{}{}; {}", stage.id,
+                    cycles.empty() ? "" : " in cycles ", cycles,
+                    pruned > 0 ? "`shearcell regenerate` recomputes the pruned checkpoints"
+                               : fmt::format("the run has checkpoints of cycles {} to {}",
+                                             all.front().cycle, all.back().cycle)));
   }
   if (pruned > 0) {
     print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
@@ -154,7 +153,7 @@ void require_new(const fs::path& out, bool folder) {
   }
 }
 
-/// Returns the names of the files in the folder `out`. If `out` is a file, returns the name of `out`.
+/// Returns the names of the files in the folder `out`. If `out` is a file, returns its name.
 std::vector<std::string> files_of(const fs::path& out) {
   std::vector<std::string> files;
   if (!fs::is_directory(out)) return {out.filename().string()};
@@ -165,7 +164,7 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-/// Returns the contents of a crate, with the parameters that affect the runs, as `show` prints them.
+/// Returns the contents of a crate. Its parameters are those that affect the runs, as in `show`.
 CrateFacts crate_of(const Store& store, const std::string& run, const std::string& licence) {
   CrateFacts facts = crate_facts(store, run);
   facts.licence = licence;
@@ -367,7 +366,7 @@ void add_export(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
-      "run", options->runs, "Run ids, or unique beginnings of run ids (default: all selected runs)");
+      "run", options->runs, "Run ids, or unique beginnings of run ids (default: all selected)");
   add_selection_options(*command, options->selection);
   for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));
@@ -389,7 +388,7 @@ void add_export(CLI::App& app, Context& context) {
           "Only checkpoints of these cycles (default: all that the experiments ask for; not with "
           "ro-crate)")
       ->type_name("A[:B[:STEP]]");
-  command->add_flag("--metres", options->metres, "Write extended XYZ in SI units instead of diameters");
+  command->add_flag("--metres", options->metres, "Write extended XYZ in SI units, not diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);

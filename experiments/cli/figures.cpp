@@ -107,7 +107,7 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
       };
       if (std::ranges::any_of(said, is_it)) continue;
       print_stderr("warning: {}: {}\n", experiment,
-                   with_nearest(fmt::format("primary: there is no claim '{}'", claim), claim, said));
+                   with_nearest(fmt::format("primary: no claim is '{}'", claim), claim, said));
     }
   }
 }
@@ -173,7 +173,6 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// Help text: what the command does, and a list of all figures with the keys that they compare.
 std::string about_figures() {
   std::string text =
       R"(Draws the figures, plots and claims of the store's manifests, once for each experiment that lists
@@ -205,8 +204,10 @@ void add_figures(CLI::App& app, Context& context) {
   FigureOptions& how = options->how;
   how.folder = "shearcell-figures";
   command->add_option("figure", options->names, "Names of figures, such as S2 (default: all)");
-  command->add_flag("--all", options->all, "Draw all figures that the store's manifests list (the default)");
-  command->add_option("--out", how.folder, "Folder to write to, as DIR/EXPERIMENT/SCALE/NAME.csv, ...")
+  command->add_flag("--all", options->all,
+                    "Draw all figures of the store's manifests (the default)");
+  command
+      ->add_option("--out", how.folder, "Folder to write to (DIR/EXPERIMENT/SCALE/NAME.csv, ...)")
       ->capture_default_str()
       ->check(unfit_folder)
       ->type_name("DIR");

@@ -10,7 +10,6 @@
 namespace shearcell::cli {
 namespace {
 
-// Returns the first of these keys that the event has, with its value.
 std::string gist(const nlohmann::json& body) {
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
     if (body.contains(key)) return fmt::format("{} {:.60}", key, short_text(body[key]));
@@ -18,7 +17,7 @@ std::string gist(const nlohmann::json& body) {
   return "";
 }
 
-/// The name of the stream, with its id shortened to eight digits.
+/// Returns the stream with its id shortened to eight digits.
 std::string shown_stream(const std::string& stream) {
   const bool has_id = stream.starts_with("run/") || stream.starts_with("manifest/");
   return has_id ? stream.substr(0, stream.find('/') + 9) : stream;

@@ -57,7 +57,6 @@ const std::vector<std::pair<const char*, std::vector<AddCommand*>>> kCommands = 
     {"Share", {add_merge, add_export}},
     {"This program", {add_doctor, add_bench, add_manual}}};
 
-/// Wraps help pages to the width of the terminal.
 struct HelpFormatter : CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
@@ -93,7 +92,6 @@ bool is_any(const std::exception& error) {
   return ((dynamic_cast<const Errors*>(&error) != nullptr) || ...);
 }
 
-// Returns the exit code of the program if this error ends it.
 ExitCode exit_code_of(const std::exception& error) {
   if (is_any<UsageError, NotOurs, GeometryError>(error)) return kUsageError;
   if (is_any<NumericalFailure>(error)) return kRunFailed;
@@ -150,7 +148,7 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() returns the lowest free number: that of the closed stream. Using it fails in this mode.
+    // open() returns the number of the closed stream. Using the stream in this mode fails.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
@@ -165,8 +163,7 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname() would overwrite the value of --store, since CLI11 reads the variable again for
-  // every subcommand.
+  // Not by CLI11's envname(), which reads the variable in each subcommand and overwrites --store.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
@@ -192,8 +189,8 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kUsageError;
   } catch (const nlohmann::json::exception& error) {
     const std::string why = fmt::format(
-        "{}: a record of the store is malformed ({}); run `shearcell verify`, and restore the store "
-        "from a backup",
+        "{}: a record in the store is malformed ({}); run `shearcell verify`, and restore the "
+        "store from a backup",
         context.store, error.what());
     return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {

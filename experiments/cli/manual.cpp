@@ -154,7 +154,8 @@ std::string reference(const CLI::App& program) {
       manifest_reference() + measure_reference() + estimator_reference() + figure_reference() +
       "\n## Commands\n\n"
       "Every command has `--help`. The environment variable `SHEARCELL_STORE` names the store if "
-      "`--store` is not\ngiven, `SHEARCELL_LAMMPS` names the LAMMPS program to use instead of `lmp` "
+      "`--store` is not\ngiven, `SHEARCELL_LAMMPS` names the LAMMPS program to use instead of "
+      "`lmp` "
       "on PATH, and `NO_COLOR`\nturns colours off.\n";
   for (const CLI::App* command : program.get_subcommands({})) {
     text += command_reference(*command, "shearcell " + command->get_name());

@@ -44,7 +44,6 @@ std::string entry(const Field& field) {
   return commented(about) + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
 }
 
-/// A list of the figures and the keys that they compare, as comments.
 std::string figure_comments() {
   std::string text = "# Figures, with the keys that an experiment must vary:\n";
   for (const Figure& figure : all_figures()) {

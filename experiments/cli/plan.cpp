@@ -36,7 +36,6 @@ double cycles_of(const Line& line) {
   return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
 
-// Names of the other experiments that use the stage.
 std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
   for (const Membership& m : line.memberships) {
@@ -74,22 +73,20 @@ void print_numerics(const std::vector<Line>& lines) {
     const Parameters& p = parameters_of(line);
     const std::string& kind = line.stage.kind;
     const auto step = time_step_of(line);
-    Facts row = {
-        {"", kind, "stage"},
-        {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
-        {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
-         "steps/cycle"},
-        {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
-        {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
-        {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
-        {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // expected mean
+    Facts row = {{"", kind, "stage"},
+                 {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
+                 {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
+                  "steps/cycle"},
+                 {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
+                 {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
+                 {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
+                 {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // expected mean
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
   print_table(rows);
 }
 
-// How runs by LAMMPS differ from runs by this program.
 const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. This program settles the packings, for the runs of both.",
     "LAMMPS gives the results of this program up to rounding, which depends on --mpi.",
@@ -149,8 +146,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
   }
 }
 
-// Returns the particle-steps that are left if each run ends where runs with the same `until` ended
-// on average. Null if no run has an `until`, or if no run with one of the `until` has ended.
+// Returns the particle-steps that are left if each run ends at the mean end of earlier runs with
+// the same `until`. Null if no run has an `until`, or if for some `until` no run has ended yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // expected end for each `until`; finding it reads all runs
@@ -183,14 +180,13 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer; an estimate needs a run that this `until` has ended\n");
+    fmt::print("fewer; the number is estimated after a run with this `until` has ended\n");
   } else {
     fmt::print("about {:.3g} particle-steps ({:.0f} %), if runs end when earlier runs ended\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
 
-// The names of the plans without repetition.
 std::string joined(const std::vector<Plan>& plans, std::string (*name)(const Plan&)) {
   std::vector<std::string> names;
   for (const Plan& plan : plans) {

@@ -64,7 +64,6 @@ std::string fitted(const std::string& cell, const Column& column) {
   return column.right ? room + shown : shown + room;
 }
 
-/// Colours `text` if `word` is a state or an outcome.
 std::string painted(const std::string& word, const std::string& text) {
   using fmt::terminal_color;
   static const std::map<std::string, terminal_color> colours = {

@@ -261,7 +261,7 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
     print_problems(outcome, "not measured", context);
     if (!outcome.cache_trouble.empty()) fail(context, kOtherError);
     if (records.size() < chosen) {
-      print_stderr("kept the files of {} that could not be measured\n",
+      print_stderr("kept: the files of {} that could not be measured\n",
                    counted(chosen - records.size(), "checkpoint"));
     }
   }
@@ -275,8 +275,8 @@ void add_prune(CLI::App& app, Context& context) {
   command->add_option("run", options->choice.runs,
                       "Only these runs: run ids, or unique beginnings of run ids");
   add_selection_options(*command, options->selection, true);
-  add_number(*command, "--keep-every", options->choice.keep_every, "Keep the files of every K-th cycle", "K", 1,
-             1'000'000'000);
+  add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle's files",
+             "K", 1, 1'000'000'000);
   command->add_flag("--last-too", options->choice.last_too,
                     "For completed stages, also delete the last file and files that other stages "
                     "start from");
@@ -294,7 +294,8 @@ Before a file is deleted, all missing measures are computed that `table`, the cu
 the simulations for figures of the store's manifests need. They are cached in derived.sqlite, so
 tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run is
 continued later, its new cycles lack measures that need a pruned checkpoint, such as
-msd_10_cycles_d2. `run` and `resume` recompute the files that they need; `regenerate` recomputes others.
+msd_10_cycles_d2. `run` and `resume` recompute the pruned files that they need. `regenerate`
+recomputes other files.
 Examples:
   shearcell prune --keep-every 10
   shearcell prune --last-too
@@ -309,14 +310,13 @@ void add_regenerate(CLI::App& app, Context& context) {
   command->add_option("checkpoint", options->checkpoints,
                       "SHA-256 hashes of checkpoints, or beginnings of these hashes");
   add_selection_options(*command, options->selection, true);
-  command->add_flag("--all", options->all, "Recompute all files of the store that are missing or damaged");
+  command->add_flag("--all", options->all, "Recompute all missing or damaged files of the store");
   add_threads_option(*command, options->threads, "Threads, for large cells");
   add_common_options(
       *command, context,
-      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If no earlier
-checkpoint has one, also recomputes the file of the state that the stage begins with. If a state or
-a file does not have the recorded hash, the file is not written, ReplayDiverged is recorded, and the
-exit code is 4.
+      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is none in the
+stage, also recomputes the file of the state that the stage begins with. If a state or a file does
+not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk

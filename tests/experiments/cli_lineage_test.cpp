@@ -98,7 +98,7 @@ TEST_F(CommandLineLineage, ChecksAPublishedFile) {
   expect(4, {"show", "out/tiny/base/S2b.csv"}, {"CHANGED"});
 
   write("other.csv", "a,b\n");
-  expect_refused({"show", "other.csv"}, {"unknown to this store"});
+  expect_refused({"show", "other.csv"}, {"this store has no record of the file"});
   expect_refused({"show", "missing.csv"}, {});
 }
 

@@ -378,8 +378,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       {"emptied",
        [&] { fs::resize_file(cache, 0); },
        0,
-       {" absent; the log does not cover 0 checkpoints"}},
-      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; the log does not cover 0 checkpoints"}},
+       {" missing; the log has no hashes for 0 checkpoints"}},
+      {"deleted",
+       [&] { fs::remove(cache); },
+       0,
+       {" missing; the log has no hashes for 0 checkpoints"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -429,7 +432,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"the log does not cover 20 checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"the log has no hashes for 20 checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 

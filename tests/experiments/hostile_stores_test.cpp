@@ -127,7 +127,7 @@ std::vector<Case> damaged_events() {
             })(s);
             Store(s, Access::write).rebuild();
           },
-          "are not those that it is named after", "found damaged files in the store"),
+          "are not those that it is named after", "stopped at damaged files in the store"),
   };
 }
 
