@@ -54,8 +54,8 @@ void add_speed(CLI::App& bench, Context& context) {
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)
       ->capture_default_str();
-  add_number(*command, "--seconds", options->seconds_per_repeat, "Seconds of one timing", "S", 0.01,
-             60)
+  add_number(*command, "--seconds", options->seconds_per_repeat, "Duration of one timing [s]", "S",
+             0.01, 60)
       ->capture_default_str();
   add_json_option(*command, context);
   command->footer(

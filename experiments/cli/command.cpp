@@ -58,7 +58,7 @@ std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "is empty; name a file or folder";
   std::error_code ignored;
-  // `verify` would report a file in such a folder as a remainder of a crash.
+  // `verify` would report a file in such a folder as a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";
@@ -69,7 +69,8 @@ std::string unfit_output(const std::string& path) {
 }
 
 std::string unfit_folder(const std::string& path) {
-  return path == "-" ? "is standard output, but a folder is needed; name one" : unfit_output(path);
+  return path == "-" ? "means standard output, but a folder is needed; name a folder"
+                     : unfit_output(path);
 }
 
 namespace {
@@ -105,7 +106,7 @@ void add_json_option(CLI::App& command, Context& context) {
 }
 
 void add_common_options(CLI::App& command, Context& context, const std::string& footer) {
-  command.add_option("--store", context.store, "Folder of the store; replaces $SHEARCELL_STORE")
+  command.add_option("--store", context.store, "Folder of the store (overrides $SHEARCELL_STORE)")
       ->default_str(
           Context{}.store)  // not $SHEARCELL_STORE, so the manual is the same on all machines
       ->check(unfit_folder)
@@ -175,12 +176,12 @@ std::filesystem::path existing_folder(const std::string& store) {
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
   command.add_option("--scale", options.scale, "Scale to use (default: desk)");
   add_number(command, "--cycles", options.cycles,
-             "Number of cycles to use instead of the manifest's. The store remembers the largest "
-             "number ever requested",
+             "Number of cycles, instead of the number in the manifest. The store keeps the largest "
+             "number that was ever requested",
              "N", 0, StoreLimits::cycles);
   add_number(command, "--seeds", options.seeds,
-             "Number of seeds to use instead of the manifest's. Runs of other seeds stay in the "
-             "store",
+             "Number of seeds, instead of the number in the manifest. Runs with other seeds stay "
+             "in the store",
              "N", 1);
   add_variant_option(command, options.variants);
   add_seed_option(command, options.only_seeds);
@@ -236,14 +237,13 @@ std::vector<Stage> known_runs(const Context& context) {
   return {};
 }
 
-// Whether runs of the manifest start from recorded states of other runs.
 bool starts_from_a_run(const Manifest& manifest) {
   return std::ranges::any_of(scales_of(manifest),
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that runs come before the runs that start from them. Manifests that start
-// from no other runs come first, since a `start` may name one of their runs by its id alone.
+// Sorts the manifests so that runs come before the runs that start from them. Manifests without
+// such a `start` come first, since a `start` may name any of their runs by the id of the run alone.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -266,8 +266,8 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   }
 }
 
-// Warns if figures will omit runs of the store: figures show only the manifest version that was
-// registered last and has runs at the scale.
+// Warns if figures will omit runs of the store. Figures show only the newest version of a manifest
+// that has runs at the scale.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -281,13 +281,12 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
     });
   });
   if (left_out == 0) return;
-  warn(
-      context,
-      fmt::format(
-          "{}: the store's newest manifest of experiment {} differs from this file and has {} that "
-          "this plan lacks. After this manifest is run, figures omit these runs. To show all, run "
-          "one manifest that lists the runs of both; only missing runs are computed.",
-          manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
+  warn(context,
+       fmt::format(
+           "{}: the store's newest manifest of experiment {} differs from this file and has {} "
+           "that this plan lacks. After this manifest is run, figures omit these runs. To show "
+           "all runs, run one manifest that lists them; only missing runs are computed.",
+           manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 
 }  // namespace
@@ -310,7 +309,7 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
     with_known.known = known;
     const Plan& plan = plans.emplace_back(expand(manifest, with_known));
     if (brief && plan.warnings.size() > most) {
-      warn(context, fmt::format("{}; and {} more warnings, which `shearcell plan` prints",
+      warn(context, fmt::format("{}; `shearcell plan` prints {} more warnings",
                                 plan.warnings.front(), plan.warnings.size() - 1));
     } else {
       for (const std::string& warning : plan.warnings) warn(context, warning);
@@ -329,8 +328,8 @@ std::string unfit(const std::string& text, Number low, Number high) {
   if (plain && *value >= low && *value <= high) return "";
   const bool open = high == std::numeric_limits<Number>::max();
   return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
-                     whole ? "whole " : "", low, open ? "on, in" : fmt::format("to {} in", high),
-                     text);
+                     whole ? "whole " : "", low,
+                     open ? "upwards, in" : fmt::format("to {} in", high), text);
 }
 template std::string unfit(const std::string&, std::uint64_t, std::uint64_t);
 template std::string unfit(const std::string&, double, double);
@@ -340,7 +339,9 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 }
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
-  command.add_option("--engine", options.engine, "Program for the shear (default: shearcell)")
+  command
+      .add_option("--engine", options.engine,
+                  "Program that computes the shear (default: shearcell)")
       ->check(one_of<EngineKind>())
       ->type_name("NAME");
 }

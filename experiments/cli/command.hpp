@@ -48,7 +48,7 @@ void fail(Context& context, ExitCode code);
 /// Opens the store for reading. Returns nothing if the folder does not exist or is empty.
 std::optional<Store> open_if_there(const std::string& folder);
 
-/// Prints the problems that a measurement met. Each line on a checkpoint begins with `left_out`.
+/// Prints the problems found while measuring. Each line on a checkpoint begins with `left_out`.
 /// Damaged files set exit code 4.
 void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
@@ -65,7 +65,7 @@ struct Freed {
 
 /// Measures the checkpoints with keep_measures(), then deletes their files. Checkpoints that cannot
 /// be measured keep their files; they are reported on standard error and removed from `records`.
-/// Exit code 4 if a file is damaged, 1 if measures cannot be cached. Thread-safe.
+/// Sets exit code 4 if a file is damaged, and 1 if measures cannot be cached. Thread-safe.
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
 
@@ -111,13 +111,13 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
 /// can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// A stage, and those of its places in experiments that are selected.
+/// A stage with its selected places. A place is the position of a stage in an experiment.
 struct PlacedRun {
   Stage stage;
   std::vector<Membership> places;
 };
 
-/// Groups runs by stage. Each stage occurs once, in the order in which it first occurs.
+/// Groups the runs by stage, in the order in which the stages first occur.
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// Returns an error message if the text is not a decimal number from `low` to `high`, else "". A

@@ -70,7 +70,7 @@ Check filesystem(const fs::path& place) {
     return {"file system", fmt::format("local (type {:#x})", type), "ok", ""};
   }
   return {"file system", fmt::format("network (type {:#x})", type), "slow",
-          "keep the store on a local disk and `merge` it later; SQLite's locks fail on a network"};
+          "keep the store on a local disk and `merge` it later; SQLite needs reliable locks"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {
@@ -164,7 +164,7 @@ void doctor(const DoctorOptions& options, Context& context) {
 void add_doctor(CLI::App& app, Context& context) {
   const auto [command, options] =
       add_command(app, context, "doctor", "Check this machine and measure its speed", doctor);
-  command->add_flag("--no-speed", options->no_speed, "Do not measure the speed (5 seconds)");
+  command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (5 seconds)");
   add_common_options(
       *command, context,
       "The exit code is 1 if a store cannot be written in the folder of --store.\n"

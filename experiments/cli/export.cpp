@@ -100,8 +100,8 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// Returns the cycles and checkpoints that experiments ask for in this run: all experiments if the
-// run was named by its id, else the selected experiments.
+// Returns what experiments ask of this run (cycles, `until`, checkpoints). All experiments count if
+// the run was named by its id, else only the selected experiments.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
@@ -153,7 +153,6 @@ void require_new(const fs::path& out, bool folder) {
   }
 }
 
-/// Returns the names of the files in the folder `out`. If `out` is a file, returns its name.
 std::vector<std::string> files_of(const fs::path& out) {
   std::vector<std::string> files;
   if (!fs::is_directory(out)) return {out.filename().string()};
@@ -164,7 +163,7 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-/// Returns the contents of a crate. Its parameters are those that affect the runs, as in `show`.
+/// Returns the contents of a crate. As in `show`, only parameters that affect the runs are listed.
 CrateFacts crate_of(const Store& store, const std::string& run, const std::string& licence) {
   CrateFacts facts = crate_facts(store, run);
   facts.licence = licence;
@@ -175,13 +174,11 @@ CrateFacts crate_of(const Store& store, const std::string& run, const std::strin
   return facts;
 }
 
-/// The experiment, variant and seed that give the exported file its name.
+/// Returns the place (experiment, variant and seed) that gives the exported file its name.
 Place shown_place(const PlacedRun& run) {
   return run.places.empty() ? first_place(run.stage) : run.places.front().place;
 }
 
-/// Writes the checkpoints to `out`, or the whole run if the format is RO-Crate. Returns the names
-/// of the files.
 std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
                                        const std::vector<CheckpointRecord>& records,
                                        const ExportFormat& format, const ExportOptions& options,
@@ -235,7 +232,6 @@ std::string check_uri(const std::string& text) {
              : text + " is not an https:// URI";
 }
 
-/// Throws CLI::ValidationError if an option has no effect on this format.
 void require_effect(const ExportOptions& options, const ExportFormat& format) {
   const bool crate = format.writer == nullptr;
   const auto refuse = [&](const char* option) {
@@ -246,8 +242,8 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// Returns the runs that the user named, or if none was named, newest_runs() of the selection. Each
-/// run occurs once.
+/// Returns the runs that the user named. If the user named no run, returns newest_runs() of the
+/// selection. Each run occurs once.
 std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // throws once here, instead of once for each run
   std::vector<PlacedRun> runs;
@@ -286,9 +282,9 @@ struct Exported {
   std::vector<std::string> files;
 };
 
-/// If `single`, writes one run to PATH, else all runs into the folder PATH. Writes into a temporary
-/// folder first and renames the folder when it is complete, so an export that is killed or fills
-/// the disk leaves nothing at PATH.
+/// Writes one run to PATH if `single` is true, else all runs into the folder PATH. Writes into a
+/// temporary folder first and renames the complete folder, so an export that is killed or fills the
+/// disk leaves nothing at PATH.
 std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single, MeasureOutcome& unread) {

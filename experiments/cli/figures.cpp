@@ -80,8 +80,8 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
-/// Warns of primary claims that are in no figure. Checks only experiments of which all figures were
-/// drawn from all runs.
+/// Warns of primary claims that no figure contains. Checks only experiments of which all figures
+/// were drawn from all runs.
 void warn_of_primary(const Store& store, const RunSelection& runs,
                      const std::map<std::string, std::vector<ComputedFigure>>& drawn) {
   if (!runs.variants.empty() || !runs.seeds.empty()) return;
@@ -112,8 +112,7 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
   }
 }
 
-/// Opens the store. If this user cannot write to the store (an archive, for example), opens the
-/// store for reading and sets `how.recorded` to false.
+/// Opens the store, only for reading if this user cannot write to the store (such as an archive).
 Store open_store(const std::string& folder, FigureOptions& how) {
   try {
     return Store(folder, Access::write);
@@ -213,7 +212,8 @@ void add_figures(CLI::App& app, Context& context) {
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
-      ->description("Draw only this experiment, even if its manifest does not list the figure");
+      ->description(
+          "Draw figures of this experiment only, even if its manifest does not list the figure");
   command->get_option("--scale")->expected(1)->description(
       "Scale of the runs (default: for each experiment, the scale of the run that was added last)");
   command

@@ -31,7 +31,6 @@ constexpr const char* kDescription =
 YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are drawn
 from the store alone.)";
 
-// Printed if the command line has no arguments.
 constexpr const char* kBegin =
     R"(shearcell computes experiments on sheared grains. Give a command:
   shearcell new mine                        # writes mine.yaml, a manifest with comments
@@ -78,8 +77,8 @@ constexpr const char* kNoMemory =
     "out of memory; close other programs, raise the limit (ulimit -v), or use fewer threads, "
     "fewer runs at a time or fewer grains";
 
-// Ends the program at once. The store survives this as it survives a kill. An exception is not
-// possible: it would need memory, and in a thread it would abort the program.
+// Ends the program at once, which is as safe for the store as a kill. Throwing an exception would
+// need memory, and in a thread the exception would abort the program.
 [[noreturn]] void end_without_memory() {
   for (const char* text : {"shearcell: ", kNoMemory, "\n"}) {
     (void)!write(STDERR_FILENO, text, std::strlen(text));
@@ -116,7 +115,7 @@ int complain(int code, const char* what) {
   return code;
 }
 
-/// Error message on an unknown command or unexpected arguments, with the most similar known word.
+/// Returns the error message for an unknown command or argument, with the most similar known word.
 std::string describe_extras(const CLI::App& app) {
   const CLI::App* at = &app;
   while (at->remaining().empty() && !at->get_subcommands().empty()) {
@@ -148,7 +147,7 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() returns the number of the closed stream. Using the stream in this mode fails.
+    // The file gets the number of the closed stream. In this mode, any use of the stream fails.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
@@ -163,14 +162,14 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // Not by CLI11's envname(), which reads the variable in each subcommand and overwrites --store.
+  // CLI11's envname() is not used, since every subcommand would read it and overwrite --store.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
-  app.formatter(std::make_shared<HelpFormatter>());  // set first: each new command copies it
+  app.formatter(std::make_shared<HelpFormatter>());  // set before commands copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // 0, so that the error message names an unknown subcommand
+  app.require_subcommand(0, 1);  // 0 allowed, so that the error names an unknown subcommand
   for (const auto& [group, commands] : kCommands) {
     for (AddCommand* const add : commands) add(app, context);
     for (CLI::App* command : app.get_subcommands({})) {

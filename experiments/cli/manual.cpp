@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kLongestChoice = 60;
 
-/// How to write an option, such as "--jobs, -j J". For a positional argument its name.
+/// Returns how to write an option, such as "--jobs, -j J", or the name of a positional argument.
 std::string usage(const CLI::Option& option) {
   const std::string names = CLI::detail::find_and_replace(option.get_name(false, true), ",", ", ");
   if (option.get_items_expected_max() == 0) return names;
@@ -47,7 +47,7 @@ std::string cell(const std::string& text) {
 
 std::string manifest_reference() {
   return "## Manifest keys\n\n"
-         "At the top level ([format and examples](manifest/README.md#format)):\n\n" +
+         "Keys at the top level ([format and examples](manifest/README.md#format)):\n\n" +
          manifest_markdown() + R"(
 ## Parameters
 
@@ -134,7 +134,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   if (const std::string rows = positionals + options; !rows.empty()) {
     text += "\n| argument | meaning |\n|---|---|\n" + rows;
   }
-  // Leaves out two help texts with lists of columns and figures, which the reference has above.
+  // The help texts of `table` and `figures` are left out, since their lists are printed above.
   const bool listed = command.get_name() == "table" || command.get_name() == "figures";
   if (!command.get_footer().empty() && !listed) {
     text += fmt::format("\n```text\n{}\n```\n", command.get_footer());
@@ -145,7 +145,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   return text;
 }
 
-/// The text of experiments/REFERENCE.md (test docs.reference).
+/// The text of experiments/REFERENCE.md. The test docs.reference compares text and file.
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"

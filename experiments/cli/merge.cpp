@@ -10,7 +10,7 @@
 namespace shearcell::cli {
 namespace {
 
-/// The notes of figures and tables on runs of the store that they leave out.
+/// Notes on the runs of the store that figures and tables leave out.
 std::set<std::string> left_out(const Store& store) {
   const std::vector<std::string> notes = newest_runs(select_runs(store, {})).notes;
   return {notes.begin(), notes.end()};
@@ -72,9 +72,8 @@ two stores record different states of one run at the same step. The sources do n
 merging a source again has no effect. If the stores have different versions of a manifest, figures
 show the version that was registered last, and this command names the runs that figures leave out.
 To show all runs, run one manifest that lists the runs of both; only missing runs are computed.
-Cached measures of a source are copied if those of three sampled checkpoints are confirmed by
-recomputing them. Files that this store has lost or pruned are not restored: copy them into its
-objects/ folder, or use `regenerate`.
+Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
+values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:
   shearcell merge task-1 task-2 --store all)");
 }

@@ -51,7 +51,6 @@ const Parameters& parameters_of(const Line& line) {
   return packing ? line.run->packing : line.run->parameters;
 }
 
-// The time step of the stage. `stiffen` has no time step.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = parameters_of(line);
   if (line.stage.kind == name_of(StageKind::prepare)) return time_step(p, p.settle_time_step_s);
@@ -66,7 +65,6 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
           {"over_stability_limit", step->over_stability_limit}};
 }
 
-// Prints time steps and expected overlaps of the stages, and prints equal rows only once.
 void print_numerics(const std::vector<Line>& lines) {
   std::vector<Facts> rows;
   for (const Line& line : lines) {
@@ -88,13 +86,12 @@ void print_numerics(const std::vector<Line>& lines) {
 }
 
 const std::vector<std::string> kLammpsCaveats = {
-    "LAMMPS computes only the shear. This program settles the packings, for the runs of both.",
-    "LAMMPS gives the results of this program up to rounding, which depends on --mpi.",
-    "Runs by LAMMPS have different ids. verify --replay, regenerate and prune leave them out.",
-    "The watchdog checks only their checkpoints, not every 1024th step. A run fails if the centre "
-    "of a grain reaches the plane of a wall."};
+    "LAMMPS computes only the shear. This program settles the packings of all runs.",
+    "Results of LAMMPS differ by rounding, which also depends on the number of processes.",
+    "Runs by LAMMPS have different ids. verify --replay, regenerate and prune skip these runs.",
+    "The watchdog checks only the checkpoints of runs by LAMMPS, not every 1024th step. These runs "
+    "fail if the centre of a grain reaches the plane of a wall."};
 
-// Returns notes on files of grains, on runs too large for this machine, and on runs by LAMMPS.
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
   std::vector<std::string> notes;
   for (const Plan& plan : plans) {
@@ -150,7 +147,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
 // the same `until`. Null if no run has an `until`, or if for some `until` no run has ended yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
-      ends;  // expected end for each `until`; finding it reads all runs
+      ends;  // expected cycle at which each `until` ends runs; computing the cycle reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
@@ -180,9 +177,9 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer; the number is estimated after a run with this `until` has ended\n");
+    fmt::print("fewer; an estimate is possible after a run with this `until` has ended\n");
   } else {
-    fmt::print("about {:.3g} particle-steps ({:.0f} %), if runs end when earlier runs ended\n",
+    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end as early as earlier runs\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
@@ -327,9 +324,9 @@ void plan(const PlanOptions& options, Context& context) {
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  const auto [command, options] =
-      add_command(app, context, "plan",
-                  "Show the runs of manifests, which are done, and the cost of the others", plan);
+  const auto [command, options] = add_command(
+      app, context, "plan",
+      "Show the runs of manifests, which runs are done, and the cost of the other runs", plan);
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);

@@ -67,7 +67,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage stage = store.stage(id);
-    // All experiments that share the run, since all of them lose its files.
+    // All experiments that share the run, since each of them loses the files of the run.
     std::set<std::string> experiments;
     for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
     // Files that an earlier `prune` recorded as pruned but did not delete before it was killed.
@@ -209,7 +209,6 @@ std::vector<CheckpointRecord> named_checkpoints(const Store& store,
   return records;
 }
 
-/// Returns the checkpoints of the selected runs whose files are missing or damaged.
 std::vector<CheckpointRecord> without_file(const Store& store, const RunSelection& selection) {
   std::vector<CheckpointRecord> records;
   for (const std::string& run : selected_ids(store, selection)) {
@@ -232,7 +231,7 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // Parents come first, then earlier steps, since each state is recomputed from an earlier state.
+  // Sorts parent stages first, then earlier steps: each state is recomputed from an earlier state.
   std::map<std::string, std::size_t> order;
   for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
@@ -275,8 +274,8 @@ void add_prune(CLI::App& app, Context& context) {
   command->add_option("run", options->choice.runs,
                       "Only these runs: run ids, or unique beginnings of run ids");
   add_selection_options(*command, options->selection, true);
-  add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle's files",
-             "K", 1, 1'000'000'000);
+  add_number(*command, "--keep-every", options->choice.keep_every,
+             "Keep the files of every K-th cycle", "K", 1, 1'000'000'000);
   command->add_flag("--last-too", options->choice.last_too,
                     "For completed stages, also delete the last file and files that other stages "
                     "start from");
@@ -288,14 +287,13 @@ and asks before it deletes them. Without a terminal, nothing is deleted unless -
 The newest checkpoint of each run and the checkpoints that other stages start from are kept. With
 --last-too, they are kept only for unfinished stages. If all stages are finished, only events and
 measures remain. They are small enough to publish, and figures, tables and merges still work.
-Checkpoints that this program cannot recompute are never deleted: checkpoints of LAMMPS and of
-programs with another bits version.
-Before a file is deleted, all missing measures are computed that `table`, the curves of plots and
-the simulations for figures of the store's manifests need. They are cached in derived.sqlite, so
-tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run is
-continued later, its new cycles lack measures that need a pruned checkpoint, such as
-msd_10_cycles_d2. `run` and `resume` recompute the pruned files that they need. `regenerate`
-recomputes other files.
+Checkpoints of LAMMPS and of programs with another bits version are never deleted, since this
+program cannot recompute these checkpoints.
+Before a file is deleted, missing measures are computed: all measures that tables and plots need,
+and the simulated measures that the store's figures need. The measures are cached in derived.sqlite,
+so tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run
+is continued later, its new cycles lack measures that need a pruned checkpoint, such as
+msd_10_cycles_d2. `run` and `resume` recompute pruned files that they need, `regenerate` others.
 Examples:
   shearcell prune --keep-every 10
   shearcell prune --last-too
@@ -311,7 +309,7 @@ void add_regenerate(CLI::App& app, Context& context) {
                       "SHA-256 hashes of checkpoints, or beginnings of these hashes");
   add_selection_options(*command, options->selection, true);
   command->add_flag("--all", options->all, "Recompute all missing or damaged files of the store");
-  add_threads_option(*command, options->threads, "Threads, for large cells");
+  add_threads_option(*command, options->threads, "Number of threads; useful for large cells");
   add_common_options(
       *command, context,
       R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is none in the

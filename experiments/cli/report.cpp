@@ -86,18 +86,19 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: all scales; figures have the scale of the newest run)");
-  sub->add_option("--run", packings.runs, "Show these runs in 3D, not the last of each variant")
+      "Only runs of this scale (default: all; figures show the scale of the run added last)");
+  sub->add_option("--run", packings.runs,
+                  "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,
              "Largest number of runs shown in 3D for each experiment")
       ->capture_default_str();
-  add_number(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spaced", "N",
-             1, 100000)
+  add_number(*sub, "--frames", packings.frames,
+             "Largest number of checkpoints of each run in 3D, evenly spaced", "N", 1, 100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
-             "Largest size of all packings in 3D; to fit, some checkpoints are left out", "MB", 0,
-             1000)
+             "Largest total size of packings in 3D; checkpoints that do not fit are left out", "MB",
+             0, 1000)
       ->capture_default_str();
   sub->add_flag_callback(
          "--drawings", [&options] { options.interactive = false; },

@@ -52,7 +52,6 @@ void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
                              "has no effect, since LAMMPS computes none of these runs. Omit --mpi");
 }
 
-// Throws ProgramError if LAMMPS is not installed.
 void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {
   find_lammps(options.parallel.ranks);
 } catch (const ProgramError& missing) {
@@ -156,7 +155,8 @@ void run(const RunOptions& options, Context& context) {
   print_result(compute(store, jobs, options, context), false, context);
 }
 
-// Removes jobs of failed stages and the jobs that depend on them. Returns whether it removed any.
+// Removes jobs of failed stages and the jobs that depend on them. Returns whether a job was
+// removed.
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   std::set<std::string> left;
   std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
@@ -194,7 +194,7 @@ std::function<void()> tried(std::function<void()> action, std::chrono::seconds i
 // disk. The copy is named after submission and task, so that a restarted task finds its copy.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
   if (scratch.empty()) return task;
-  const Store sound(task, Access::write);  // throws if the store is unusable, before it is copied
+  const Store sound(task, Access::write);  // throws before copying if the store is unusable
   const fs::path whole = fs::absolute(task);
   const fs::path copy = scratch_here(scratch) / fmt::format("shearcell-{}-{}",
                                                             whole.parent_path().filename().string(),
@@ -204,7 +204,6 @@ fs::path working_folder(const fs::path& task, const std::string& scratch) {
   return copy;
 }
 
-// Runs one task of an array job. `submit` has created the store of the task.
 void resume_task(const RunOptions& options, Context& context) {
   catch_batch_signals();
   // No slash at the end, since names of files beside the folder are derived from this path.
@@ -250,9 +249,10 @@ void resume_runs(const RunOptions& options, Context& context) {
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
-  add_number(command, "--jobs,-j", options.jobs, "Parallel runs (default: one per core)", "J", 1,
-             1024);
-  add_threads_option(command, options.parallel.threads, "Threads inside each run, for large cells");
+  add_number(command, "--jobs,-j", options.jobs,
+             "Number of runs computed at a time (default: one per core)", "J", 1, 1024);
+  add_threads_option(command, options.parallel.threads,
+                     "Threads inside each run; useful for large cells");
   add_number(command, "--mpi", options.parallel.ranks,
              "MPI processes of each LAMMPS run; the number affects the last digits of results", "N",
              1, 65536);
@@ -291,7 +291,7 @@ can share the work on one store. To use several machines, select different runs 
   resume->add_option("run", resume_options->inputs,
                      "Run ids, or unique beginnings of run ids (default: all runs)");
   add_worker_options(*resume, *resume_options);
-  resume->add_flag("--leave-failed", resume_options->leave_failed, "Leave out failed runs");
+  resume->add_flag("--leave-failed", resume_options->leave_failed, "Do not try failed runs again");
   CLI::Option* task =
       resume->add_flag("--task", resume_options->task,
                        "Work as a task of a job that `submit` queued; --store is the task's store");

@@ -76,7 +76,6 @@ Facts measures_at(const Store& store, const CheckpointRecord& record, Context& c
   return facts;
 }
 
-/// The measures of the newest checkpoint that was not rejected.
 Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints,
                       Context& context) {
   for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
@@ -95,7 +94,7 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   return engine;
 }
 
-/// One line for each value that the command line gave instead of the manifest.
+/// One line for each manifest value that an option of the command line replaced.
 std::vector<std::string> describe(const nlohmann::json& overrides) {
   std::vector<std::string> lines;
   for (const auto& [key, values] : overrides.items()) {
@@ -213,7 +212,6 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print_json(all);
 }
 
-/// Prints a heading and a formatted text as one line, without control characters.
 template <typename... Arguments>
 void say(std::string_view heading, fmt::format_string<Arguments...> format,
          Arguments&&... arguments) {
@@ -276,7 +274,6 @@ void print_manifests(const FigureLineage& lineage) {
   }
 }
 
-/// Prints the attempts of the stage and, if `list` is true, the given checkpoints.
 void print_stage(const RunLineage& stage, const std::vector<std::string>& checkpoints, bool list,
                  Makers& makers) {
   std::size_t number = 0;
@@ -313,7 +310,6 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   print_stage(run, input.checkpoints, list, makers);
 }
 
-// Prints the lineage of a figure. If `list` is true, prints every checkpoint behind the figure.
 void print(const FigureLineage& lineage, bool list) {
   Makers makers;
   const nlohmann::json& recorded = lineage.record.provenance;
@@ -344,7 +340,6 @@ void print(const FigureLineage& lineage, bool list) {
   makers.print();
 }
 
-// Prints the result of checking a file, unless `check` is empty, and then the lineage.
 void show(const FigureLineage& lineage, const Facts& check, bool list, const Context& context) {
   if (context.json) {
     nlohmann::json all = to_json(lineage);
@@ -431,7 +426,7 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.begin()->second);
 }
 
-// Throws NotFound if the name, such as "S4" or "drag/desk/S4", is that of a figure not drawn yet.
+// Throws NotFound if the name, such as "S4" or "drag/desk/S4", means a figure that was not drawn.
 void require_not_undrawn(const std::string& name) {
   const std::string figure = std::filesystem::path(name).filename().string();
   if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
@@ -439,7 +434,7 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-/// Throws NotFound if `name` is an experiment, since `show` cannot show its several runs.
+/// Throws NotFound if `name` is an experiment, since `show` shows only one run.
 void require_no_experiment(const std::string& name, const std::vector<Stage>& stages) {
   const auto is_it = [&](const Membership& m) { return m.place.experiment == name; };
   const auto is_of = [&](const Stage& stage) {
@@ -499,8 +494,8 @@ For a file of a figure (CSV, SVG or lineage): checks that the store recorded a f
 and that every checkpoint behind the file is intact; if not, the exit code is 4. Pruned checkpoints
 are counted, but they are not an error.
 With --json, `parameters` has the parameters that affect the run. `resolved` is the stored record,
-whose hash is the run's id. It has fixed values for some parameters that do not affect the run, such
-as max_overlap_diameters.
+whose hash is the run's id. Some parameters that do not affect the run (such as
+max_overlap_diameters) have fixed values in this record.
 Examples:
   shearcell show 3f9a
   shearcell show drag/smoke/S2

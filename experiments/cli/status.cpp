@@ -23,7 +23,7 @@ namespace {
 struct View {
   Store store;
   std::vector<PlacedRun> runs;
-  std::map<std::string, Lease> holders;  // for each run that a process computes now, by id
+  std::map<std::string, Lease> holders;  // leases of the runs that are being computed, by id
   QueueView queue;
   VariantNames names;
 
@@ -207,7 +207,6 @@ void print(const Estimate& left) {
       left.running ? ", until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
-/// Prints a table for each experiment, and a line with the number of stages in each state.
 void print_tables(const View& view) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Facts>> tables;
@@ -233,7 +232,6 @@ void print_tables(const View& view) {
   print_text("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
-/// Prints the tables, the estimate, and notes on single runs.
 void print(const View& view) {
   print_tables(view);
   std::string unknown;

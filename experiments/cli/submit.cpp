@@ -69,11 +69,11 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {} that are already queued or being computed, or wait for a packing that is; "
-        "see `shearcell status`\n",
+        "left out: {}, since work on their packings is already queued or running; see `shearcell "
+        "status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
-    fmt::print("Nothing to do: every run in the store is done\n");
+    fmt::print("Nothing to do: all runs are done\n");
   }
 }
 
@@ -92,9 +92,9 @@ void show_jobs(const fs::path& store, Result& result) {
     for (const std::string& word : job.command) line += shell_word(word) + " ";
     return fmt::format("{}\n\n{}", line, job.script);
   };
-  result.text =
-      fmt::format("Nothing was submitted. The array job:\n\n{}\nThe job that merges stores:\n\n{}",
-                  shown(array), shown(merging));
+  result.text = fmt::format(
+      "Nothing was submitted. The array job:\n\n{}\nThe job that merges the stores:\n\n{}",
+      shown(array), shown(merging));
 }
 
 /// Queues the array job and the job that merges its stores. If the second job cannot be queued,
@@ -172,7 +172,8 @@ void check_time(const JobOptions& job) {
 void submit(const SubmitOptions& options, Context& context) {
   check_time(options.job);
   const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
-  const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // valid in all tasks
+  const fs::path folder =
+      fs::weakly_canonical(fs::absolute(context.store));  // same path in all tasks
   if (const std::string why = unfit_path(folder); !why.empty()) throw UsageError(why);
   if (!options.dry_run) require_slurm();
   std::optional<Store> store = options.dry_run
@@ -223,9 +224,9 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(command, "--cpus-per-task,-c", job.cpus,
-             "Cores of a task, for as many runs at a time (default: one per run, at most 16)", "C",
-             1, 1024);
-  add_threads_option(command, job.threads, "Threads inside each run, for large cells");
+             "Number of cores, and of runs at a time, of a task (default: one per run, at most 16)",
+             "C", 1, 1024);
+  add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command
       .add_option("--scratch", job.scratch,
                   "Folder on each node's own disk to work in, such as /scratch or '$TMPDIR'. The "
@@ -242,7 +243,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->allow_extra_args(false)  // the next argument may be a manifest
       ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
-                   "Show the jobs and their tasks, but write and submit nothing; needs no Slurm");
+                   "Show the jobs and tasks without submitting; needs no Slurm and writes nothing");
 }
 
 }  // namespace

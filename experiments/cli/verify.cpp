@@ -64,8 +64,8 @@ std::string describe(const Replay& replay) {
     where = fmt::format("; largest difference in {}{}, {} ulp", d.field,
                         d.grain < 0 ? "" : fmt::format(" of grain {}", d.grain), d.ulp);
   }
-  return fmt::format("{}: DIVERGED after step {} and not later than step {}: {}{}", what,
-                     d.same_step, d.first_step, d.message, where);
+  return fmt::format("{}: DIVERGED after step {}, at step {} or earlier: {}{}", what, d.same_step,
+                     d.first_step, d.message, where);
 }
 
 nlohmann::json replay(const VerifyOptions& options, Context& context) {
@@ -218,12 +218,12 @@ void add_verify(CLI::App& app, Context& context) {
                    "Number and hash of the last event, as an earlier `verify` printed them")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
-  add_number(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
-             1'000'000'000);
+  add_number(*command, "--replay", options->replay,
+             "Recompute K sampled checkpoints and compare every bit", "K", 1, 1'000'000'000);
   add_number(*command, "--measures", options->measures,
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_number(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
-  add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
+  add_threads_option(*command, options->threads, "Threads of a replay; useful for large cells");
   add_common_options(
       *command, context,
       R"(Proves that no event or file was changed or lost, and that the tables follow from the events. Each
@@ -248,8 +248,7 @@ void add_rebuild(CLI::App& app, Context& context) {
   command->callback([&context] { rebuild(context); });
   add_common_options(
       *command, context,
-      R"(Use this command if `verify` reports a table that differs from the events. Events and checkpoints
-do not change.
+      R"(Use this command if `verify` reports wrong tables. Events and checkpoints do not change.
 Examples:
   shearcell rebuild)");
 }
