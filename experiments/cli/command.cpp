@@ -266,8 +266,8 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   }
 }
 
-// Warns if figures will omit runs of the store. Figures show only the newest version of a manifest
-// that has runs at the scale.
+// Warns if figures will omit runs of the store. If several versions of a manifest have runs at the
+// scale, figures show only the newest version.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -285,7 +285,7 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
        fmt::format(
            "{}: the store's newest manifest of experiment {} differs from this file and has {} "
            "that this plan lacks. After this manifest is run, figures omit these runs. To show "
-           "all runs, run one manifest that lists them; only missing runs are computed.",
+           "all runs, run one manifest that lists all of them; only missing runs are computed.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 

@@ -87,7 +87,7 @@ void print_numerics(const std::vector<Line>& lines) {
 
 const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. This program settles the packings of all runs.",
-    "Results of LAMMPS differ by rounding, which also depends on the number of processes.",
+    "Results of both programs differ by rounding errors, which depend on the number of processes.",
     "Runs by LAMMPS have different ids. verify --replay, regenerate and prune skip these runs.",
     "The watchdog checks only the checkpoints of runs by LAMMPS, not every 1024th step. These runs "
     "fail if the centre of a grain reaches the plane of a wall."};

@@ -155,8 +155,7 @@ void run(const RunOptions& options, Context& context) {
   print_result(compute(store, jobs, options, context), false, context);
 }
 
-// Removes jobs of failed stages and the jobs that depend on them. Returns whether a job was
-// removed.
+// Removes jobs of failed stages and jobs that depend on them. Returns whether a job was removed.
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   std::set<std::string> left;
   std::erase_if(jobs, [&](const StageJob& job) {  // parents come first

@@ -367,8 +367,8 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
   nlohmann::json list = nlohmann::json::array();
   std::string text =
       faults.empty()
-          ? fmt::format("{}, all present and right", counted(inputs, "checkpoint"))
-          : fmt::format("{}: {} present and right{}{}", counted(inputs, "checkpoint"),
+          ? fmt::format("{}, all present and unchanged", counted(inputs, "checkpoint"))
+          : fmt::format("{}: {} present and unchanged{}{}", counted(inputs, "checkpoint"),
                         inputs - changed - pruned,
                         pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
                         changed > 0 ? fmt::format(", {} missing or changed", changed) : "");

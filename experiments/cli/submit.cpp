@@ -224,7 +224,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(command, "--cpus-per-task,-c", job.cpus,
-             "Number of cores, and of runs at a time, of a task (default: one per run, at most 16)",
+             "Cores of each task; a task computes as many runs at a time as fit (default: one core "
+             "per run, at most 16)",
              "C", 1, 1024);
   add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command

@@ -88,8 +88,8 @@ void add_table(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_common_options(
       *command, context,
-      "Columns (each swept parameter adds a column after the seed; empty fields are unknown or do "
-      "not\napply):\n" +
+      "Columns (each swept parameter adds one after the seed; empty: unknown, or does not "
+      "apply):\n" +
           columns_text +
           "Simulated columns need an option, such as --rest. critical_size and all columns below "
           "it need\n--per run, which measures the newest checkpoint of each run. A run of several "

@@ -157,7 +157,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
              counted(report.checkpoints, "checkpoint"),
              format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
              !report.ok()                                  ? "DAMAGED"
-             : report.count(Finding::Severity::unread) > 0 ? "not all was checked"
+             : report.count(Finding::Severity::unread) > 0 ? "not everything was checked"
                                                            : "nothing was changed",
              report.head.seq, report.head.hash);
   if (measures.cached > 0) {

@@ -38,7 +38,8 @@ TEST_F(Commands, PruneOnlyListsByDefaultAndRegenerateRestores) {
   expect(0, {"verify"});
 
   const std::string sha = done.at("checkpoints").at(0).at("sha256");
-  expect(0, {"show", "out/tiny/base/S2a.csv"}, {"10 checkpoints: 6 present and right, 4 pruned"});
+  expect(0, {"show", "out/tiny/base/S2a.csv"},
+         {"10 checkpoints: 6 present and unchanged, 4 pruned"});
   fs::remove(path("shearcell-store/derived.sqlite"));
   expect(0, {"figures", "S2"}, {"shearcell regenerate " + sha.substr(0, 12)});
   expect(0, {"show", sha}, {"pruned; `shearcell regenerate"});
