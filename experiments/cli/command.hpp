@@ -153,7 +153,6 @@ std::filesystem::path existing_folder(const std::string& store);
 /// Prints one JSON value, indented by two spaces.
 void print_json(const nlohmann::json& facts);
 
-/// Returns the list of facts(item) for all items.
 auto list_of(const auto& items, const auto& facts) {
   std::vector<std::decay_t<decltype(facts(*std::begin(items)))>> list;
   for (const auto& item : items) list.push_back(facts(item));

@@ -69,8 +69,10 @@ Check filesystem(const fs::path& place) {
   if (std::ranges::count(network, type) == 0) {
     return {"file system", fmt::format("local (type {:#x})", type), "ok", ""};
   }
-  return {"file system", fmt::format("network (type {:#x})", type), "slow",
-          "keep the store on a local disk and `merge` it later; SQLite needs reliable locks"};
+  return {
+      "file system", fmt::format("network (type {:#x})", type), "slow",
+      "keep the store on a local disk and `merge` it later, since SQLite needs file locks, which "
+      "are unreliable on a network"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {

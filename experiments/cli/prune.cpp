@@ -96,7 +96,7 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} kept: LAMMPS or a program with another bits version computed them\n",
+    fmt::print("{} kept: not bitwise reproducible (made by LAMMPS or another version)\n",
                counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();
@@ -287,8 +287,8 @@ and asks before it deletes them. Without a terminal, nothing is deleted unless -
 The newest checkpoint of each run and the checkpoints that other stages start from are kept. With
 --last-too, they are kept only for unfinished stages. If all stages are finished, only events and
 measures remain. They are small enough to publish, and figures, tables and merges still work.
-Checkpoints of LAMMPS and of programs with another bits version are never deleted, since this
-program cannot recompute these checkpoints.
+Checkpoints of LAMMPS, and of versions of this program that round differently, are never deleted,
+since this program cannot recompute these checkpoints bit for bit.
 Before a file is deleted, missing measures are computed: all measures that tables and plots need,
 and the simulated measures that the store's figures need. The measures are cached in derived.sqlite,
 so tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run

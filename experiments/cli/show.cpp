@@ -231,7 +231,6 @@ class Makers {
   using Lines = std::vector<std::string>;
 
  public:
-  /// Returns a text such as "build 1, host 1".
   std::string number(const nlohmann::json& host) {
     const Maker maker = maker_of(host);
     return fmt::format("build {}, host {}",

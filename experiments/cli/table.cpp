@@ -88,7 +88,7 @@ void add_table(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_common_options(
       *command, context,
-      "Columns (each swept parameter adds one after the seed; empty: unknown, or does not "
+      "Columns (swept parameters add columns after the seed; an empty field is unknown or does not "
       "apply):\n" +
           columns_text +
           "Simulated columns need an option, such as --rest. critical_size and all columns below "
