@@ -27,7 +27,7 @@ std::string state_of(const Line& line) {
   if (line.look.done) return "done";
   if (line.stage.attempts == 0) return "to do";
   if (line.stage.state != StageState::completed) return std::string(name_of(line.stage.state));
-  // A completed stage that lacks cycles, or checkpoints that were requested later.
+  // A completed stage can lack cycles, or checkpoints that were requested later.
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
