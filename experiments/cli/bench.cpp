@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `bench`: measurements of the program itself.
+// `bench`: measures the speed of this program.
 #include <fmt/format.h>
 
 #include "experiments/bench/speed.hpp"
@@ -36,16 +36,16 @@ void speed(bench::SpeedOptions& options, Context& context) {
   print_list("sizes", list_of(bench::measure_speed(options), facts), context);
   if (context.json) return;
   fmt::print(
-      "M/s: million particle-steps/s, median of {}. limit: M/s if the units that multiply were "
-      "never idle.\nShares of one thread's time; search: building the outer neighbour list, "
-      "prune: the inner one.\n",
+      "M/s: million particle-steps per second, median of {} timings. limit: the M/s that no kernel "
+      "can exceed.\nPercentages of one thread's time: search% builds the outer neighbour list, "
+      "prune% the inner neighbour list.\n",
       options.repeats);
 }
 
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure particle-steps per second in the sheared rough cell, and the share of each part",
+      "Measure particle-steps per second in a sheared cell, and the time of each part of a step",
       speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
@@ -54,12 +54,12 @@ void add_speed(CLI::App& bench, Context& context) {
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)
       ->capture_default_str();
-  add_number(*command, "--seconds", options->seconds_per_repeat, "Length of one timing", "S", 0.01,
-             60)
+  add_number(*command, "--seconds", options->seconds_per_repeat, "Duration of one timing [s]", "S",
+             0.01, 60)
       ->capture_default_str();
   add_json_option(*command, context);
   command->footer(
-      "Checks that all kernels of this machine give the same state, then times each.\n"
+      "Checks that all kernels of this machine give the same state, then times each kernel.\n"
       "Examples:\n  shearcell bench speed --size 600 5200\n"
       "  shearcell bench speed --size 18200 --threads 1 2 --json");
 }

@@ -28,7 +28,7 @@ void fail(Context& context, ExitCode code) {
 }
 
 std::optional<Store> open_if_there(const std::string& folder) {
-  // `run` creates a store in an empty folder.
+  // An empty folder is not a store yet: `run` creates a store in it.
   std::error_code ignored;
   if (!std::filesystem::exists(folder) ||
       (std::filesystem::is_directory(folder) && std::filesystem::is_empty(folder, ignored))) {
@@ -56,20 +56,21 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 
 std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
-  if (path.empty()) return "names no file or folder";
+  if (path.empty()) return "is empty; name a file or folder";
   std::error_code ignored;
-  // `verify` would take such a file for the remains of a crash.
+  // `verify` would report a file in such a folder as a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";
     if (at.filename() != "objects" || !fs::exists(log, ignored)) continue;
-    return at.string() + " is where a store keeps its checkpoints; name another place";
+    return at.string() + " is where a store keeps its checkpoints; choose another path";
   }
   return "";
 }
 
 std::string unfit_folder(const std::string& path) {
-  return path == "-" ? "is standard output, and this is a folder; name one" : unfit_output(path);
+  return path == "-" ? "means standard output, but a folder is needed; name a folder"
+                     : unfit_output(path);
 }
 
 namespace {
@@ -83,7 +84,7 @@ bool is_stdout(const std::string& out) {
 bool is_stream(const std::string& out) {
   std::error_code missing;
   const std::filesystem::file_type type = std::filesystem::status(out, missing).type();
-  // A pipe of the shell, as `>(gzip)`. Opening another one would wait for its reader.
+  // Only pipes made by the shell, such as `>(gzip)`. Opening other pipes would wait for a reader.
   const bool pipe = type == std::filesystem::file_type::fifo && out.starts_with("/dev/fd/");
   return is_stdout(out) || pipe || type == std::filesystem::file_type::character;
 }
@@ -101,13 +102,13 @@ void write_result(const std::string& out, const std::string& text) {
 }
 
 void add_json_option(CLI::App& command, Context& context) {
-  command.add_flag("--json", context.json, "Print JSON for programs");
+  command.add_flag("--json", context.json, "Print the result as JSON");
 }
 
 void add_common_options(CLI::App& command, Context& context, const std::string& footer) {
-  command.add_option("--store", context.store, "Folder of the store; else $SHEARCELL_STORE")
+  command.add_option("--store", context.store, "Folder of the store (overrides $SHEARCELL_STORE)")
       ->default_str(
-          Context{}.store)  // not the variable's, so that the manual is the same everywhere
+          Context{}.store)  // not $SHEARCELL_STORE, so the manual is the same on all machines
       ->check(unfit_folder)
       ->type_name("DIR");
   add_json_option(command, context);
@@ -126,12 +127,12 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(
       command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or this label, as `status` has it. "
-      "Several values of one key are alternatives; values of different keys must all match",
+      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` shows "
+      "it. Several values of one key are alternatives. Values of different keys must all match",
       "KEY=V");
 }
 
-/// Adds the seeds of "6,8" or "6-9". Throws CLI::ValidationError.
+/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if it is invalid.
 void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
   const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
   for (std::size_t begin = 0; begin <= list.size();) {
@@ -145,9 +146,8 @@ void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
     }
     const std::uint64_t low = std::stoull(first), high = std::stoull(last);
     if (high < low || high - low >= ManifestLimits::runs) {
-      refuse(fmt::format(
-          "a range of seeds goes from the lower to the higher, and has at most {} (got '{}')",
-          ManifestLimits::runs, part));
+      refuse(fmt::format("a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
+                         ManifestLimits::runs, part));
     }
     for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
   }
@@ -159,7 +159,7 @@ void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
   };
   command
       .add_option_function<std::vector<std::string>>(
-          "--seed", take, "Only runs with these seeds, as 6, 6,8 or 6-9; may be repeated")
+          "--seed", take, "Only runs with these seeds, such as 6 or 6,8 or 6-9; may be repeated")
       ->allow_extra_args(false)
       ->type_name("N");
 }
@@ -168,18 +168,21 @@ void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
 
 std::filesystem::path existing_folder(const std::string& store) {
   std::filesystem::path place = std::filesystem::absolute(store);
-  std::error_code ignored;  // a folder that may not be entered is not there
+  std::error_code ignored;  // a folder that cannot be entered counts as missing
   while (!is_directory(place, ignored) && place.has_relative_path()) place = place.parent_path();
   return place;
 }
 
 void add_expand_options(CLI::App& command, ExpandOptions& options) {
-  command.add_option("--scale", options.scale, "Named size (default: desk)");
+  command.add_option("--scale", options.scale, "Scale to use (default: desk)");
   add_number(command, "--cycles", options.cycles,
-             "Cycles instead of the manifest's; the store keeps the largest number asked for", "N",
-             0, StoreLimits::cycles);
+             "Number of cycles, instead of the number in the manifest. The store keeps the largest "
+             "number that was ever requested",
+             "N", 0, StoreLimits::cycles);
   add_number(command, "--seeds", options.seeds,
-             "Number of seeds instead of the manifest's; runs that the store has stay", "N", 1);
+             "Number of seeds, instead of the number in the manifest. Runs with other seeds stay "
+             "in the store",
+             "N", 1);
   add_variant_option(command, options.variants);
   add_seed_option(command, options.only_seeds);
 }
@@ -196,7 +199,7 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   std::vector<PlacedRun> runs;
-  std::map<std::string, std::size_t> known;  // index in `runs`, by id
+  std::map<std::string, std::size_t> known;  // index in `runs` for each id
   for (const Run& run : selected) {
     const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
     if (fresh) runs.push_back({run.stage, {}});
@@ -218,30 +221,29 @@ void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& contex
     const Manifest& first = *known.try_emplace(manifest.experiment, &manifest).first->second;
     if (first.text == manifest.text) continue;
     warn(context,
-         fmt::format("{} and {} are different manifests of one experiment, {}: figures show only "
-                     "the one that is run last. Give each its own `experiment`.",
+         fmt::format("{} and {} are different manifests of one experiment, {}. Figures show only "
+                     "the manifest that is run last. Give one of them another `experiment`.",
                      first.file, manifest.file, manifest.experiment));
   }
 }
 
-// Of the store, for warnings.
+// Returns the stages of the store; empty if there is no store or the store cannot be read.
 std::vector<Stage> known_runs(const Context& context) {
   try {
     if (const auto store = open_if_there(context.store)) return store->stages();
   } catch (const std::exception&) {
-    // The command opens the store next, or creates it, and reports what is wrong.
+    // The command itself opens or creates the store next, and then reports the error.
   }
   return {};
 }
 
-// Whether runs of the manifest begin with the states of others.
 bool starts_from_a_run(const Manifest& manifest) {
   return std::ranges::any_of(scales_of(manifest),
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
 // Sorts the manifests so that runs come before the runs that start from them. Manifests without
-// such a `start` come first, since a `start` that names a run by its id may mean any of theirs.
+// such a `start` come first, since a `start` may name any of their runs by the id of the run alone.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -256,15 +258,16 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
     });
     if (ready == manifests.end()) {
       return warn(context,
-                  fmt::format("{}: these manifests start from each other's runs in a circle, so "
-                              "the store must already have the first of these runs",
+                  fmt::format("{}: the manifests start from each other's runs in a circle. The "
+                              "store must already have the runs that this manifest starts from",
                               next->file));
     }
     std::rotate(next, ready, ready + 1);
   }
 }
 
-// Figures show only the newest version that has runs at the scale.
+// Warns if figures will omit runs of the store. If several versions of a manifest have runs at the
+// scale, figures show only the newest version.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -280,9 +283,9 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
   if (left_out == 0) return;
   warn(context,
        fmt::format(
-           "{}: the store's newest manifest of experiment {} is another text, with {} that this "
-           "plan does not have. Once this manifest is run, figures show its version alone; to show "
-           "all, run one manifest that states the runs of both: it computes only what neither has.",
+           "{}: the store's newest manifest of experiment {} differs from this file and has {} "
+           "that this plan lacks. After this manifest is run, figures omit these runs. To show "
+           "all runs, run one manifest that lists all of them; only missing runs are computed.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 
@@ -290,7 +293,7 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
 
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief) {
-  constexpr std::size_t most = 3;  // warnings of one manifest
+  constexpr std::size_t most = 3;  // warnings printed for one manifest
   std::vector<Manifest> manifests;
   std::set<std::string> read;
   for (const std::string& path : paths) {
@@ -306,7 +309,7 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
     with_known.known = known;
     const Plan& plan = plans.emplace_back(expand(manifest, with_known));
     if (brief && plan.warnings.size() > most) {
-      warn(context, fmt::format("{}; and {} more warnings, which `shearcell plan` prints",
+      warn(context, fmt::format("{}; `shearcell plan` prints {} more warnings",
                                 plan.warnings.front(), plan.warnings.size() - 1));
     } else {
       for (const std::string& warning : plan.warnings) warn(context, warning);
@@ -325,8 +328,8 @@ std::string unfit(const std::string& text, Number low, Number high) {
   if (plain && *value >= low && *value <= high) return "";
   const bool open = high == std::numeric_limits<Number>::max();
   return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
-                     whole ? "whole " : "", low, open ? "on, in" : fmt::format("to {} in", high),
-                     text);
+                     whole ? "whole " : "", low,
+                     open ? "upwards, in" : fmt::format("to {} in", high), text);
 }
 template std::string unfit(const std::string&, std::uint64_t, std::uint64_t);
 template std::string unfit(const std::string&, double, double);
@@ -336,14 +339,16 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 }
 
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
-  command.add_option("--engine", options.engine, "What computes the shear (default: shearcell)")
+  command
+      .add_option("--engine", options.engine,
+                  "Program that computes the shear (default: shearcell)")
       ->check(one_of<EngineKind>())
       ->type_name("NAME");
 }
 
 void print_json(const nlohmann::json& facts) {
-  // Paths and hostnames may hold invalid UTF-8, which is replaced. Characters beyond ASCII are
-  // escaped, since a terminal may take some of them for commands.
+  // Paths and hostnames may contain invalid UTF-8, which is replaced. Characters beyond ASCII are
+  // escaped, since a terminal may interpret some of them as commands.
   fmt::print("{}\n", facts.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 

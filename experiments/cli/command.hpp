@@ -25,67 +25,66 @@ namespace shearcell::cli {
 enum ExitCode : int {
   kDone = 0,
   kOtherError = 1,  ///< the machine failed: disk full, store locked, out of memory
-  kUsageError = 2,  ///< usage or manifest
+  kUsageError = 2,  ///< an error in the command line or in a manifest
   kRunFailed = 3,   ///< a run failed numerically or does not fit into memory
   kStoreDamaged = 4,
   kInterrupted = 85,  ///< resumable
 };
 
-/// Common options, and the exit code.
+/// Values of the common options, warnings so far, and the exit code.
 struct Context {
   std::string store = "shearcell-store";
   bool json = false;
   int exit_code = kDone;
-  std::vector<std::string> warnings = {};  ///< of warn()
+  std::vector<std::string> warnings = {};  ///< all texts that warn() has printed
 };
 
-/// Prints a warning to standard error, and keeps it for the command's JSON.
+/// Prints a warning to standard error and appends it to `context.warnings` for JSON output.
 void warn(Context& context, const std::string& warning);
 
 /// Sets the exit code, unless a more serious one is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
 
-/// Opens the store for reading; nothing if there is no store yet.
+/// Opens the store for reading. Returns nothing if the folder does not exist or is empty.
 std::optional<Store> open_if_there(const std::string& folder);
 
-/// Prints the problems of measuring, each checkpoint after the words `left_out`. Damage sets the
-/// exit code.
+/// Prints the problems found while measuring. Each line on a checkpoint begins with `left_out`.
+/// Damaged files set exit code 4.
 void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
-// Each adds a subcommand to the parser; add_run also adds `resume`.
+// Each function adds one subcommand to the parser. add_run also adds `resume`.
 using AddCommand = void(CLI::App& app, Context& context);
 AddCommand add_plan, add_run, add_status, add_log, add_show, add_verify, add_rebuild, add_prune,
     add_regenerate, add_submit, add_merge, add_table, add_figures, add_report, add_export,
     add_bench, add_new, add_doctor, add_manual;
 
 struct Freed {
-  std::size_t measured = 0;  ///< checkpoints
+  std::size_t measured = 0;  ///< number of checkpoints
   std::uint64_t bytes = 0;
 };
 
-/// keep_measures(), then deletes the files of these checkpoints. Names those that cannot be
-/// measured, whose files are kept, and removes them from `records`; the exit code is then 4 for a
-/// damaged file, 1 if measures cannot be cached. Several threads may call it at once.
+/// Measures the checkpoints with keep_measures(), then deletes their files. Checkpoints that cannot
+/// be measured keep their files; they are reported on standard error and removed from `records`.
+/// Sets exit code 4 if a file is damaged, and 1 if measures cannot be cached. Thread-safe.
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
 
-/// Why nothing can be written to the path: it is empty, or among the checkpoint files of a store;
-/// "" if neither.
+/// Returns an error message if `path` is empty or lies in a store's folder of checkpoint files,
+/// else "".
 std::string unfit_output(const std::string& path);
-/// unfit_output() of a folder, which cannot be "-".
+/// Like unfit_output(), for the path of a folder. Also rejects "-", which means standard output.
 std::string unfit_folder(const std::string& path);
 
-/// Whether --out names an open stream: "-" (standard output), a pipe, or a device such as
-/// /dev/null.
+/// Whether `out` names a stream: "-" (standard output), a pipe made by the shell, or a device such
+/// as /dev/null.
 bool is_stream(const std::string& out);
 
-/// Writes to the stream, or else as write_output(). A terminal gets escaped text.
+/// Writes `text` to the stream `out`, or with write_output() to the file `out`. Control characters
+/// are escaped on a terminal.
 void write_result(const std::string& out, const std::string& text);
-
-/// --json.
 void add_json_option(CLI::App& command, Context& context);
 
-/// Adds a subcommand that calls run(options, context). Its options live as long as the parser.
+/// Adds a subcommand that calls run(options, context). The options exist as long as the parser.
 template <class Options>
 auto add_command(CLI::App& app, Context& context, const char* name, const char* about,
                  void (*run)(Options&, Context&)) {
@@ -95,32 +94,34 @@ auto add_command(CLI::App& app, Context& context, const char* name, const char* 
   return std::pair(command, options.get());
 }
 
-/// --store DIR and --json, and the text below all options.
+/// Adds --store DIR and --json. `footer` is the help text printed below the options.
 void add_common_options(CLI::App& command, Context& context, const std::string& footer);
 
-/// --scale, --cycles, --seeds, --variant and --seed, which select runs of a manifest.
+/// Adds --scale, --cycles, --seeds, --variant and --seed, which select the runs of a manifest.
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
-/// Reads and expands each manifest once. A manifest whose `start` names a run of another manifest
-/// comes after that one. warn() gets the warnings, also about runs of the store and about two
-/// different manifests of one `experiment`. With `brief`, many warnings of one manifest become one.
+/// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
+/// comes before B in the result. Passes all warnings to warn(). Also warns if two manifests of one
+/// experiment differ, or if the store has runs of another version of a manifest. With `brief`, more
+/// than three warnings of one manifest are replaced by the first warning and a count.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 
-/// --experiment, --scale, --variant and --seed, and with `states` --state; all can be repeated.
+/// Adds --experiment, --scale, --variant and --seed, and if `states` is true, --state. Each option
+/// can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// A stage with its selected places.
+/// A stage with its selected places. A place is the position of a stage in an experiment.
 struct PlacedRun {
   Stage stage;
   std::vector<Membership> places;
 };
 
-/// The stages of the runs, each once, in the order of their first places.
+/// Groups the runs by stage, in the order in which the stages first occur.
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
-/// An error message if the text is not a decimal number from `low` to `high`; else "". A double may
-/// have a fraction and an exponent; a std::uint64_t must not have leading zeros.
+/// Returns an error message if the text is not a decimal number from `low` to `high`, else "". A
+/// double may have a fraction and an exponent. A std::uint64_t must not have leading zeros.
 template <class Number>
 std::string unfit(const std::string& text, Number low, Number high);
 
@@ -137,59 +138,56 @@ CLI::Option* add_number(CLI::App& command, const std::string& names, Value& valu
   return command.add_option(names, value, help)->check(check)->type_name(type_name);
 }
 
-/// Allows the names of an enumeration.
+/// Returns a check that accepts only the names of the enumeration.
 template <class Enum>
 CLI::IsMember one_of() {
   return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
 }
 
-/// --threads T.
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);
-
-/// --engine NAME.
 void add_engine_option(CLI::App& command, ExpandOptions& options);
 
-/// The folder of the store, or the nearest existing folder above it.
+/// Returns the folder of the store if it exists, else its nearest parent folder that exists.
 std::filesystem::path existing_folder(const std::string& store);
 
-/// Prints one JSON value, indented by two.
+/// Prints one JSON value, indented by two spaces.
 void print_json(const nlohmann::json& facts);
 
-/// facts(item) for each item.
 auto list_of(const auto& items, const auto& facts) {
   std::vector<std::decay_t<decltype(facts(*std::begin(items)))>> list;
   for (const auto& item : items) list.push_back(facts(item));
   return list;
 }
 
-/// One value of a result: a key of its JSON and, with a heading, a cell of its table or a line.
+/// One value of a result. JSON prints it under its key. A value that has a heading is also printed
+/// as a table cell or a line of text.
 struct Fact {
-  std::string key;  ///< "" for text alone
+  std::string key;  ///< "" if JSON does not print the value
   nlohmann::json value;
-  std::optional<std::string> heading = {};  ///< of the column or line; none for JSON alone
-  std::optional<std::string> text = {};     ///< in the table or line; none: the value itself
+  std::optional<std::string> heading = {};  ///< heading of the column or line
+  std::optional<std::string> text = {};     ///< text to print instead of the value
 
   bool operator==(const Fact&) const = default;
 };
-using Facts = std::vector<Fact>;  ///< of one row, or of one thing
+using Facts = std::vector<Fact>;  ///< all values of one table row or one object
 
 /// The facts as one JSON object.
 nlohmann::json to_json(const Facts& facts);
 nlohmann::json to_json(const std::vector<Facts>& rows);
 
-/// Prints rows under their headings, which all of them have; each column as wide as its longest
-/// cell, numbers right-aligned. On a terminal, long words are cut with ~ at the end so that the
-/// table fits, and states have colours.
+/// Prints a table; all rows must have the same headings. Columns are as wide as their longest cell,
+/// and numbers are right-aligned. On a terminal, states are coloured, and the widest text columns
+/// are narrowed to fit; cut texts end with ~.
 void print_table(const std::vector<Facts>& rows);
 
-/// Prints "HEADING  text" for each fact that has a heading. Further lines of the text stand below
-/// the first one; an empty text has no line.
+/// Prints "HEADING  text" for each fact that has a heading. Further lines of a text are indented
+/// like its first line. Facts with an empty text are skipped.
 void print_lines(const Facts& facts);
 
-/// Prints {"NAME": [...]} or a table.
+/// Prints the rows as JSON, {"NAME": [...]}, or as a table.
 void print_list(const char* name, const std::vector<Facts>& rows, const Context& context);
 
-/// "12.3 kB".
+/// Formats a size with its unit, such as "12.3 kB".
 std::string format_bytes(double bytes);
 
 }  // namespace shearcell::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `doctor`: checks what the program needs from the machine, and measures its speed.
+// `doctor`: checks that the machine has what the program needs, and measures the speed.
 #include <fmt/format.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ struct Check {
 
 Check vectors(const std::string& simd) {
   if (simd != scalar_kernels().name) return {"vectors", simd, "ok", ""};
-  return {"vectors", simd, "slow", "the plain kernel has a twentieth of the speed of AVX-512"};
+  return {"vectors", simd, "slow", "the scalar kernel is 20 times slower than the AVX-512 kernel"};
 }
 
 Check memory() {
@@ -46,12 +46,12 @@ Check memory() {
     if (word == "MemAvailable:" && facts >> kib) bytes = std::min(bytes, 1024 * kib);
   }
   return {"memory", format_bytes(bytes) + " free", "ok",
-          fmt::format("enough for {:.1e} grains at once", bytes / kRunBytesPerGrain)};
+          fmt::format("enough for {:.1e} grains in all runs together", bytes / kRunBytesPerGrain)};
 }
 
 Check disk(const fs::path& place) {
   const double free = static_cast<double>(fs::space(place).available);
-  Geometry shape;  // rough walls, as by default
+  Geometry shape;  // has rough walls, the default
   shape.grains = 5200;
   return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
           free > 1e9 ? "ok" : "low",
@@ -71,19 +71,20 @@ Check filesystem(const fs::path& place) {
   }
   return {
       "file system", fmt::format("network (type {:#x})", type), "slow",
-      "keep the store on a local disk: SQLite's locks are not safe over a network; `merge` later"};
+      "keep the store on a local disk and `merge` it later, since SQLite needs file locks, which "
+      "are unreliable on a network"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {
   if (std::error_code none; fs::exists(store, none) && !fs::is_directory(store, none)) {
     return {"writing", store + " is a file", "missing",
-            "a store is a folder; name another one with --store"};
+            "a store is a folder; name a folder with --store"};
   }
   std::string name = (place / "shearcell-doctor-XXXXXX").string();
   const int file = mkstemp(name.data());
   if (file < 0) {
     return {"writing", fmt::format("not possible in {} ({})", place.string(), std::strerror(errno)),
-            "missing", "no store can be written there; name another folder with --store"};
+            "missing", "a store cannot be written there; name another folder with --store"};
   }
   constexpr int count = 10;
   const Stopwatch watch;
@@ -95,7 +96,7 @@ Check writing(const std::string& store, const fs::path& place) {
   fs::remove(name);
   if (!written) return {"writing", "failed in " + place.string(), "missing", "is the disk full?"};
   return {"writing", fmt::format("{:.1f} ms to sync", ms), ms < 100 ? "ok" : "slow",
-          "each checkpoint waits for about six of these"};
+          "storing a checkpoint needs about six syncs"};
 }
 
 Check program(const std::string& name, const std::string& use, const std::string& package) {
@@ -112,7 +113,7 @@ Check speed() {
   const double rate = std::ranges::max(results, {}, &bench::SpeedResult::median_rate).median_rate;
   const double cycle = 5200 * 45600 / (rate * 1e6);
   return {"speed", fmt::format("{:.0f} M particle-steps/s", rate), rate > 20 ? "ok" : "slow",
-          fmt::format("one core; a cycle of 5200 grains takes about {:.1f} s", cycle)};
+          fmt::format("on one core, one cycle with 5200 grains takes about {:.1f} s", cycle)};
 }
 
 std::vector<Check> examine(const std::string& store, bool with_speed) {
@@ -165,10 +166,10 @@ void doctor(const DoctorOptions& options, Context& context) {
 void add_doctor(CLI::App& app, Context& context) {
   const auto [command, options] =
       add_command(app, context, "doctor", "Check this machine and measure its speed", doctor);
-  command->add_flag("--no-speed", options->no_speed, "Do not measure (about five seconds)");
+  command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (5 seconds)");
   add_common_options(
       *command, context,
-      "The exit code is 1 if no store can be written in the folder of --store.\n"
+      "The exit code is 1 if a store cannot be written in the folder of --store.\n"
       "Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
 }
 

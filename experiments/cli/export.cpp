@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `export`: writes runs in the formats of other programs.
+// `export`: writes runs in the file formats of other programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,15 +33,15 @@ struct ExportOptions {
   std::string format;
   std::string out;
   std::string licence;
-  std::string cycles;  ///< "A", "A:B" or "A:B:STEP", each part may be empty; "" for all
+  std::string cycles;  ///< "A", "A:B" or "A:B:STEP"; parts may be empty; "" selects all cycles
   bool metres = false;
 };
 
 struct ExportFormat {
   const char* name;
   const char* title;
-  const char* ending;  ///< of the file's name; "" for a folder
-  /// Makes a writer of this number of frames to `out`; null for a crate, which has no frames.
+  const char* ending;  ///< ending of the file's name; "" if the format is a folder
+  /// Returns a writer of `frames` frames to `out`. Null for an RO-Crate, which has no frames.
   FrameWriter (*writer)(const fs::path& out, std::size_t frames, LengthUnit unit);
 };
 
@@ -49,17 +49,16 @@ bool is_folder(const ExportFormat& format) {
   return *format.ending == '\0';
 }
 
-// A new format is one entry here.
 const std::array kFormats = {
-    ExportFormat{"h5md", "H5MD 1.1, one file: MDAnalysis, h5py, VMD; lengths in nm", ".h5md",
+    ExportFormat{"h5md", "H5MD 1.1, one file for MDAnalysis, h5py and VMD; lengths in nm", ".h5md",
                  [](const auto& out, auto frames, auto) { return h5md_writer(out, frames); }},
-    ExportFormat{"extxyz", "extended XYZ, one file: OVITO, ASE, MDAnalysis; lengths in d", ".xyz",
-                 [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
-    ExportFormat{"vtk", "VTK PolyData and run.json, a folder: ParaView; SI", "",
+    ExportFormat{"extxyz", "extended XYZ, one file for OVITO, ASE, MDAnalysis; lengths in d",
+                 ".xyz", [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
+    ExportFormat{"vtk", "VTK PolyData and run.json, a folder for ParaView; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "LAMMPS data with a script to continue, a folder: LAMMPS, OVITO; SI", "",
+    ExportFormat{"lammps", "LAMMPS data and scripts, a folder for LAMMPS and OVITO; SI units", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
-    ExportFormat{"contacts", "pairs with overlap and force, CSV and run.json, a folder: pandas", "",
+    ExportFormat{"contacts", "overlaps and forces as CSV, and run.json, a folder for pandas", "",
                  [](const auto& out, auto, auto) { return contacts_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
@@ -67,16 +66,17 @@ const std::array kFormats = {
 struct CycleRange {
   double first = 0;
   double last = std::numeric_limits<double>::infinity();
-  double every = 0;  ///< 0: all checkpoints
+  double every = 0;  ///< step [cycles]; 0 selects all checkpoints
 
-  /// `near` is half a time step [cycles], so that 3.3 selects the nearest step.
+  /// Whether `cycle` is selected. `near` is half a time step [cycles], so that the cycle 3.3
+  /// selects the time step nearest to 3.3.
   bool holds(double cycle, double near) const {
     return cycle >= first - near && cycle <= last + near &&
            (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
   }
 };
 
-/// Reads --cycles. Throws std::invalid_argument.
+/// Reads the value of --cycles. Throws std::invalid_argument if it is invalid.
 CycleRange parse_cycles(const std::string& text) {
   CycleRange range;
   std::istringstream parts(text);
@@ -88,7 +88,7 @@ CycleRange parse_cycles(const std::string& text) {
     const bool fits = value && std::isfinite(*value) && *value >= (k == 2 ? 1e-9 : 0);
     if (k >= 3 || !fits) {
       throw std::invalid_argument(
-          "--cycles takes A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
+          "--cycles needs A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
     }
     *values[k] = *value;
     if (range.last < range.first) {
@@ -100,8 +100,8 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// For a run selected by its id: what any experiment asks of it. Else: what the selected experiments
-// ask of it.
+// Returns what experiments ask of this run (cycles, `until`, checkpoints). All experiments count if
+// the run was named by its id, else only the selected experiments.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
@@ -115,7 +115,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
-  // A single cycle may also be a checkpoint that an interruption left.
+  // A single cycle may also select a checkpoint that was stored when the run was interrupted.
   const bool by_name = range.first == range.last;
   std::vector<CheckpointRecord> all = store.checkpoints(stage.id, Listed::and_pruned);
   if (!by_name) {
@@ -131,11 +131,12 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
     if (all.empty()) {
       throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", stage.id));
     }
-    throw std::invalid_argument(fmt::format(
-        "run {:.8} has no stored checkpoint{}{}; {}", stage.id, cycles.empty() ? "" : " in cycles ",
-        cycles,
-        pruned > 0 ? "`shearcell regenerate` recomputes the pruned ones"
-                   : fmt::format("it has cycles {} to {}", all.front().cycle, all.back().cycle)));
+    throw std::invalid_argument(
+        fmt::format("run {:.8} has no stored checkpoint{}{}; {}", stage.id,
+                    cycles.empty() ? "" : " in cycles ", cycles,
+                    pruned > 0 ? "`shearcell regenerate` recomputes the pruned checkpoints"
+                               : fmt::format("the run has checkpoints of cycles {} to {}",
+                                             all.front().cycle, all.back().cycle)));
   }
   if (pruned > 0) {
     print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
@@ -144,15 +145,14 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   return records;
 }
 
-/// Throws unless `out` does not exist, or is an empty folder where a folder will be written.
+/// Throws std::invalid_argument if `out` exists. An empty folder is allowed if `folder` is true.
 void require_new(const fs::path& out, bool folder) {
   const bool usable = folder && fs::is_directory(out) && fs::is_empty(out);
   if (fs::exists(fs::symlink_status(out)) && !usable) {
-    throw std::invalid_argument(out.string() + " exists already. Name a new one.");
+    throw std::invalid_argument(out.string() + " already exists. Choose another path.");
   }
 }
 
-/// The names of the files in the folder `out`, or the name of the file `out`.
 std::vector<std::string> files_of(const fs::path& out) {
   std::vector<std::string> files;
   if (!fs::is_directory(out)) return {out.filename().string()};
@@ -163,7 +163,7 @@ std::vector<std::string> files_of(const fs::path& out) {
   return files;
 }
 
-/// A crate states the parameters that the runs had, as `show` prints them.
+/// Returns the contents of a crate. As in `show`, only parameters that affect the runs are listed.
 CrateFacts crate_of(const Store& store, const std::string& run, const std::string& licence) {
   CrateFacts facts = crate_facts(store, run);
   facts.licence = licence;
@@ -174,13 +174,11 @@ CrateFacts crate_of(const Store& store, const std::string& run, const std::strin
   return facts;
 }
 
-/// The place after which the exported file of the run is named.
+/// Returns the place (experiment, variant and seed) that gives the exported file its name.
 Place shown_place(const PlacedRun& run) {
   return run.places.empty() ? first_place(run.stage) : run.places.front().place;
 }
 
-/// Writes these checkpoints to `out`, or the whole run if the format is a crate. Returns the names
-/// of the files.
 std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
                                        const std::vector<CheckpointRecord>& records,
                                        const ExportFormat& format, const ExportOptions& options,
@@ -206,10 +204,10 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
   return files_of(out);
 }
 
-/// Writes the run to `out`, which does not exist or holds an earlier crate of the run, and returns
-/// the names of the files. Measures that are NaN because an earlier checkpoint cannot be read have
-/// a line in `unread`. Throws std::invalid_argument if the run cannot be exported, and FilePruned
-/// if a pruned checkpoint decides where the run ends.
+/// Writes the run to `out` and returns the names of the files. `out` must not exist, except as an
+/// earlier crate of the run. Measures that need an unreadable earlier checkpoint are written as
+/// NaN, with a line in `unread`. Throws std::invalid_argument if the run cannot be exported, and
+/// FilePruned if the end of the run cannot be determined without a pruned checkpoint.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out, MeasureOutcome& unread) {
@@ -219,13 +217,14 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
     try {
       return write_records(store, run, records, format, options, out, unread);
     } catch (const FilePruned&) {
-      // Another program pruned a chosen checkpoint, which is not chosen again.
+      // Another program has just pruned a chosen checkpoint. The next attempt leaves it out.
       if (!fs::exists(out / kCrateMetadata)) fs::remove_all(out);
     }
   }
 }
 
-// Readers of an RO-Crate take a text that is no web address for the name of a file in the crate.
+// Returns an error message if the text is not a web address, else "". Programs that read an
+// RO-Crate treat any other text as the name of a file in the crate.
 std::string check_uri(const std::string& text) {
   const bool web = text.starts_with("https://") || text.starts_with("http://");
   return web && text.find_first_of(" \"<>\\") == std::string::npos
@@ -233,7 +232,6 @@ std::string check_uri(const std::string& text) {
              : text + " is not an https:// URI";
 }
 
-/// Throws if an option has no effect on this format.
 void require_effect(const ExportOptions& options, const ExportFormat& format) {
   const bool crate = format.writer == nullptr;
   const auto refuse = [&](const char* option) {
@@ -244,9 +242,10 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// The named runs, or else the selected newest_runs(), each once.
+/// Returns the runs that the user named. If the user named no run, returns newest_runs() of the
+/// selection. Each run occurs once.
 std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& options) {
-  parse_cycles(options.cycles);  // throws here once, not for each run
+  parse_cycles(options.cycles);  // throws once here, instead of once for each run
   std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
     Stage stage = store.find_stage(prefix);
@@ -261,7 +260,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   return runs;
 }
 
-/// The name of a run's file in a folder of several: "drag_fluid=still_seed1_3f9a52c1.xyz".
+/// File name of one of several exported runs, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   const Place place = shown_place(run);
   std::string name =
@@ -278,21 +277,21 @@ std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
 }
 
 struct Exported {
-  std::string run;  ///< its id
-  fs::path out;     ///< PATH as given, or a file or folder in it
+  std::string run;  ///< id of the run
+  fs::path out;     ///< the PATH that was given, or a file or folder in PATH
   std::vector<std::string> files;
 };
 
-/// Writes a `single` run to `out`, several runs into the folder `out`. Writes into a temporary
-/// folder beside `out` and renames it when complete, so an export that is killed or meets a full
-/// disk leaves no `out`.
+/// Writes one run to PATH if `single` is true, else all runs into the folder PATH. Writes into a
+/// temporary folder first and renames the complete folder, so an export that is killed or fills the
+/// disk leaves nothing at PATH.
 std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single, MeasureOutcome& unread) {
-  // "frames/" has an empty file name.
+  // A path such as "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
-  // A crate may replace an earlier one of the run.
+  // A crate may replace an earlier crate of the same run.
   if (single && format.writer == nullptr && fs::exists(out) && !fs::is_empty(out)) {
     return {{runs.front().stage.id, options.out,
              write_run(store, runs.front(), format, options, out, unread)}};
@@ -363,7 +362,7 @@ void add_export(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
-      "run", options->runs, "Run ids, or unique beginnings of them (default: all selected)");
+      "run", options->runs, "Run ids, or unique beginnings of run ids (default: all selected)");
   add_selection_options(*command, options->selection);
   for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));
@@ -375,29 +374,31 @@ void add_export(CLI::App& app, Context& context) {
     formats += fmt::format("  {:<10} {}\n", format.name, format.title);
   }
   command->add_option("--to", options->format, "Format")->required()->check(CLI::IsMember(names));
-  command->add_option("--out", options->out, "File (- is standard output) or folder to write")
+  command->add_option("--out", options->out, "File or folder to write; - is standard output")
       ->required()
       ->check(unfit_output)
       ->type_name("PATH");
   command
       ->add_option(
           "--cycles", options->cycles,
-          "Checkpoints of these cycles (default: all that were asked for; not with ro-crate)")
+          "Only checkpoints of these cycles (default: all that the experiments ask for; not with "
+          "ro-crate)")
       ->type_name("A[:B[:STEP]]");
-  command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
+  command->add_flag("--metres", options->metres, "Write extended XYZ in SI units, not diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);
   add_common_options(
       *command, context,
       formats +
-          R"(Each file holds its run, seed, parameters and units, every scalar measure of each frame, and for
-each grain id, radius, velocity, phi_local, q6, largest overlap, contacts, pressure, structure (by q6),
-lattice (by common neighbours), crystallite, and displacement and D^2_min over the cycle before, with
-wall grains and the tilted cell. A single RUN is written to PATH. Several runs, and runs that options
-select, are written into the folder PATH, each under its own name. PATH must be new, but a crate may
-replace an earlier crate of the same run. With --to lammps, `lmp -in in.frame_CYCLE` in that folder
-continues the run from that checkpoint.
+          R"(Each file contains the run, seed, parameters and units, the wall grains, the tilted cell, and all
+scalar measures of each frame. For each grain it contains id, radius, velocity, phi_local, q6,
+largest overlap, number of contacts, pressure, structure (from q6), lattice (from common
+neighbours), crystallite, and the displacement and D^2_min since one cycle earlier.
+A single RUN is written to PATH. Several runs, and runs selected by options, are written into the
+folder PATH, each under a different name. PATH must not exist, but a crate may replace an earlier
+crate of the same run. After --to lammps, `lmp -in in.frame_CYCLE` in the written folder continues
+the run from the checkpoint at CYCLE.
 Examples:
   shearcell export 3f9a --to extxyz --cycles 0:60:10 --out run.xyz
   shearcell export 3f9a --to vtk --out frames

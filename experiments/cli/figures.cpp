@@ -55,8 +55,8 @@ void print_verdicts(const ComputedFigure& result) {
   }
 }
 
-/// Prints the figure, unless --json is given, and what is missing in it: each message once. `path`:
-/// WantedFigure::path().
+/// Prints the files and verdicts of the figure, unless --json is given. Prints what is missing in
+/// the figure to standard error, except messages in `told`. `path`: see WantedFigure::path().
 void print(const ComputedFigure& result, const std::string& path, std::set<std::string>& told,
            Context& context) {
   const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
@@ -80,7 +80,8 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
-/// Warns of primary claims that no figure has, where all figures of all runs were drawn.
+/// Warns of primary claims that no figure contains. Checks only experiments of which all figures
+/// were drawn from all runs.
 void warn_of_primary(const Store& store, const RunSelection& runs,
                      const std::map<std::string, std::vector<ComputedFigure>>& drawn) {
   if (!runs.variants.empty() || !runs.seeds.empty()) return;
@@ -111,7 +112,7 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
   }
 }
 
-/// Opens the store. One that this user cannot write to, as an archived one, is only read.
+/// Opens the store, only for reading if this user cannot write to the store (such as an archive).
 Store open_store(const std::string& folder, FigureOptions& how) {
   try {
     return Store(folder, Access::write);
@@ -127,7 +128,7 @@ void figures(FigureArguments& options, Context& context) {
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
-    throw NotFound(fmt::format("no experiment of the store lists {}; name one with --experiment",
+    throw NotFound(fmt::format("no experiment of the store lists {}; choose one with --experiment",
                                fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) {
@@ -139,7 +140,7 @@ void figures(FigureArguments& options, Context& context) {
     const std::string others = leave_out_unselected(store, options.how.runs, wanted.figures);
     if (!others.empty()) print_stderr("{}\n", others);
   }
-  std::set<std::string> told;  // each message once, not for each figure
+  std::set<std::string> told;  // messages that are already printed
   const auto complain_of = [&](const std::string& problem) {
     if (told.insert(problem).second) print_stderr("shearcell: {}\n", problem);
     fail(context, kUsageError);
@@ -171,20 +172,20 @@ void figures(FigureArguments& options, Context& context) {
   if (context.json) print_json({{"figures", list}});
 }
 
-/// What the command does, and each figure with its title and the keys that it compares.
 std::string about_figures() {
   std::string text =
-      R"(Draws each figure once for every experiment that lists it, and the plots and claims of their
-manifests. Writes CSV, SVG, PDF and the gnuplot script of each panel, NAME.caption.txt,
-NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints behind it) into
-DIR/EXPERIMENT/SCALE; SCALE is `base` for a manifest without scales. Figures of all experiments go into
-DIR/SCALE; without names, table1 is drawn if a manifest lists any of these figures, and summary if
-the store has two of its experiments. Where the number of runs of a mean changes along a curve, the key
-of the drawing names the fewest and the most (the caption, if all curves have the same). Caches
-measures in the store's derived.sqlite. If you delete that file, they are measured again, except those
-of pruned checkpoints (see `regenerate`). A store that cannot be written to, such as an archive, is
-only read: figures are not recorded, and new measures are not kept.
-Figures and the keys that they compare (some have a curve for each value of other keys too):)";
+      R"(Draws the figures, plots and claims of the store's manifests, once for each experiment that lists
+them. Writes into DIR/EXPERIMENT/SCALE the CSV, SVG, PDF and gnuplot script of each panel,
+NAME.caption.txt, NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints
+behind the figure). SCALE is `base` for a manifest without scales. Figures that combine all
+experiments are written into DIR/SCALE. Without names, table1 is drawn if a manifest lists any of
+the figures below, and summary is drawn if the store has two of the experiments that it combines.
+If the number of runs behind a mean changes along a curve, the key of the drawing shows the smallest
+and largest number. If all curves have the same numbers, the caption shows them.
+Measures are cached in the store's derived.sqlite. If you delete this file, all measures are
+computed again, except those of pruned checkpoints (see `regenerate`). From a store that cannot be
+written to, such as an archive, figures are drawn but not recorded, and new measures are not cached.
+Figures and the keys that they compare (some also have one curve for each value of other keys):)";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("\n  {:<10} {}", figure.name, figure.title);
     if (!figure.keys.empty()) {
@@ -201,17 +202,20 @@ void add_figures(CLI::App& app, Context& context) {
       add_command(app, context, "figures", "Draw figures from stored checkpoints", figures);
   FigureOptions& how = options->how;
   how.folder = "shearcell-figures";
-  command->add_option("figure", options->names, "Figures, as S2 (default: all)");
-  command->add_flag("--all", options->all, "All that the store's manifests list, as without names");
-  command->add_option("--out", how.folder, "Folder to write to; DIR/EXPERIMENT/SCALE/NAME.csv, ...")
+  command->add_option("figure", options->names, "Names of figures, such as S2 (default: all)");
+  command->add_flag("--all", options->all,
+                    "Draw all figures of the store's manifests (the default)");
+  command
+      ->add_option("--out", how.folder, "Folder to write to (DIR/EXPERIMENT/SCALE/NAME.csv, ...)")
       ->capture_default_str()
       ->check(unfit_folder)
       ->type_name("DIR");
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
-      ->description("Only of this experiment, even if its manifest does not list the figure");
+      ->description(
+          "Draw figures of this experiment only, even if its manifest does not list the figure");
   command->get_option("--scale")->expected(1)->description(
-      "Scale of the runs (default: for each experiment, the scale of its run added last)");
+      "Scale of the runs (default: for each experiment, the scale of the run that was added last)");
   command
       ->add_option_function<std::string>(
           "--width", [&how](const std::string& width) { how.wide = width == "double"; },
@@ -221,7 +225,7 @@ void add_figures(CLI::App& app, Context& context) {
   add_common_options(*command, context,
                      "Examples:\n  shearcell figures S2 --out figures\n"
                      "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
-  command->footer(about_figures);  // only when help is asked for: it reads the shipped manifests
+  command->footer(about_figures);  // called only for --help, since it reads the shipped manifests
 }
 
 }  // namespace shearcell::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `log`: the events, of the whole store or of one run, oldest first.
+// `log`: lists the events of the whole store or of one run, oldest first.
 #include <fmt/format.h>
 
 #include <utility>
@@ -10,7 +10,6 @@
 namespace shearcell::cli {
 namespace {
 
-// The most useful fact of an event.
 std::string gist(const nlohmann::json& body) {
   for (const char* key : {"why", "error", "cycle", "attempt", "experiment", "path", "kind"}) {
     if (body.contains(key)) return fmt::format("{} {:.60}", key, short_text(body[key]));
@@ -18,7 +17,7 @@ std::string gist(const nlohmann::json& body) {
   return "";
 }
 
-/// The stream with an id of eight digits.
+/// Returns the stream with its id shortened to eight digits.
 std::string shown_stream(const std::string& stream) {
   const bool has_id = stream.starts_with("run/") || stream.starts_with("manifest/");
   return has_id ? stream.substr(0, stream.find('/') + 9) : stream;
@@ -46,7 +45,7 @@ void print_log(const std::string& run, Context& context) {
 void add_log(CLI::App& app, Context& context) {
   const auto [command, run] =
       add_command(app, context, "log", "List the events of the store or of one run", print_log);
-  command->add_option("run", *run, "Run id, or a unique beginning of an id");
+  command->add_option("run", *run, "Run id, or a unique beginning of a run id");
   add_common_options(*command, context, "Examples:\n  shearcell log\n  shearcell log 3f9a --json");
 }
 

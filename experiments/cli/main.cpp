@@ -31,9 +31,8 @@ constexpr const char* kDescription =
 YAML manifests expand into seeded runs, a store keeps every checkpoint, and figures are drawn
 from the store alone.)";
 
-// For a command line without arguments.
 constexpr const char* kBegin =
-    R"(shearcell computes experiments on sheared grains. Name a command:
+    R"(shearcell computes experiments on sheared grains. Give a command:
   shearcell new mine                        # writes mine.yaml, a manifest with comments
   shearcell run mine.yaml --scale smoke     # computes it in seconds
   shearcell --help                          # lists all commands
@@ -57,7 +56,6 @@ const std::vector<std::pair<const char*, std::vector<AddCommand*>>> kCommands = 
     {"Share", {add_merge, add_export}},
     {"This program", {add_doctor, add_bench, add_manual}}};
 
-/// Fits help pages into the terminal.
 struct HelpFormatter : CLI::Formatter {
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override {
@@ -76,10 +74,11 @@ std::string version_text() {
 }
 
 constexpr const char* kNoMemory =
-    "memory ran out; close other programs, raise the limit (ulimit -v), or use fewer threads, runs "
-    "at a time or grains";
+    "out of memory; close other programs, raise the limit (ulimit -v), or use fewer threads, "
+    "fewer runs at a time or fewer grains";
 
-// Ends as by a kill, which loses nothing: an exception would need memory, and in a thread abort.
+// Ends the program at once, which is as safe for the store as a kill. Throwing an exception would
+// need memory, and in a thread the exception would abort the program.
 [[noreturn]] void end_without_memory() {
   for (const char* text : {"shearcell: ", kNoMemory, "\n"}) {
     (void)!write(STDERR_FILENO, text, std::strlen(text));
@@ -92,11 +91,10 @@ bool is_any(const std::exception& error) {
   return ((dynamic_cast<const Errors*>(&error) != nullptr) || ...);
 }
 
-// The exit code of a program that ends with this error.
 ExitCode exit_code_of(const std::exception& error) {
   if (is_any<UsageError, NotOurs, GeometryError>(error)) return kUsageError;
   if (is_any<NumericalFailure>(error)) return kRunFailed;
-  // An exception of the JSON library comes from a record of the store: other JSON is checked first.
+  // JSON exceptions come only from records of the store, since all other JSON is checked first.
   if (is_any<StoreDamaged, nlohmann::json::exception>(error)) return kStoreDamaged;
   return kOtherError;
 }
@@ -105,7 +103,7 @@ std::string message_of(const std::exception& error) {
   if (is_any<std::bad_alloc>(error)) return kNoMemory;
   const auto* of_system = dynamic_cast<const std::system_error*>(&error);
   if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {
-    return "no thread can be started; raise the limits of memory (ulimit -v) or processes (-u)";
+    return "cannot start a thread; raise the limit of memory (ulimit -v) or processes (ulimit -u)";
   }
   const auto* of_path = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_path == nullptr) return error.what();
@@ -117,7 +115,7 @@ int complain(int code, const char* what) {
   return code;
 }
 
-/// Names the unknown command or the unexpected arguments, and the known word nearest to the first.
+/// Returns the error message for an unknown command or argument, with the most similar known word.
 std::string describe_extras(const CLI::App& app) {
   const CLI::App* at = &app;
   while (at->remaining().empty() && !at->get_subcommands().empty()) {
@@ -144,34 +142,34 @@ std::string describe_extras(const CLI::App& app) {
   return words.empty() ? problem : with_nearest(problem, words.front(), names);
 }
 
-// Makes the program independent of what it inherits. A closed standard stream would be reused for
-// the next file that is opened; with SIGCHLD ignored, waiting for a child would fail.
+// Corrects inherited settings. If a standard stream were closed, the next file that is opened would
+// get its number. If SIGCHLD were ignored, waiting for a child process would fail.
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() takes the lowest free number, which is the stream's. The mode makes its use fail.
+    // /dev/null gets the number of the closed stream. In this mode, any use of the stream fails.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
 }
 
-// The exit code; an error if standard output could not be written.
+// Returns `code`, or an error code if `code` is 0 and standard output could not be written.
 int after_output(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   return complain(code == kDone ? kOtherError : code,
-                  "standard output was lost, at least in part: it is closed, or its disk is full");
+                  "standard output was not written completely: it is closed, or its disk is full");
 }
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname would override what was parsed, since CLI11 reads it for every subcommand.
+  // CLI11's envname() is not used, since every subcommand would read it and overwrite --store.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
-  app.formatter(std::make_shared<HelpFormatter>());  // before the commands, which copy it
+  app.formatter(std::make_shared<HelpFormatter>());  // set before commands copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // so that the error names a word that is no subcommand
+  app.require_subcommand(0, 1);  // 0 allowed, so that the error names an unknown subcommand
   for (const auto& [group, commands] : kCommands) {
     for (AddCommand* const add : commands) add(app, context);
     for (CLI::App* command : app.get_subcommands({})) {
@@ -190,12 +188,12 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kUsageError;
   } catch (const nlohmann::json::exception& error) {
     const std::string why = fmt::format(
-        "{}: a record is not as this program writes it ({}); run `shearcell verify`, and restore "
-        "the store from a backup",
+        "{}: a record in the store is malformed ({}); run `shearcell verify`, and restore the "
+        "store from a backup",
         context.store, error.what());
     return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {
-    // An exit code that the command has set is more important than this error.
+    // An exit code that the command has set already takes precedence over the code of this error.
     const bool known = context.exit_code != kDone;
     return complain(known ? context.exit_code : exit_code_of(error), message_of(error).c_str());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `manual`: the reference (experiments/REFERENCE.md), from the program's own tables and the
-// parser's commands and options. Manual pages are made of --help (experiments/install).
+// `manual`: prints the reference (experiments/REFERENCE.md), generated from the program's tables,
+// commands and options. experiments/install makes the manual pages from the output of --help.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kLongestChoice = 60;
 
-/// "--jobs, -j J"; for a positional "manifest".
+/// Returns how to write an option, such as "--jobs, -j J", or the name of a positional argument.
 std::string usage(const CLI::Option& option) {
   const std::string names = CLI::detail::find_and_replace(option.get_name(false, true), ",", ", ");
   if (option.get_items_expected_max() == 0) return names;
@@ -47,13 +47,14 @@ std::string cell(const std::string& text) {
 
 std::string manifest_reference() {
   return "## Manifest keys\n\n"
-         "At the top level ([format and examples](manifest/README.md#format)):\n\n" +
+         "Keys at the top level ([format and examples](manifest/README.md#format)):\n\n" +
          manifest_markdown() + R"(
 ## Parameters
 
-Keys of `base`, `sweep` and of each scale, in SI units. Symbols and sections refer to the
-supplement; d is the diameter and m the mass of a grain, A_w the area of the moving wall. "key of"
-is the first stage whose [id](manifest/README.md#identity) depends on the parameter.
+These keys can be used in `base`, in `sweep` and in each scale. Values are in SI units. Symbols and
+sections refer to the supplement: d is the diameter of a grain, m the mass of a grain, and A_w the
+area of the moving wall. The column "key of" names the first stage whose
+[id](manifest/README.md#identity) depends on the parameter.
 
 )" + schema_markdown();
 }
@@ -62,9 +63,9 @@ std::string measure_reference() {
   std::string text = R"(
 ## Measures
 
-Columns of `shearcell table`, which also has one for each swept parameter. Measures marked *plot* can
-stand in `plots` and `claims` of a manifest, measures marked *until* also in `until`. Columns from
-`critical_size` on need `--per run`.
+These are the columns of `shearcell table`, which also has one column for each swept parameter.
+Measures marked *plot* can be used in `plots` and `claims` of a manifest. Measures marked *until*
+can also be used in `until`. `critical_size` and all columns below it need `--per run`.
 
 | column | use | meaning |
 |---|---|---|
@@ -77,14 +78,14 @@ stand in `plots` and `claims` of a manifest, measures marked *until* also in `un
                         cell(column.meaning));
   }
   text +=
-      "\nCurves, of `shearcell table --curve` and as `y` of `plots`:\n\n"
+      "\nCurves for `shearcell table --curve` and for `y` of `plots`:\n\n"
       "| curve | against | meaning |\n|---|---|---|\n";
   for (const Measure* curve : all_measures(MeasureKind::curve)) {
     text += fmt::format("| `{}` | `{}` | {} |\n", curve->name, curve->x,
                         cell(std::string(curve->meaning)));
   }
   text +=
-      "\nOf each grain, in exports and in the report's packings:\n\n"
+      "\nMeasures of each grain, in exports and in the packings of the report:\n\n"
       "| measure | unit | meaning |\n|---|---|---|\n";
   for (const Measure* one : all_measures(MeasureKind::grains)) {
     text +=
@@ -96,7 +97,7 @@ stand in `plots` and `claims` of a manifest, measures marked *until* also in `un
 std::string estimator_reference() {
   std::string text =
       "\n## Estimators\n\n"
-      "Of a claim's `estimator`, with the key that the claim must state.\n\n"
+      "Values of `estimator` in a claim, each with the key that the claim must also have.\n\n"
       "| estimator | key | number |\n|---|---|---|\n";
   for (const Estimator& one : all_estimators()) {
     const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);
@@ -108,7 +109,7 @@ std::string estimator_reference() {
 std::string figure_reference() {
   std::string text =
       "\n## Figures\n\n"
-      "[How they are made](../analysis/README.md#figures).\n\n"
+      "[How figures are made](../analysis/README.md#figures).\n\n"
       "| figure | shows | keys that its experiment varies |\n|---|---|---|\n";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("| `{}` | {} | {} |\n", figure.name, cell(figure.title),
@@ -117,7 +118,7 @@ std::string figure_reference() {
   return text;
 }
 
-/// The command, then its own subcommands. `path`: its words, as "shearcell bench".
+/// Describes the command and then its subcommands. `path`: full name, such as "shearcell bench".
 std::string command_reference(const CLI::App& command, const std::string& path) {
   std::string text = fmt::format("\n### {}\n\n{}.\n", path, command.get_description());
   std::string positionals, options;
@@ -133,7 +134,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   if (const std::string rows = positionals + options; !rows.empty()) {
     text += "\n| argument | meaning |\n|---|---|\n" + rows;
   }
-  // The help texts of these two list columns and figures, which the reference lists above.
+  // The help texts of `table` and `figures` are left out, since their lists are printed above.
   const bool listed = command.get_name() == "table" || command.get_name() == "figures";
   if (!command.get_footer().empty() && !listed) {
     text += fmt::format("\n```text\n{}\n```\n", command.get_footer());
@@ -144,17 +145,18 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   return text;
 }
 
-/// The text of experiments/REFERENCE.md (test docs.reference).
+/// The text of experiments/REFERENCE.md. The test docs.reference compares text and file.
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"
-      "`shearcell manual` prints this file from the program's own tables; a test "
-      "compares them.\n\n" +
+      "`shearcell manual` prints this file from the program's own tables. A test compares the "
+      "output with this file.\n\n" +
       manifest_reference() + measure_reference() + estimator_reference() + figure_reference() +
       "\n## Commands\n\n"
-      "Every command takes `--help`. `SHEARCELL_STORE` names the store where `--store` does not, "
-      "`SHEARCELL_LAMMPS`\nthe LAMMPS program to use instead of `lmp` on PATH; `NO_COLOR` turns "
-      "colours off.\n";
+      "Every command has `--help`. The environment variable `SHEARCELL_STORE` names the store if "
+      "`--store` is not\ngiven, `SHEARCELL_LAMMPS` names the LAMMPS program to use instead of "
+      "`lmp` "
+      "on PATH, and `NO_COLOR`\nturns colours off.\n";
   for (const CLI::App* command : program.get_subcommands({})) {
     text += command_reference(*command, "shearcell " + command->get_name());
   }

@@ -10,14 +10,14 @@
 namespace shearcell::cli {
 namespace {
 
-/// What figures and tables say that they leave out of the store.
+/// Notes on the runs of the store that figures and tables leave out.
 std::set<std::string> left_out(const Store& store) {
   const std::vector<std::string> notes = newest_runs(select_runs(store, {})).notes;
   return {notes.begin(), notes.end()};
 }
 
 void merge(const std::vector<std::string>& sources, Context& context) {
-  for (const std::string& source : sources) {  // before a store is created
+  for (const std::string& source : sources) {  // checks all sources before a store is created
     if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
       continue;
     throw NotFound(fmt::format("'{}': there is no store here to merge", source));
@@ -28,7 +28,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     try {
       known.merge(left_out(Store(source, Access::read)));
     } catch (const std::exception&) {
-      // The merge reports what is wrong.
+      // merge_stores() reports the error.
     }
   }
   std::vector<Finding> refused;
@@ -67,13 +67,13 @@ void add_merge(CLI::App& app, Context& context) {
       ->type_name("STORE");
   add_common_options(
       *command, context,
-      R"(Checks the chain of each source and every file to copy before anything changes. Refuses two
-stores that record different states of one run at one step. The sources stay unchanged, and
-merging twice changes nothing. If the stores have different versions of a manifest, figures show
-the one registered last; the command then names the runs that they leave out. To show all, run one
-manifest that states the runs of both: it computes only what neither has. Cached measures are copied
-if three recomputed ones are right. Files that this store has lost or pruned are not brought back:
-copy them into its objects/, or see `regenerate`.
+      R"(Before anything changes, checks the event chain of each source and every file to copy. Stops if
+two stores record different states of one run at the same step. The sources do not change, and
+merging a source again has no effect. If the stores have different versions of a manifest, figures
+show the version that was registered last, and this command names the runs that figures leave out.
+To show all runs, run one manifest that lists the runs of both; only missing runs are computed.
+Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
+values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:
   shearcell merge task-1 task-2 --store all)");
 }

@@ -36,7 +36,7 @@ std::string commented(const std::string& text) {
   return lines + line + "\n";
 }
 
-/// A key with its default, commented out, and its meaning above it.
+/// A comment with the meaning of the key, then the key and its default, commented out.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
@@ -44,9 +44,8 @@ std::string entry(const Field& field) {
   return commented(about) + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
 }
 
-/// The figures and the keys that they compare, as comments.
 std::string figure_comments() {
-  std::string text = "# Figures, and the keys that an experiment varies for them:\n";
+  std::string text = "# Figures, with the keys that an experiment must vary:\n";
   for (const Figure& figure : all_figures()) {
     if (figure.keys.empty()) continue;
     text += fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title,
@@ -57,12 +56,12 @@ std::string figure_comments() {
 
 std::string text_of(const std::string& experiment) {
   std::string text = fmt::format(
-      R"(# Keys that are commented out show their default.
+      R"(# Keys that are commented out are shown with their default values.
 # `shearcell plan FILE --scale smoke` checks this file and lists its runs.
 experiment: {}
 question: What is to be found out?
 {}figures: [S2]
-# Plots and claims of your own (`shearcell manual`):
+# Your own plots and claims (see `shearcell manual`):
 # plots:
 #   - {{name: compaction, y: phi, x: cycle, show: traces}}
 # claims:
@@ -80,12 +79,12 @@ base:
   }
   return text +
          R"(
-# Parameters whose value in the packing differs from the value in the shear.
+# Parameters that have a different value while the packing settles:
 # settle: {drag_kg_per_s: 1.28e-3}
-# Instead of settling: the state of a recorded run.
+# Start from the recorded state of a run instead of a settled packing:
 # start: {experiment: drag, variant: "fluid=still", seed: 3, cycle: 10, noise_d: 1.0e-13}
 
-# What varies: every combination under `grid`; keys under `zip` advance together.
+# Parameters to vary: all combinations of the keys in `grid`; the keys in `zip` change together.
 sweep:
   grid:
     fluid: [still, cell]
@@ -95,10 +94,10 @@ seeds: 6                       # 1 to 6, or a list
 
 checkpoints:
   every_cycles: 1
-  # phases: [0.25, 0.5, 0.75]    # within each cycle too
+  # phases: [0.25, 0.5, 0.75]    # more checkpoints within each cycle
 # until: {crystalline_percent: 10, extra_cycles: 15}    # ends runs before their last cycle
 
-# Named sizes; each overrides what is above it in this file.
+# Scales are named sizes. Values in a scale replace the values above.
 scales:
   smoke: {grains: 600, seeds: 2, cycles: 5}
   desk: {grains: 5200, seeds: 3, cycles: 120}
@@ -106,7 +105,8 @@ scales:
 )";
 }
 
-/// Links a complete temporary file, so the file is complete and replaces no other.
+/// Writes a temporary file and then links it as `file`, so that `file` is never incomplete and no
+/// existing file is replaced.
 void write_new(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path whole =
       file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
@@ -115,14 +115,14 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
     write_output(whole, text);
     std::filesystem::create_hard_link(whole, file, failed);
     std::filesystem::remove(whole, ignored);
-    // The file exists, which NewFile refuses, or the file system has no hard links.
+    // Either the file exists, and NewFile throws, or the file system has no hard links.
     if (failed) NewFile(file).add(text);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::file_exists) {
       throw std::system_error(error.code(), file.string() + ": cannot write");
     }
     throw UsageError(file.string() +
-                     ": the file exists already. Choose another name, or remove it.");
+                     ": the file already exists. Choose another name, or remove the file.");
   }
 }
 
@@ -133,12 +133,12 @@ void make(const std::string& name, Context&) {
   if (!whole) file += ".yaml";
   if (!is_name(experiment)) {
     throw UsageError(
-        fmt::format("'{}' cannot name an experiment. A name has 1 to {} letters, "
+        fmt::format("'{}' is not a valid name of an experiment. A name has 1 to {} letters, "
                     "digits, - and _, and does not begin with -.",
                     experiment, kLongestName));
   }
   const std::string text = text_of(experiment);
-  parse_manifest(text, file.string());  // a check of text_of()
+  parse_manifest(text, file.string());  // throws if text_of() is not a valid manifest
   write_new(file, text);
   print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
              shell_word(file.string()));
@@ -151,7 +151,7 @@ void add_new(CLI::App& app, Context& context) {
   command->add_option("name", *name, "Name of the experiment, or path of the file")->required();
   command->footer(
       R"(Writes every parameter with its meaning and default, a sweep of `fluid`, and three scales.
-Refuses to overwrite a file.
+Does not overwrite a file.
 Examples:
   shearcell new softer
   shearcell new studies/softer.yaml)");

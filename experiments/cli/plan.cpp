@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plan`: the runs of manifests, which of them are done, and what the rest costs.
+// `plan`: lists the runs of manifests, which runs are done, and the cost of the other runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,21 +22,20 @@ namespace {
 
 using Line = PlannedStage;
 
-// The recorded state of the stage, and what `run` does with it.
+// Returns what `run` will do with the stage, or the recorded state of the stage.
 std::string state_of(const Line& line) {
   if (line.look.done) return "done";
   if (line.stage.attempts == 0) return "to do";
   if (line.stage.state != StageState::completed) return std::string(name_of(line.stage.state));
-  // Short of checkpoints that were asked for later, or of cycles.
+  // A completed stage can lack cycles, or checkpoints that were requested later.
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
-// The number of cycles that the stage gets at most.
+// Largest number of cycles that the stage will have.
 double cycles_of(const Line& line) {
   return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
 
-// Other experiments that have the stage.
 std::vector<std::string> shared_with(const Line& line) {
   std::vector<std::string> others;
   for (const Membership& m : line.memberships) {
@@ -52,7 +51,6 @@ const Parameters& parameters_of(const Line& line) {
   return packing ? line.run->packing : line.run->parameters;
 }
 
-// The time step of a stage; none where no time passes.
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = parameters_of(line);
   if (line.stage.kind == name_of(StageKind::prepare)) return time_step(p, p.settle_time_step_s);
@@ -67,37 +65,33 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
           {"over_stability_limit", step->over_stability_limit}};
 }
 
-// Time steps and overlap of every kind of stage, each once.
 void print_numerics(const std::vector<Line>& lines) {
   std::vector<Facts> rows;
   for (const Line& line : lines) {
     const Parameters& p = parameters_of(line);
     const std::string& kind = line.stage.kind;
     const auto step = time_step_of(line);
-    Facts row = {
-        {"", kind, "stage"},
-        {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
-        {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
-         "steps/cycle"},
-        {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
-        {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
-        {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
-        {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // mean, as expected
+    Facts row = {{"", kind, "stage"},
+                 {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
+                 {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
+                  "steps/cycle"},
+                 {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
+                 {"", step ? fmt::format("{:.3f}", step->over_contact_time) : "", "dt/contact"},
+                 {"", step ? fmt::format("{:.3f}", step->over_stability_limit) : "", "dt/limit"},
+                 {"", fmt::format("{:.2g}", expected_overlap(p)), "overlap [d]"}};  // expected mean
     if (std::ranges::count(rows, row) == 0) rows.push_back(std::move(row));
   }
   fmt::print("\n");
   print_table(rows);
 }
 
-// What our own simulation has and LAMMPS lacks or has only approximately.
 const std::vector<std::string> kLammpsCaveats = {
-    "LAMMPS computes the shear alone; packings are placed and settled by this program, and shared.",
-    "Results equal ours up to rounding; the bits differ, also between numbers of processes.",
-    "These runs have ids of their own. verify --replay, regenerate and prune leave them out.",
-    "The watchdog sees their checkpoints, not every 1024th step; a grain whose centre reaches a "
-    "wall's plane ends a run."};
+    "LAMMPS computes only the shear. This program settles the packings of all runs.",
+    "Results of both programs differ by rounding errors, which depend on the number of processes.",
+    "Runs by LAMMPS have different ids. verify --replay, regenerate and prune skip these runs.",
+    "The watchdog checks only the checkpoints of runs by LAMMPS, not every 1024th step. These runs "
+    "fail if the centre of a grain reaches the plane of a wall."};
 
-// Notes on files of grains, runs that this machine cannot hold, and runs by another engine.
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
   std::vector<std::string> notes;
   for (const Plan& plan : plans) {
@@ -108,20 +102,20 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
     most = std::max(most, run_bytes(geometry(line.run->parameters)));
   }
   if (most > machine_memory()) {
-    notes.push_back(fmt::format("the largest run needs {}, and this machine has {}",
+    notes.push_back(fmt::format("the largest run needs {} of memory, but this machine has {}",
                                 format_bytes(most), format_bytes(machine_memory())));
   }
   if (std::ranges::none_of(plans, asks_for_lammps)) return notes;
   notes.insert(notes.end(), kLammpsCaveats.begin(), kLammpsCaveats.end());
   try {
-    notes.push_back("LAMMPS here: " + find_lammps().version);
+    notes.push_back("LAMMPS on this machine: " + find_lammps().version);
   } catch (const ProgramError& missing) {
     notes.emplace_back(missing.what());
   }
   return notes;
 }
 
-// Notes how much is left until the next planned look of each experiment.
+// Adds a note for each experiment on the work that is left until its next planned look.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
                 std::vector<std::string>& notes) {
   for (const Plan& plan : plans) {
@@ -142,18 +136,18 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
           std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
-          "{}: the next look is at {} of {} seeds, {:.3g} particle-steps away; the notes of the "
-          "verdicts say how probable it is to decide",
+          "{}: the next planned look is at {} of {} seeds, after {:.3g} more particle-steps. The "
+          "notes of each verdict state how likely this look is to decide the claim",
           plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
     }
   }
 }
 
-// Particle-steps that are left if each run ends at the mean cycle at which runs with its `until`
-// ended. Null without `until`, or if no such run has ended.
+// Returns the particle-steps that are left if each run ends at the mean end of earlier runs with
+// the same `until`. Null if no run has an `until`, or if for some `until` no run has ended yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
-      ends;  // by `until`, since a search reads all runs
+      ends;  // expected cycle at which each `until` ends runs; computing the cycle reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
@@ -183,14 +177,13 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("less; how much less is known after a run with this `until` has ended\n");
+    fmt::print("fewer; an estimate is possible after a run with this `until` has ended\n");
   } else {
-    fmt::print("about {:.3g} particle-steps, {:.0f} % of these, if runs end like earlier ones\n",
+    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end as early as earlier runs\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
 
-// The names of the plans, each once.
 std::string joined(const std::vector<Plan>& plans, std::string (*name)(const Plan&)) {
   std::vector<std::string> names;
   for (const Plan& plan : plans) {
@@ -205,7 +198,7 @@ nlohmann::json experiment_facts(const Plan& plan) {
           {"runs", plan.runs.size()}};
 }
 
-/// Names for all lines, as `status` shows them once the stages are in the store.
+/// Names of the stages, as `status` will show them when the stages are in the store.
 VariantNames names_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
   VariantNames::Labels labels;
   for (const Plan& plan : plans) {
@@ -263,12 +256,12 @@ void plan(const PlanOptions& options, Context& context) {
   Work left;
   for (const Line& line : lines) left.add(line.stage, line.look, rates);
   const nlohmann::json with_until = left_until(lines, runs);
-  std::set<const PlannedRun*> left_runs;  // each is computed by one core
+  std::set<const PlannedRun*> left_runs;  // unfinished runs; one core computes each run
   std::size_t runs_planned = 0, longer = 0;
   for (const Line& line : lines) {
     runs_planned += line.stage.kind == name_of(StageKind::prepare) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
-    const auto asks_more = [&](const Membership& m) {  // in the store
+    const auto asks_more = [&](const Membership& m) {  // an earlier command requested more cycles
       return m.ask.target_cycles > line.run->ask.target_cycles;
     };
     longer += std::ranges::any_of(line.stage.memberships, asks_more) ? 1 : 0;
@@ -279,13 +272,13 @@ void plan(const PlanOptions& options, Context& context) {
   const std::filesystem::path place = existing_folder(context.store);
   const auto free = static_cast<double>(std::filesystem::space(place).available);
   if (left.bytes > free) {
-    notes.push_back(fmt::format("too little disk space: {} are free in {}", format_bytes(free),
+    notes.push_back(fmt::format("too little disk space: only {} are free in {}", format_bytes(free),
                                 place.string()));
   }
   note_looks(plans, lines, notes);
   if (longer > 0) {
     notes.push_back(fmt::format(
-        "`run` also continues {} to the number of cycles that an earlier command asked for",
+        "`run` also continues {} to the larger number of cycles that an earlier command requested",
         counted(longer, "run")));
   }
   const std::string experiment =
@@ -331,17 +324,17 @@ void plan(const PlanOptions& options, Context& context) {
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  const auto [command, options] =
-      add_command(app, context, "plan",
-                  "Show the runs of manifests, what is done, and the cost of the rest", plan);
+  const auto [command, options] = add_command(
+      app, context, "plan",
+      "Show the runs of manifests, which runs are done, and the cost of the other runs", plan);
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);
   add_common_options(*command, context,
-                     "Runs that several of the manifests share are counted once.\n"
+                     "A run that several manifests share is counted once.\n"
                      "Examples:\n"
                      "  shearcell plan experiments/drag.yaml --scale paper\n"
-                     "  shearcell plan experiments/*.yaml --scale paper       # all of a campaign");
+                     "  shearcell plan experiments/*.yaml --scale paper       # a whole campaign");
 }
 
 }  // namespace shearcell::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables for people.
+// Prints results as JSON, tables and lines of text.
 #include <fmt/color.h>
 #include <fmt/format.h>
 
@@ -18,11 +18,11 @@ namespace {
 using Row = std::vector<std::string>;  // cells
 
 constexpr std::size_t kGap = 2;
-constexpr std::size_t kNarrowest = 6;  // of a column that is cut
+constexpr std::size_t kNarrowest = 6;  // smallest width of a column whose texts are cut
 
 struct Column {
   std::size_t width = 0;
-  bool right = true;  // numbers only
+  bool right = true;  // right-aligned, since all cells are numbers
 };
 
 bool is_number(const std::string& cell) {
@@ -41,7 +41,7 @@ std::vector<Column> measure(const std::vector<Row>& rows) {
   return columns;
 }
 
-/// Narrows the widest column of words until the table fits.
+/// Narrows the widest text columns until the table fits into `limit` terminal columns.
 void narrow(std::vector<Column>& columns, std::size_t limit) {
   std::size_t total = kGap * (columns.size() - 1);
   for (const Column& column : columns) total += column.width;
@@ -64,7 +64,6 @@ std::string fitted(const std::string& cell, const Column& column) {
   return column.right ? room + shown : shown + room;
 }
 
-/// Colours states and outcomes.
 std::string painted(const std::string& word, const std::string& text) {
   using fmt::terminal_color;
   static const std::map<std::string, terminal_color> colours = {

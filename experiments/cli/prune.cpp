@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `prune`: deletes files of checkpoints that can be recomputed; their records stay.
-// `regenerate`: recomputes such files, and damaged ones, with the same bytes.
+// `prune`: deletes files of checkpoints that can be recomputed, and keeps their records.
+// `regenerate`: recomputes pruned and damaged files with the same bytes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ struct PruneOptions {
   bool yes = false;
 };
 
-/// Ids of the selected runs, settled packings among them.
+/// Ids of the selected runs and of their packings.
 std::set<std::string> selected_ids(const Store& store, RunSelection selection) {
   selection.packings = true;
   std::set<std::string> ids;
@@ -50,7 +50,7 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
     const std::set<std::string> ids = selected_ids(store, options.selection);
     if (choice.runs.empty()) choice.runs.assign(ids.begin(), ids.end());
     std::erase_if(choice.runs, [&](const std::string& id) { return !ids.contains(id); });
-    if (choice.runs.empty()) return {};  // an empty choice would be all runs
+    if (choice.runs.empty()) return {};  // for prunable(), an empty list means all runs
   }
   return store.prunable(choice);
 }
@@ -67,10 +67,10 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage stage = store.stage(id);
-    // All experiments that have the run: they lose its files too.
+    // All experiments that share the run, since each of them loses the files of the run.
     std::set<std::string> experiments;
     for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
-    // Also files that a prune left behind when it was killed.
+    // Files that an earlier `prune` recorded as pruned but did not delete before it was killed.
     const auto left = std::ranges::count(of_run, CheckpointState::pruned, &CheckpointRecord::state);
     const std::size_t recorded = store.checkpoints(id).size() + static_cast<std::size_t>(left);
     return {{"", id.substr(0, 8), "run"},
@@ -96,7 +96,7 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} kept: LAMMPS or a program with another bits version made them\n",
+    fmt::print("{} kept: not bitwise reproducible (made by LAMMPS or another version)\n",
                counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();
@@ -138,7 +138,7 @@ void prune(const PruneOptions& options, Context& context) {
                 {"pruned", go},
                 {"bytes_freed", freed.bytes}});
   } else if (go) {
-    fmt::print("{} measured, {} freed; `shearcell regenerate` recomputes files\n",
+    fmt::print("{} measured, {} freed; `shearcell regenerate` recomputes the files\n",
                counted(freed.measured, "checkpoint"),
                format_bytes(static_cast<double>(freed.bytes)));
   } else if (any) {
@@ -174,7 +174,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   if (const auto why = why_not_again(store, record, known)) {
     fail(context, kOtherError);
     facts["why"] = *why;
-    return say("refused", *why + "; keep a copy of its file elsewhere");
+    return say("refused", *why + "; restore the file from a copy");
   }
   const Replay replay = regenerate_checkpoint(store, record, threads);
   facts["steps"] = replay.steps;
@@ -190,7 +190,7 @@ nlohmann::json regenerate_one(Store& store, const CheckpointRecord& record, std:
   return say("regenerated",
              fmt::format("recomputed from {} ({} steps): the same state, the same bytes",
                          replay.from ? fmt::format("cycle {:g}", replay.from->cycle)
-                                     : std::string("the beginning of its stage"),
+                                     : std::string("the beginning of the stage"),
                          replay.steps));
 }
 
@@ -209,7 +209,6 @@ std::vector<CheckpointRecord> named_checkpoints(const Store& store,
   return records;
 }
 
-/// The checkpoints of the selected runs that have no intact file.
 std::vector<CheckpointRecord> without_file(const Store& store, const RunSelection& selection) {
   std::vector<CheckpointRecord> records;
   for (const std::string& run : selected_ids(store, selection)) {
@@ -232,7 +231,7 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // Parents first, and in order of steps: each state is recomputed from the state before it.
+  // Sorts parent stages first, then earlier steps: each state is recomputed from an earlier state.
   std::map<std::string, std::size_t> order;
   for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
@@ -273,27 +272,28 @@ void add_prune(CLI::App& app, Context& context) {
       app, context, "prune",
       "Delete checkpoint files that can be recomputed; records and measures stay", prune);
   command->add_option("run", options->choice.runs,
-                      "Only these runs: ids, or unique beginnings of them");
+                      "Only these runs: run ids, or unique beginnings of run ids");
   add_selection_options(*command, options->selection, true);
-  add_number(*command, "--keep-every", options->choice.keep_every, "Keep every K-th cycle", "K", 1,
-             1'000'000'000);
+  add_number(*command, "--keep-every", options->choice.keep_every,
+             "Keep the files of every K-th cycle", "K", 1, 1'000'000'000);
   command->add_flag("--last-too", options->choice.last_too,
-                    "Of completed stages, also the last file and those that others start from");
+                    "For completed stages, also delete the last file and files that other stages "
+                    "start from");
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(
       *command, context,
-      R"(Name runs, select them, or give --keep-every. Lists the files and asks; without a terminal it
-deletes nothing unless --yes is given. Keeps the newest checkpoint of each run and the checkpoints
-that other stages start from. With --last-too, keeps these only of unfinished stages. If all stages
-are finished, events and measures remain, small enough to publish, and figures, tables and merges
-still work. Never deletes checkpoints that this program cannot recompute: checkpoints of LAMMPS and
-of programs with another bits version.
-Before it deletes a file it measures what nobody has measured: all that `table` and the curves of
-plots need, and what the figures of the store's manifests simulate. The results are in
-derived.sqlite, so tables and figures stay the same. A checkpoint that cannot be measured keeps its
-file. If a run is continued later, its new cycles lack measures that need a pruned checkpoint, such
-as msd_10_cycles_d2.
-Records stay. `run` and `resume` recompute the files that they need, `regenerate` all others.
+      R"(Choose files by runs, by options that select runs, or by --keep-every. The command lists the files
+and asks before it deletes them. Without a terminal, nothing is deleted unless --yes is given.
+The newest checkpoint of each run and the checkpoints that other stages start from are kept. With
+--last-too, they are kept only for unfinished stages. If all stages are finished, only events and
+measures remain. They are small enough to publish, and figures, tables and merges still work.
+Checkpoints of LAMMPS, and of versions of this program that round differently, are never deleted,
+since this program cannot recompute these checkpoints bit for bit.
+Before a file is deleted, missing measures are computed: all measures that tables and plots need,
+and the simulated measures that the store's figures need. The measures are cached in derived.sqlite,
+so tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run
+is continued later, its new cycles lack measures that need a pruned checkpoint, such as
+msd_10_cycles_d2. `run` and `resume` recompute pruned files that they need, `regenerate` others.
 Examples:
   shearcell prune --keep-every 10
   shearcell prune --last-too
@@ -306,15 +306,15 @@ void add_regenerate(CLI::App& app, Context& context) {
       add_command(app, context, "regenerate",
                   "Recompute the files of pruned or damaged checkpoints", regenerate);
   command->add_option("checkpoint", options->checkpoints,
-                      "SHA-256 of checkpoints, or beginnings of them");
+                      "SHA-256 hashes of checkpoints, or beginnings of these hashes");
   add_selection_options(*command, options->selection, true);
-  command->add_flag("--all", options->all, "All checkpoints of the store without an intact file");
-  add_threads_option(*command, options->threads, "Threads, for large cells");
+  command->add_flag("--all", options->all, "Recompute all missing or damaged files of the store");
+  add_threads_option(*command, options->threads, "Number of threads; useful for large cells");
   add_common_options(
       *command, context,
-      R"(Steps from the nearest earlier checkpoint; without one, also recomputes the file of the state that
-the stage begins with. If the state or the file does not have the recorded
-hash, writes nothing, records ReplayDiverged and ends with code 4.
+      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is none in the
+stage, also recomputes the file of the state that the stage begins with. If a state or a file does
+not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `report`: the whole store in one HTML file.
+// `report`: writes the whole store as one HTML file.
 #include <fmt/format.h>
 
 #include "core/machine.hpp"
@@ -17,7 +17,7 @@ struct ReportCommand {
   ReportOptions report;
 };
 
-// Recognizes the beginning of a report (experiments/report/page.cpp).
+// Whether a file that begins with this text is a report (see experiments/report/page.cpp).
 bool is_report(std::string_view beginning) {
   return beginning.starts_with("<!doctype html>") &&
          beginning.find(
@@ -44,8 +44,8 @@ void report(ReportCommand& command, Context& context) {
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
-        "Figures are drawings and there are no packings: this program was built without "
-        "Node.\n");
+        "Figures are static drawings and packings are left out, since this program was built "
+        "without Node.\n");
   }
   if (is_stream(command.out)) return;
   if (context.json) {
@@ -86,28 +86,29 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: all; in figures, the scale of the run added last)");
-  sub->add_option("--run", packings.runs, "Show these runs in 3D instead of the default")
+      "Only runs of this scale (default: all; figures show the scale of the run added last)");
+  sub->add_option("--run", packings.runs,
+                  "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
   add_number(*sub, "--runs-per-experiment", packings.runs_per_experiment,
-             "Number of runs shown in 3D: the last of each variant")
+             "Largest number of runs shown in 3D for each experiment")
       ->capture_default_str();
-  add_number(*sub, "--frames", packings.frames, "Checkpoints of each run in 3D, evenly spread", "N",
-             1, 100000)
+  add_number(*sub, "--frames", packings.frames,
+             "Largest number of checkpoints of each run in 3D, evenly spaced", "N", 1, 100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
-             "Limit for all packings in 3D; fewer checkpoints are taken where they would not fit",
-             "MB", 0, 1000)
+             "Largest total size of packings in 3D; checkpoints that do not fit are left out", "MB",
+             0, 1000)
       ->capture_default_str();
   sub->add_flag_callback(
          "--drawings", [&options] { options.interactive = false; },
-         "Static figures drawn by gnuplot; no JavaScript, no packings")
+         "Show static figures drawn by gnuplot, without JavaScript and packings")
       ->excludes("--run");
   add_common_options(
       *sub, context,
-      R"(The file needs no network: figures to zoom and read values from, verdicts, runs, lineage, and
-packings in 3D with their positions rounded to 16 bits an axis. Only the cached measures in the
-store change.
+      R"(The file works without a network. It shows figures that can be zoomed, verdicts, runs, lineage,
+and packings in 3D with positions rounded to 16 bits per axis. The store does not change, except
+for its cache of measures.
 Examples:
   shearcell report --out report.html
   shearcell report --run 3f9a --frames 200 --out one-run.html

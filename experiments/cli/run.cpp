@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `run` and `resume`: compute what is not done yet; `resume --task` is a task of a cluster job.
+// `run` and `resume`: compute unfinished runs. `resume --task` works as one task of a cluster job.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,29 +30,28 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunOptions {
-  std::vector<std::string> inputs;  ///< manifests, or runs of `resume`
+  std::vector<std::string> inputs;  ///< manifests for `run`, ids of runs for `resume`
   ExpandOptions expand;
   std::size_t jobs = 0;
   Parallel parallel;
   std::uint64_t keep_every = 0;
   bool quiet = false;
   bool leave_failed = false;
-  bool task = false;    ///< of a job that `submit` queued
-  std::string scratch;  ///< see unfit_scratch()
+  bool task = false;    ///< whether this is a task of a job that `submit` queued
+  std::string scratch;  ///< value of --scratch; see unfit_scratch()
 };
 
-// Intervals of a task's progress report, and of saving from a node's own disk. A node that fails
-// loses what it computed since the last save.
+// Intervals between progress reports of a task, and between copies from a node's own disk to the
+// store of the task. A node that fails loses what it computed since the last copy.
 constexpr std::chrono::seconds kReportEvery{10};
 constexpr std::chrono::seconds kSaveEvery{300};
 
 void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
   if (options.parallel.ranks == 1 || lammps) return;
   throw CLI::ValidationError("--mpi",
-                             "has no effect: LAMMPS computes none of these runs. Leave it out");
+                             "has no effect, since LAMMPS computes none of these runs. Omit --mpi");
 }
 
-// Throws ProgramError if LAMMPS is not installed.
 void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {
   find_lammps(options.parallel.ranks);
 } catch (const ProgramError& missing) {
@@ -64,10 +63,10 @@ void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) t
   });
   if (!others) throw;
   throw ProgramError(std::string(missing.what()) +
-                     ". `--variant engine=shearcell` computes the runs without it");
+                     ". `--variant engine=shearcell` computes only runs that do not need LAMMPS");
 }
 
-// Number of runs at a time, so that their threads or processes fill the cores.
+// Number of runs to compute at a time. By default, their threads or processes fill the cores.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
@@ -78,7 +77,7 @@ CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const Ru
                        Context& context) {
   if (!options.task) catch_stop_signals();
   std::atomic<std::size_t> deleted = 0;
-  const auto prune = [&](const std::string& stage) {  // as soon as the stage is done
+  const auto prune = [&](const std::string& stage) {  // called when the stage is done
     std::vector<CheckpointRecord> records = store.prunable({{stage}, options.keep_every});
     RunLineages known;
     std::erase_if(records, [&](const auto& c) { return why_not_again(store, c, known); });
@@ -93,7 +92,7 @@ CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const Ru
   return result;
 }
 
-// Prints the result and sets the exit code. `failed_before`: whether failed runs were left out.
+// Prints the result and sets the exit code. `failed_before`: whether --leave-failed left out runs.
 void print_result(const CampaignResult& result, bool failed_before, Context& context) {
   const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
   fail(context, result.damaged > 0   ? kStoreDamaged
@@ -122,13 +121,14 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
-      fmt::print("{} computed by other programs meanwhile\n", counted(result.elsewhere, "stage"));
+      fmt::print("{} computed by other programs in the meantime\n",
+                 counted(result.elsewhere, "stage"));
     }
     if (result.files_deleted > 0) {
       fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
     }
     if (result.damaged > 0) {
-      fmt::print("{} found damaged files in the store\n", counted(result.damaged, "stage"));
+      fmt::print("{} stopped at damaged files in the store\n", counted(result.damaged, "stage"));
     }
   }
   if (interrupted) {
@@ -138,7 +138,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
 }
 
 void run(const RunOptions& options, Context& context) {
-  // Reads all manifests before it writes anything.
+  // All manifests are read and checked before anything is written.
   const std::vector<Plan> plans = load_plans(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
@@ -155,7 +155,7 @@ void run(const RunOptions& options, Context& context) {
   print_result(compute(store, jobs, options, context), false, context);
 }
 
-// Removes the jobs that failed and those that depend on them. Returns whether there were any.
+// Removes jobs of failed stages and jobs that depend on them. Returns whether a job was removed.
 bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   std::set<std::string> left;
   std::erase_if(jobs, [&](const StageJob& job) {  // parents come first
@@ -166,7 +166,7 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   return !left.empty();
 }
 
-// Computes what is unfinished. `failed_before`: whether failed runs were left out.
+// Computes the unfinished stages. Sets `failed_before` to whether --leave-failed left out runs.
 CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before,
                             Context& context) {
   std::vector<StageJob> jobs = stages_to_resume(store, options.inputs);
@@ -178,22 +178,22 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, bool& faile
   return compute(store, jobs, options, context);
 }
 
-// For Repeated: an action that prints its error instead of throwing. It is repeated next time.
+// Wraps an action for Repeated. Errors are printed, and the next repetition tries again.
 std::function<void()> tried(std::function<void()> action, std::chrono::seconds interval) {
   return [interval, action = std::move(action)] {
     try {
       action();
     } catch (const std::exception& problem) {
-      print_stderr("shearcell: {}; tried again in {} s\n", problem.what(), interval.count());
+      print_stderr("shearcell: {}; will try again in {} s\n", problem.what(), interval.count());
     }
   };
 }
 
-// Where the task works: its own store, or with `scratch` a copy on the node's disk. It is named
-// after submission and task, so that a restarted task continues its copy.
+// Returns the folder in which the task computes: its store, or with `scratch` a copy on the node's
+// disk. The copy is named after submission and task, so that a restarted task finds its copy.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
   if (scratch.empty()) return task;
-  const Store sound(task, Access::write);  // throws if it cannot be used, before it is copied
+  const Store sound(task, Access::write);  // throws before copying if the store is unusable
   const fs::path whole = fs::absolute(task);
   const fs::path copy = scratch_here(scratch) / fmt::format("shearcell-{}-{}",
                                                             whole.parent_path().filename().string(),
@@ -203,15 +203,14 @@ fs::path working_folder(const fs::path& task, const std::string& scratch) {
   return copy;
 }
 
-// One task of an array job, on the store that `submit` made for it.
 void resume_task(const RunOptions& options, Context& context) {
   catch_batch_signals();
-  // Without a slash at the end, since the names of the files beside it are derived from it.
+  // No slash at the end, since names of files beside the folder are derived from this path.
   const fs::path task = (fs::path(context.store) / "").parent_path();
   const fs::path folder = working_folder(task, options.scratch);
   const bool is_copy = folder != task;
   std::optional<Store> store(std::in_place, folder, Access::write);
-  std::set<std::string> runs;  // of the task, which alone are merged back
+  std::set<std::string> runs;  // ids of the task's runs; only these runs are copied back
   for (const Stage& stage : store->stages()) runs.insert(stage.id);
   const auto report = [&] { write_task_report(task, store->stages()); };
   const auto save = [&] {
@@ -234,7 +233,7 @@ void resume_task(const RunOptions& options, Context& context) {
     fs::remove_all(folder);
   }
   print_result(result, failed_before, context);
-  // If work is left, the task continues later, whatever else happened.
+  // If the task was stopped with work left, it continues later, even if runs have failed.
   if (stop_requested() && result.interrupted + result.blocked > 0) {
     context.exit_code = kInterrupted;
   }
@@ -249,16 +248,17 @@ void resume_runs(const RunOptions& options, Context& context) {
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {
-  add_number(command, "--jobs,-j", options.jobs, "Runs at a time (default: one per core)", "J", 1,
-             1024);
-  add_threads_option(command, options.parallel.threads, "Threads inside each run, for large cells");
+  add_number(command, "--jobs,-j", options.jobs,
+             "Number of runs computed at a time (default: one per core)", "J", 1, 1024);
+  add_threads_option(command, options.parallel.threads,
+                     "Threads inside each run; useful for large cells");
   add_number(command, "--mpi", options.parallel.ranks,
-             "Processes of each run in LAMMPS, by mpirun; it changes the last digits", "N", 1,
-             65536);
+             "MPI processes of each LAMMPS run; the number affects the last digits of results", "N",
+             1, 65536);
   add_number(
       command, "--keep-every", options.keep_every,
-      "When this command has completed a run, measure its checkpoints and delete files, as `prune` "
-      "does, except the files of every K-th cycle",
+      "When a run is completed, measure its checkpoints and delete their files as `prune` does, "
+      "but keep the files of every K-th cycle",
       "K", 1, 1'000'000'000);
   command.add_flag("--quiet,-q", options.quiet, "Show no progress");
 }
@@ -276,35 +276,35 @@ void add_run(CLI::App& app, Context& context) {
   shearcell run experiments/drag.yaml --scale smoke
   shearcell run experiments/drag.yaml --scale desk --cycles 100   # extend
   shearcell run experiments/critical_size.yaml --scale paper --variant amplitude_rad=0.1
-  shearcell run experiments/drag.yaml --scale desk --seed 4-6     # this machine's part of the seeds
+  shearcell run experiments/drag.yaml --scale desk --seed 4-6     # the seeds for this machine
   shearcell run experiments/drag.yaml --scale smoke --engine lammps --mpi 2
 
-Computes only what the store does not hold. Press Ctrl-C to write checkpoints and end with
-code 85; `run` again, or `resume`, continues bit for bit. A second Ctrl-C kills the program
-(code 130), which loses the work since the last checkpoints and nothing else. Start several programs on one
-machine and one store to share the work. On several machines, give each its --variant or --seed
-and merge their stores.)");
+Computes only what the store does not contain. Ctrl-C writes checkpoints and ends the program with
+code 85. `run` or `resume` then continues the runs bit for bit. A second Ctrl-C kills the program
+(code 130), and only the work since the last checkpoints is lost. Several programs on one machine
+can share the work on one store. To use several machines, select different runs on each machine with
+--variant or --seed, and merge the stores.)");
 
   const auto [resume, resume_options] =
       add_command(app, context, "resume", "Continue unfinished runs", resume_runs);
   resume->add_option("run", resume_options->inputs,
-                     "Run ids, or unique beginnings of them (default: all)");
+                     "Run ids, or unique beginnings of run ids (default: all runs)");
   add_worker_options(*resume, *resume_options);
   resume->add_flag("--leave-failed", resume_options->leave_failed, "Do not try failed runs again");
   CLI::Option* task =
       resume->add_flag("--task", resume_options->task,
-                       "As a task of a job that `submit` queued: --store names the task's store");
+                       "Work as a task of a job that `submit` queued; --store is the task's store");
   resume
       ->add_option("--scratch", resume_options->scratch,
-                   "Work on a copy of the store in this folder, on the node's own disk; $NAME and "
+                   "Folder on the node's own disk for a copy of the store to work on; $NAME and "
                    "${NAME} are variables of the node")
       ->needs(task)
       ->type_name("DIR");
   add_common_options(
       *resume, context,
-      R"(A task reports its progress to `status`. On SIGTERM or SIGUSR1 it writes checkpoints and ends with
-code 85; started again, it continues bit for bit. With --scratch it copies the store back every
-five minutes and at the end.
+      R"(A task reports its progress to `status`. On SIGTERM or SIGUSR1, a task writes checkpoints and ends
+with code 85. If it is started again, it continues the runs bit for bit. With --scratch, a task
+copies its results back to its store every five minutes and at the end.
 Examples:
   shearcell resume
   shearcell resume 3f9a)");

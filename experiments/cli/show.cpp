@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `show`: everything the store knows about one run, checkpoint, figure or published file.
+// `show`: prints all that the store records about a run, checkpoint, figure or published file.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -40,8 +40,9 @@ Facts facts_of(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// Also `asked_by`: the indices in `memberships` of the places whose figures and tables use the
-/// checkpoint; empty if only an interruption or another experiment left it.
+/// Facts of the checkpoints. `asked_by` lists the entries of `memberships` (as indices) whose
+/// figures and tables use the checkpoint. It is empty if no experiment uses the checkpoint, for
+/// example because an interruption stored it.
 std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -58,7 +59,7 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
   });
 }
 
-/// The values of `table`; measured now if they are not cached.
+/// The measures of the checkpoint, as in `table`. Measures that are not cached are computed.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
   CheckpointMeasures one{record};
   const ToMeasure todo{&one};
@@ -75,7 +76,6 @@ Facts measures_at(const Store& store, const CheckpointRecord& record, Context& c
   return facts;
 }
 
-/// Of the newest checkpoint that was not rejected.
 Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& checkpoints,
                       Context& context) {
   for (auto c = checkpoints.rbegin(); c != checkpoints.rend(); ++c) {
@@ -84,7 +84,7 @@ Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& c
   return {};
 }
 
-/// The engine that the latest attempt recorded; null for our own.
+/// The engine recorded by the latest attempt; null if this program computed the run.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   const RunLineage stage = run_lineage(store, run).back();
@@ -94,7 +94,7 @@ nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   return engine;
 }
 
-/// A line for each value that the command line gave.
+/// One line for each manifest value that an option of the command line replaced.
 std::vector<std::string> describe(const nlohmann::json& overrides) {
   std::vector<std::string> lines;
   for (const auto& [key, values] : overrides.items()) {
@@ -140,7 +140,7 @@ Facts facts_of(const Store& store, const Stage& stage) {
       {"parameters", effective_parameters(stage.resolved)}};
 }
 
-/// The record whose hash is the run's id, with only the parameters that affect the run.
+/// The record whose hash is the id of the run, without parameters that do not affect the run.
 Facts facts_of_id(const Stage& stage) {
   Facts facts;
   for (const auto& [key, value] : stage.resolved.items()) {
@@ -173,7 +173,8 @@ void show_run(const Store& store, const Stage& stage, Context& context) {
   }
 }
 
-/// Prints the checkpoint with its measures; if its file was pruned, with its observables.
+/// Prints the checkpoint and its measures. If the file was pruned, prints the observables that the
+/// log recorded instead.
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   const bool pruned = record.state == CheckpointState::pruned;
   Facts more, measures;
@@ -211,9 +212,6 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   print_json(all);
 }
 
-// --- Figures and their files ---
-
-/// A line of recorded texts under a heading.
 template <typename... Arguments>
 void say(std::string_view heading, fmt::format_string<Arguments...> format,
          Arguments&&... arguments) {
@@ -221,19 +219,18 @@ void say(std::string_view heading, fmt::format_string<Arguments...> format,
   print_text("{}\n", without_controls(fmt::format("{:<12} {}", heading, text)));
 }
 
-// "2026-11-20T21:40:51.123Z" as "2026-11-20 21:40:51".
+// Shortens a time: "2026-11-20T21:40:51.123Z" becomes "2026-11-20 21:40:51".
 std::string moment(const std::string& utc) {
   std::string text = utc.substr(0, 19);
   std::replace(text.begin(), text.end(), 'T', ' ');
   return text;
 }
 
-// Numbers builds and hosts, so that the lines of attempts stay short.
+// Gives each build and each host a number, so that the lines of attempts are short.
 class Makers {
   using Lines = std::vector<std::string>;
 
  public:
-  /// "build 1, host 1".
   std::string number(const nlohmann::json& host) {
     const Maker maker = maker_of(host);
     return fmt::format("build {}, host {}",
@@ -259,7 +256,7 @@ class Makers {
     if (found == known.end()) known.push_back(lines);
     return place + 1;
   }
-  std::vector<Lines> builds_, hosts_;  // lines to print
+  std::vector<Lines> builds_, hosts_;  // the lines to print for each build and host
 };
 
 void print_manifests(const FigureLineage& lineage) {
@@ -276,7 +273,6 @@ void print_manifests(const FigureLineage& lineage) {
   }
 }
 
-/// The stage's attempts and, if `list`, these checkpoints.
 void print_stage(const RunLineage& stage, const std::vector<std::string>& checkpoints, bool list,
                  Makers& makers) {
   std::size_t number = 0;
@@ -313,7 +309,6 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   print_stage(run, input.checkpoints, list, makers);
 }
 
-// `list`: every checkpoint.
 void print(const FigureLineage& lineage, bool list) {
   Makers makers;
   const nlohmann::json& recorded = lineage.record.provenance;
@@ -344,7 +339,6 @@ void print(const FigureLineage& lineage, bool list) {
   makers.print();
 }
 
-// `check`: of a file, or empty.
 void show(const FigureLineage& lineage, const Facts& check, bool list, const Context& context) {
   if (context.json) {
     nlohmann::json all = to_json(lineage);
@@ -372,8 +366,8 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
   nlohmann::json list = nlohmann::json::array();
   std::string text =
       faults.empty()
-          ? fmt::format("{}, all present and right", counted(inputs, "checkpoint"))
-          : fmt::format("{}: {} present and right{}{}", counted(inputs, "checkpoint"),
+          ? fmt::format("{}, all present and unchanged", counted(inputs, "checkpoint"))
+          : fmt::format("{}: {} present and unchanged{}{}", counted(inputs, "checkpoint"),
                         inputs - changed - pruned,
                         pruned > 0 ? fmt::format(", {} pruned", pruned) : "",
                         changed > 0 ? fmt::format(", {} missing or changed", changed) : "");
@@ -392,15 +386,15 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
           {"input_faults", list}};
 }
 
-// Compares a figure's file and its inputs with the store's records.
+// Compares a figure's file, and the checkpoints behind the figure, with the records of the store.
 void show_published(const Store& store, const std::filesystem::path& file, bool list,
                     Context& context) {
   const auto found = find_published(store, file);
   if (!found) {
     throw NotFound(
         file.string() +
-        ": unknown to this store: no figure that it recorded has a file with these bytes "
-        "or of this name; name the right store with --store");
+        ": this store has no record of the file. No figure of the store has a file with these "
+        "bytes or this name. If the file is from another store, name that store with --store");
   }
   const FigureLineage lineage = figure_lineage(store, found->record);
   const std::vector<Finding> faults = check_inputs(store, lineage);
@@ -411,7 +405,8 @@ void show_published(const Store& store, const std::filesystem::path& file, bool 
   show(lineage, facts_of(file, *found, faults, inputs), list, context);
 }
 
-// The newest record of "drag/desk/S2"; also of "drag/S2" and "S2" if no other figure has that name.
+// Returns the newest record of a figure, such as "drag/desk/S2". Short names, such as "drag/S2" and
+// "S2", are accepted if only one figure fits. Throws NotFound if several figures fit.
 std::optional<FigureRecord> find_record(const Store& store, const std::string& name) {
   std::map<std::string, FigureRecord> found;  // by path
   for (FigureRecord& figure : store.figures()) {
@@ -430,7 +425,7 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.begin()->second);
 }
 
-// Throws if the name, such as "S4" or "drag/desk/S4", belongs to a figure that was not drawn.
+// Throws NotFound if the name, such as "S4" or "drag/desk/S4", means a figure that was not drawn.
 void require_not_undrawn(const std::string& name) {
   const std::string figure = std::filesystem::path(name).filename().string();
   if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
@@ -438,7 +433,7 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-/// Throws if an experiment has this name: an experiment has several runs.
+/// Throws NotFound if `name` is an experiment, since `show` shows only one run.
 void require_no_experiment(const std::string& name, const std::vector<Stage>& stages) {
   const auto is_it = [&](const Membership& m) { return m.place.experiment == name; };
   const auto is_of = [&](const Stage& stage) {
@@ -446,14 +441,14 @@ void require_no_experiment(const std::string& name, const std::vector<Stage>& st
   };
   if (std::ranges::none_of(stages, is_of)) return;
   throw NotFound(fmt::format(
-      "{0} is an experiment, and `show` takes a run, checkpoint or figure. Use `shearcell status "
-      "--experiment {0}` for its runs, or `table` or `figures` with --experiment {0}",
+      "{0} is an experiment, but `show` needs a run, checkpoint or figure. Use `shearcell status "
+      "--experiment {0}` to list its runs, or `table` or `figures` with --experiment {0}",
       name));
 }
 
 struct ShowOptions {
   std::string name;
-  bool list = false;  ///< every checkpoint behind a figure
+  bool list = false;  ///< whether to list every checkpoint behind a figure
 };
 
 void show(const ShowOptions& options, Context& context) {
@@ -462,7 +457,7 @@ void show(const ShowOptions& options, Context& context) {
   if (const auto figure = find_record(store, name))
     return show_figure(store, *figure, list, context);
   require_not_undrawn(name);
-  // Ids of runs and checkpoints have no dot or slash.
+  // A name with a dot or a slash is a file, since ids of runs and checkpoints have neither.
   if (name.find_first_of("./") != std::string::npos)
     return show_published(store, name, list, context);
   const std::vector<Stage> stages = store.stages();
@@ -471,8 +466,8 @@ void show(const ShowOptions& options, Context& context) {
   const auto checkpoint = name.size() < 4 ? std::nullopt : store.find_checkpoint(name);
   if (checkpoint && run != stages.end()) {
     throw NotFound(fmt::format(
-        "a run and a checkpoint begin with '{}'; give more digits of one of\n  run {}\n  "
-        "checkpoint {}",
+        "the ids of a run and of a checkpoint begin with '{}'; give more digits of one id\n  run "
+        "{}\n  checkpoint {}",
         name, run->id, checkpoint->sha256));
   }
   if (checkpoint) return show_checkpoint(store, *checkpoint, context);
@@ -484,21 +479,22 @@ void show(const ShowOptions& options, Context& context) {
 
 void add_show(CLI::App& app, Context& context) {
   const auto [command, options] =
-      add_command(app, context, "show", "Show one run, checkpoint, figure or figure's file", show);
+      add_command(app, context, "show", "Show one run, checkpoint, figure or figure file", show);
   command
       ->add_option("name", options->name,
-                   "Run id or checkpoint SHA-256 (or a beginning), figure, or a figure's file")
+                   "Run id, checkpoint SHA-256 (or a unique beginning), figure, or figure file")
       ->required();
   command->add_flag("--checkpoints", options->list, "List every checkpoint behind a figure");
   add_common_options(
       *command, context,
-      R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and
-cycles, and checks that the log has the states of which it was made; exit code 4 if not.
-For a file (CSV, SVG or lineage): checks that it is what the store recorded and that every
-checkpoint behind it is intact; exit code 4 if not. Pruned checkpoints are counted and are not
-an error.
-With --json, `parameters` of a run are those that affect it; `resolved` is the stored record,
-whose hash is the run's id, and has fixed values for some that do not (max_overlap_diameters).
+      R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and cycles.
+Checks that the log contains the states from which the figure was made; if not, the exit code is 4.
+For a file of a figure (CSV, SVG or lineage): checks that the store recorded a file with these bytes
+and that every checkpoint behind the file is intact; if not, the exit code is 4. Pruned checkpoints
+are counted, but they are not an error.
+With --json, `parameters` has the parameters that affect the run. `resolved` is the stored record,
+whose hash is the run's id. Some parameters that do not affect the run (such as
+max_overlap_diameters) have fixed values in this record.
 Examples:
   shearcell show 3f9a
   shearcell show drag/smoke/S2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `status`: every run with its state, progress and speed.
+// `status`: lists every run with its state, progress and speed.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -19,11 +19,11 @@
 namespace shearcell::cli {
 namespace {
 
-/// The selected runs, with their holders and their places in the queue.
+/// The selected runs, the processes that compute runs now, and the runs in the queue of a cluster.
 struct View {
   Store store;
   std::vector<PlacedRun> runs;
-  std::map<std::string, Lease> holders;  // by run
+  std::map<std::string, Lease> holders;  // leases of the runs that are being computed, by id
   QueueView queue;
   VariantNames names;
 
@@ -64,8 +64,9 @@ std::string describe(const QueuedTask& task) {
   return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-/// State and cycle of the run: as its task reports them if the task is ahead of the store, else as
-/// the store has them. A run that was killed is interrupted.
+/// State and cycle of the run. They are from the progress report of the run's cluster task if the
+/// report is ahead of the store, else from the store. A run whose program was killed counts as
+/// interrupted.
 std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
   const QueuedRun* queued = view.queued(stage);
   const bool reported =
@@ -77,8 +78,8 @@ std::pair<StageState, double> progress_of(const Stage& stage, const View& view) 
   return {killed ? StageState::interrupted : stage.state, stage.cycle};
 }
 
-/// "5/9": the cycle and how many the experiment asks for; "2/9 (until)" if `until` ended the run
-/// before.
+/// "5/9": the cycle and the number of cycles that the experiment asks for. "2/9 (until)" if `until`
+/// ended the run before cycle 9.
 std::string describe_cycles(const Store& store, const Stage& stage, const Ask& ask, double cycle) {
   if (stage.kind == name_of(StageKind::prepare)) return "";
   const auto asked = static_cast<double>(ask.target_cycles);
@@ -92,7 +93,8 @@ std::string describe_cycles(const Store& store, const Stage& stage, const Ask& a
                      end < asked && cycle >= end ? " (until)" : "");
 }
 
-/// A run in one of its places. The table shows what its task reports, JSON what the store has.
+/// Facts of a run as part of one experiment. The table shows the progress that a cluster task
+/// reports. JSON has the progress that the store records.
 Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) {
   const Stage& stage = listed.stage;
   const auto held = view.holders.find(stage.id);
@@ -144,18 +146,18 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
   return all;
 }
 
-/// The work that is left, and the time that it takes at the present speed.
+/// The work that is left, and the time that this work will take at the present speed.
 struct Estimate {
   Work work;
-  std::size_t at_a_time = 1;  ///< stages
-  bool running = false;       ///< false: estimated for all cores of this machine
-  bool at_most = false;       ///< `until` may end runs earlier
+  std::size_t at_a_time = 1;  ///< number of stages computed at a time
+  bool running = false;       ///< whether any run is being computed; if not, assumes all cores
+  bool at_most = false;       ///< whether the time is an upper limit, since `until` may end runs
 
   double seconds() const { return work.seconds(at_a_time); }
 };
 
-/// Nothing if nothing is left, or if this version cannot read a record: `problem` then says why.
-/// Stages that failed or cannot start are left out.
+/// Estimates the remaining work, without stages that failed or cannot start. Returns nothing if no
+/// work is left. Also returns nothing, and sets `problem`, if this version cannot read a record.
 std::optional<Estimate> estimate(const View& view, std::string& problem) {
   const Rates rates(view.store.stages());
   std::size_t running = 0;
@@ -202,10 +204,9 @@ void print(const Estimate& left) {
       "left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
       counted(left.work.stages, "stage"), left.work.particle_steps,
       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
-      left.running ? ": until " + local_time(left.seconds()) : "; no program computes them now");
+      left.running ? ", until " + local_time(left.seconds()) : "; no program computes them now");
 }
 
-/// Prints a table for each experiment, and a line with the number of stages in each state.
 void print_tables(const View& view) {
   std::vector<std::string> experiments;
   std::map<std::string, std::vector<Facts>> tables;
@@ -231,27 +232,26 @@ void print_tables(const View& view) {
   print_text("{}{}\n", counted(view.runs.size(), "stage"), all);
 }
 
-/// Prints the tables, the estimate, and notes on single runs.
 void print(const View& view) {
   print_tables(view);
   std::string unknown;
   if (const auto left = estimate(view, unknown)) print(*left);
-  if (!unknown.empty()) print_text("It is not known how much is left: {}\n", unknown);
+  if (!unknown.empty()) print_text("The remaining work is unknown: {}\n", unknown);
   const auto waiting = std::ranges::count_if(view.runs, [&](const PlacedRun& one) {
     return one.stage.state != StageState::failed && has_failed(view.store, one.stage);
   });
   if (waiting > 0) {
-    print_text("{} cannot start, since the packing failed\n",
+    print_text("{} cannot start, since the packing has failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
   }
   for (const auto& [run, lease] : view.holders) {
-    print_text("* {} is held by {}\n", run.substr(0, 8), describe(lease.holder));
+    print_text("* {} is computed by {}\n", run.substr(0, 8), describe(lease.holder));
   }
   const std::string& problem = view.queue.problem;
   for (const Submission& submission : view.queue.submissions) {
     if (problem.empty()) print_text("{}\n", describe(submission));
   }
-  if (!problem.empty()) print_text("The queue is not known: {}\n", problem);
+  if (!problem.empty()) print_text("The queue of the cluster is unknown: {}\n", problem);
   for (const auto& [stage, places] : view.runs) {
     if (!stage.error.empty()) print_text("{}: {}\n", stage.id.substr(0, 8), stage.error);
     if (const std::string why = describe_end(end_of(stage)); !why.empty()) {
@@ -292,11 +292,11 @@ void add_status(CLI::App& app, Context& context) {
   add_selection_options(*command, *selection, true);
   add_common_options(
       *command, context,
-      R"(M/s is million particle-steps per second over all recorded work. The cycle 2/9 (until) means that
-9 cycles were asked for and `until` ended the run at cycle 2. A run whose program was killed is shown
-as interrupted (with --json: `running`, without a `holder`); `resume` continues it. Runs on a cluster
-show their place in its queue and the progress of their tasks. The time left is estimated from the
-speed so far.
+      R"(M/s is million particle-steps per second, averaged over all recorded work. The cycle 2/9 (until)
+means that the experiment asks for 9 cycles and that `until` ended the run at cycle 2. A run whose
+program was killed is shown as interrupted (with --json as `running` without a `holder`). `resume`
+continues this run. For runs on a cluster, the state in the queue and the progress of the task are
+shown. The remaining time is estimated from the speed so far.
 Examples:
   shearcell status
   watch -n 10 shearcell status

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `submit`: queues the rest of a campaign on a cluster as an array job.
+// `submit`: queues the unfinished runs of a campaign on a cluster as an array job.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Slurm's default limit.
+// Slurm's default limit on the number of tasks of a job.
 constexpr std::size_t kMostTasks = 1000;
-// Slurm checks twice a minute, so its warning may come this much earlier [s].
+// Slurm checks time limits every 30 s, so its warning may come this much earlier [s].
 constexpr double kWarningResolution = 30;
 
 struct SubmitOptions {
@@ -32,7 +32,7 @@ struct SubmitOptions {
   bool dry_run = false;
 };
 
-/// What the command prints: as JSON, or the shares of a proposal and a text.
+/// Result of the command. `facts` are printed only as JSON, and `text` only without --json.
 struct Result {
   Proposal proposal;
   json facts = {{"submission", nullptr}};
@@ -61,7 +61,7 @@ void print(const Result& result, const Context& context) {
     return print_json(all);
   }
   if (!tasks.empty()) {
-    fmt::print("{} in {}; cores of each: {}\n\n", counted(runs, "run"),
+    fmt::print("{} in {}; cores per task: {}\n\n", counted(runs, "run"),
                counted(tasks.size(), "task"), proposal.job.cpus);
     print_table(tasks);
     fmt::print("\n");
@@ -69,11 +69,11 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {} that are queued or computed already, or wait for such a packing; see "
-        "`shearcell status`\n",
+        "left out: {}, since work on their packings is already queued or running; see `shearcell "
+        "status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
-    fmt::print("Nothing to do: the store holds every run at its length\n");
+    fmt::print("Nothing to do: all runs are done\n");
   }
 }
 
@@ -92,12 +92,13 @@ void show_jobs(const fs::path& store, Result& result) {
     for (const std::string& word : job.command) line += shell_word(word) + " ";
     return fmt::format("{}\n\n{}", line, job.script);
   };
-  result.text =
-      fmt::format("Nothing was submitted. The array job:\n\n{}\nand the job after it:\n\n{}",
-                  shown(array), shown(merging));
+  result.text = fmt::format(
+      "Nothing was submitted. The array job:\n\n{}\nThe job that merges the stores:\n\n{}",
+      shown(array), shown(merging));
 }
 
-/// Queues both jobs. If the second fails, the stores can be merged by hand.
+/// Queues the array job and the job that merges its stores. If the second job cannot be queued,
+/// warns that the stores must be merged by hand.
 void queue_jobs(Store& store, const Submission& submission, Result& result, Context& context) {
   const JobOptions& options = result.proposal.job;
   const fs::path folder = submission.folder(store.folder());
@@ -105,7 +106,7 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
   try {
     job = queue_job(array_job(submission, store.folder(), options), folder);
   } catch (const MachineError&) {
-    throw;  // it may be queued
+    throw;  // keeps the folder, since the job may be queued
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
@@ -114,8 +115,8 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
   try {
     merging = queue_job(merge_job(submission, store.folder(), options, job), folder);
   } catch (const std::runtime_error& error) {
-    warn(context, fmt::format("{}\nThe stores of the tasks are not merged by themselves: "
-                              "`shearcell submit` again, or `merge` them, when the job has ended",
+    warn(context, fmt::format("{}\nThe stores of the tasks are not merged automatically. When the "
+                              "job has ended, run `shearcell submit` again, or `shearcell merge`",
                               error.what()));
     fail(context, kOtherError);
   }
@@ -138,8 +139,8 @@ json event_facts(const std::vector<Plan>& plans) {
           {"scales", list_of(plans, [](const Plan& plan) { return plan.scale; })}};
 }
 
-/// Merges what earlier submissions computed and no job merged, as after `scancel`, and declares the
-/// runs.
+/// Merges results of earlier submissions that no job has merged, for example after `scancel`. Then
+/// declares the runs of the plans.
 void prepare(Store& store, const std::vector<Submission>& open, const std::vector<Plan>& plans) {
   for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
@@ -162,8 +163,8 @@ void check_time(const JobOptions& job) {
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
-        "--time", fmt::format("{} s leave no time to compute: the warning comes up to {} s before "
-                              "the end; ask for more, or a smaller --warn",
+        "--time", fmt::format("{} s leave no time to compute, since the warning comes up to {} s "
+                              "before the end; increase --time or reduce --warn",
                               *limit, needed));
   }
 }
@@ -171,7 +172,8 @@ void check_time(const JobOptions& job) {
 void submit(const SubmitOptions& options, Context& context) {
   check_time(options.job);
   const std::vector<Plan> plans = load_plans(options.manifests, options.expand, context);
-  const fs::path folder = fs::weakly_canonical(fs::absolute(context.store));  // for every task
+  const fs::path folder =
+      fs::weakly_canonical(fs::absolute(context.store));  // same path in all tasks
   if (const std::string why = unfit_path(folder); !why.empty()) throw UsageError(why);
   if (!options.dry_run) require_slurm();
   std::optional<Store> store = options.dry_run
@@ -181,7 +183,7 @@ void submit(const SubmitOptions& options, Context& context) {
   const QueueView queue = store ? view_queue(*store) : QueueView();
   if (!queue.problem.empty()) {
     if (!options.dry_run) throw ProgramError(queue.problem);
-    warn(context, "runs that are queued already are not left out: " + queue.problem);
+    warn(context, "runs that are already queued are not left out: " + queue.problem);
   }
   if (!options.dry_run) prepare(*store, queue.submissions, plans);
   const auto busy = store ? busy_runs(*store, queue.submissions) : std::set<std::string>();
@@ -197,14 +199,14 @@ void submit(const SubmitOptions& options, Context& context) {
 
 std::string check_sbatch(const std::string& text) {
   if (!text.starts_with("--") || text.size() == 2) {
-    return fmt::format("'{}' is not a long option of sbatch; write --sbatch=--qos=long", text);
+    return fmt::format("'{}' is not a long option of sbatch such as --sbatch=--qos=long", text);
   }
   const std::string option = text.substr(0, text.find('='));
   for (const std::string taken : {"--array", "--clusters", "--test-only", "--wait", "--wrap"}) {
-    if (!taken.starts_with(option)) continue;  // sbatch knows abbreviations
+    if (!taken.starts_with(option)) continue;  // sbatch accepts abbreviated options
     return fmt::format(
-        "'{}': with {} `submit` could not queue and follow its jobs, so leave it out (--array-size "
-        "limits the number of tasks; for another cluster, submit from a machine of that cluster)",
+        "'{}': with {}, `submit` cannot queue and follow its jobs. Remove this option. "
+        "(--array-size limits the number of tasks. To use another cluster, submit there.)",
         text, taken);
   }
   return unfit_value(text);
@@ -216,32 +218,33 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   command.add_option("--account,-A", job.account, "Account")->check(unfit_value);
   command
       .add_option("--time", job.time,
-                  "Time limit of one start of a task; it restarts until it is done")
+                  "Time limit of a task; an unfinished task is restarted after the limit")
       ->check(unfit_value)
       ->type_name("HH:MM:SS");
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(command, "--cpus-per-task,-c", job.cpus,
-             "Cores, and so runs at a time, of a task (default: one per run, at most 16)", "C", 1,
-             1024);
-  add_threads_option(command, job.threads, "Threads inside each run, for large cells");
+             "Cores of each task; a task computes as many runs at a time as fit (default: one core "
+             "per run, at most 16)",
+             "C", 1, 1024);
+  add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command
       .add_option("--scratch", job.scratch,
-                  "Folder on each node's own disk to work in, as /scratch or '$TMPDIR'; the stores "
-                  "are saved every five minutes")
+                  "Folder on each node's own disk to work in, such as /scratch or '$TMPDIR'. The "
+                  "results are copied to the task's store every five minutes")
       ->check(unfit_scratch)
       ->type_name("DIR");
   add_number(command, "--warn", job.warn_seconds,
-             "Seconds before the time limit at which tasks write checkpoints and queue themselves "
+             "Time before the time limit [s] at which a task writes checkpoints and queues itself "
              "again",
              "S", 10, 3600)
       ->capture_default_str();
-  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, as --sbatch=--mem=2G")
+  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
       ->check(check_sbatch)
       ->allow_extra_args(false)  // the next argument may be a manifest
       ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
-                   "Show the jobs and who would do what; needs no Slurm, writes nothing");
+                   "Show the jobs and tasks without submitting; needs no Slurm and writes nothing");
 }
 
 }  // namespace
@@ -254,12 +257,12 @@ void add_submit(CLI::App& app, Context& context) {
   add_job_options(*command, *options);
   add_common_options(
       *command, context,
-      R"(Each task computes the runs of some packings in its own store under STORE/submissions; a job
-after the array merges these stores into STORE. Near its time limit a task writes checkpoints
-and queues itself again. Runs that are done or queued are left out, so you can submit again at
-any time. Put STORE on a disk that all nodes see. Variables such as $TMPDIR or ${USER} in
---scratch have their value on the node. SBATCH_ACCOUNT, SBATCH_PARTITION, SBATCH_QOS and others
-count; those that would contradict `submit` do not (experiments/cluster/README.md).
+      R"(Each task computes the runs of some packings in a separate store under STORE/submissions. A second
+job then merges these stores into STORE. Near its time limit, a task writes checkpoints and queues
+itself again. Runs that are done or queued are left out, so you can submit again at any time. STORE
+must be on a disk that all nodes can access. Variables such as $TMPDIR or ${USER} in --scratch have
+their values on the node. Environment variables such as SBATCH_ACCOUNT, SBATCH_PARTITION and
+SBATCH_QOS are respected, except those that contradict `submit` (experiments/cluster/README.md).
 Examples:
   shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00
   shearcell submit experiments/*.yaml --scale desk --scratch '$TMPDIR' --sbatch=--mem=4G

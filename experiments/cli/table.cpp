@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `table`: runs and their measures, for pandas, gnuplot and spreadsheets.
+// `table`: writes runs and their measures as a table for pandas, gnuplot and spreadsheets.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -39,7 +39,7 @@ void table(const TableOptions& options, Context& context) {
                  options.out);
   }
   for (const std::string& note : made.notes) print_stderr("{}\n", note);
-  if (made.table.rows.empty()) print_stderr("no checkpoint of a run fits all of these options\n");
+  if (made.table.rows.empty()) print_stderr("no checkpoint matches all of these options\n");
   print_problems(made, "not measured", context);
 }
 
@@ -47,10 +47,10 @@ void table(const TableOptions& options, Context& context) {
 
 void add_table(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
-      app, context, "table", "Write runs and their measures as one table, CSV or JSON", table);
+      app, context, "table", "Write runs and their measures as one table in CSV or JSON", table);
   add_selection_options(*command, options->selection);
   CLI::Option* per =
-      command->add_option("--per", options->per, "One row for each checkpoint or each run")
+      command->add_option("--per", options->per, "Write one row per checkpoint or one row per run")
           ->check(one_of<RowPer>())
           ->capture_default_str();
   std::string columns_text;
@@ -65,7 +65,7 @@ void add_table(CLI::App& app, Context& context) {
   }
   command
       ->add_option("--curve", options->curve,
-                   "A row for each value of this curve at each checkpoint")
+                   "Write this curve, with one row for each of its points at each checkpoint")
       ->check(CLI::IsMember(curves))
       ->excludes(per);
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
@@ -78,7 +78,8 @@ void add_table(CLI::App& app, Context& context) {
     command
         ->add_flag_callback(
             "--" + name, [options = options, name] { options->simulated.push_back(name); },
-            fmt::format("Add {}, which is simulated: {}", fmt::join(added, ", "), one.cost))
+            fmt::format("Add {}, from a simulation that takes {}", fmt::join(added, ", "),
+                        one.cost))
         ->excludes(command->get_option("--curve"));
   }
   command->add_option("--out", options->out, "File to write; - is standard output")
@@ -87,13 +88,13 @@ void add_table(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_common_options(
       *command, context,
-      "Columns (one more for each swept parameter after the seed, named as in a manifest; an empty "
-      "field\nis unknown or does not apply):\n" +
+      "Columns (swept parameters add columns after the seed; an empty field is unknown or does not "
+      "apply):\n" +
           columns_text +
-          "Simulated columns need their option. Columns from critical_size on need --per run, "
-          "whose measures are\ntaken at the newest checkpoint. A run of several experiments has "
-          "rows for "
-          "each, up to the\ncycles that the experiment asks for.\n\nCurves:\n" +
+          "Simulated columns need an option, such as --rest. critical_size and all columns below "
+          "it need\n--per run, which measures the newest checkpoint of each run. A run of several "
+          "experiments has rows\nfor each experiment, up to the cycles that the experiment asks "
+          "for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"
@@ -101,7 +102,7 @@ void add_table(CLI::App& app, Context& context) {
           "  shearcell table --curve pair_correlation --out g_of_r.csv\n"
           "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
   command->get_option("--json")->excludes(format)->description(
-      "One JSON object: `rows`, as of --format json, and `notes` on what is left out");
+      "One JSON object with `rows`, as in --format json, and `notes` on what is left out");
 }
 
 }  // namespace shearcell::cli

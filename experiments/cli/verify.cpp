@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `verify`: checks that the store is unchanged and, on request, that it can be recomputed.
-// `rebuild`: rebuilds its tables.
+// `verify`: checks that the store is unchanged and, on request, that its states can be recomputed.
+// `rebuild`: rebuilds the tables of the store from its events.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -30,7 +30,7 @@ const char* name_of_severity(const Finding& finding) {
   return finding.severity == error ? "error" : finding.severity == note ? "note" : "not checked";
 }
 
-// Reads "16 ab12..." (two words or one) or "16:ab12...".
+// Reads a head: "16 ab12..." as one or two arguments, or "16:ab12...".
 std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
   const std::string text = fmt::format("{}", fmt::join(words, " "));
@@ -61,11 +61,11 @@ std::string describe(const Replay& replay) {
   const Divergence& d = *replay.divergence;
   std::string where;
   if (!d.field.empty()) {
-    where = fmt::format("; largest in {}{}, {} ulp", d.field,
+    where = fmt::format("; largest difference in {}{}, {} ulp", d.field,
                         d.grain < 0 ? "" : fmt::format(" of grain {}", d.grain), d.ulp);
   }
-  return fmt::format("{}: DIVERGED after step {} and not later than step {}: {}{}", what,
-                     d.same_step, d.first_step, d.message, where);
+  return fmt::format("{}: DIVERGED after step {}, at step {} or earlier: {}{}", what, d.same_step,
+                     d.first_step, d.message, where);
 }
 
 nlohmann::json replay(const VerifyOptions& options, Context& context) {
@@ -77,7 +77,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
   }
   left_out -= all.size();
-  // The first checkpoint of a stage takes no steps, so others are preferred.
+  // Replaying the first checkpoint of a stage needs no steps and proves little, so these
+  // checkpoints are used only if there are no others.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
   if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
   const std::size_t count = std::min(options.replay, all.size());
@@ -85,7 +86,7 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   if (!context.json) {
     if (left_out > 0) {
-      print_text("{} are left out: LAMMPS or a program with another bits version made them\n",
+      print_text("{} left out: not bitwise reproducible (made by LAMMPS or another version)\n",
                  counted(left_out, "checkpoint"));
     }
     print_text("replaying up to {} of {} checkpoints, --seed {}\n", count, all.size(), seed);
@@ -107,8 +108,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   }
   if (!context.json && skipped > 0) {
     print_text(
-        "{} skipped: the states before them were pruned; `shearcell regenerate --all` "
-        "recomputes their files\n",
+        "{} skipped: all earlier states were pruned; `shearcell regenerate --all` recomputes the "
+        "pruned files\n",
         counted(skipped, "checkpoint"));
   }
   return {{"seed", seed},
@@ -134,8 +135,8 @@ nlohmann::json facts(const VerifyReport& report) {
           {"findings", list_of(report.findings, finding_facts)}};
 }
 
-// Checks runs and cached measures. Reads records and files, so it does nothing if the store is
-// damaged or a file cannot be read.
+// Checks runs and cached measures, and adds findings to the report. Does nothing if the store is
+// damaged or a file cannot be read, since the checks read records and files.
 MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
   MeasureCheck measures;
   if (!report.ok() || report.count(Finding::Severity::unread) > 0) return measures;
@@ -156,7 +157,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
              counted(report.checkpoints, "checkpoint"),
              format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
              !report.ok()                                  ? "DAMAGED"
-             : report.count(Finding::Severity::unread) > 0 ? "not all was checked"
+             : report.count(Finding::Severity::unread) > 0 ? "not everything was checked"
                                                            : "nothing was changed",
              report.head.seq, report.head.hash);
   if (measures.cached > 0) {
@@ -164,13 +165,13 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
                measures.cached);
   }
   if (measures.absent + measures.not_covered > 0) {
-    print_text("measures of pruned checkpoints: {} absent; the log does not cover {}\n",
+    print_text("measures of pruned checkpoints: {} missing; the log has no hashes for {}\n",
                measures.absent, counted(measures.not_covered, "checkpoint"));
   }
   if (report.ok()) {
     print_text(
-        "Keep the head elsewhere; `verify --against SEQ HASH` proves later that the log only "
-        "grew.\n");
+        "Keep a copy of the head elsewhere. `verify --against SEQ HASH` can later prove that no "
+        "event up to this head was changed or removed.\n");
   }
 }
 
@@ -202,7 +203,7 @@ void rebuild(Context& context) {
   if (context.json) {
     print_json({{"events", head.seq}, {"runs", runs.size()}});
   } else {
-    fmt::print("{} derived from {}\n", counted(runs.size(), "run"), counted(head.seq, "event"));
+    fmt::print("{} rebuilt from {}\n", counted(runs.size(), "run"), counted(head.seq, "event"));
   }
 }
 
@@ -211,31 +212,30 @@ void rebuild(Context& context) {
 void add_verify(CLI::App& app, Context& context) {
   const auto [command, options] =
       add_command(app, context, "verify",
-                  "Check the event chain, every file's hash and the derived tables", verify);
+                  "Check the event chain, the hash of every file and the derived tables", verify);
   command
       ->add_option("--against", options->against,
                    "Number and hash of the last event, as an earlier `verify` printed them")
       ->expected(1, 2)
       ->type_name("SEQ HASH");
-  add_number(*command, "--replay", options->replay, "Recompute K sampled checkpoints", "K", 1,
-             1'000'000'000);
+  add_number(*command, "--replay", options->replay,
+             "Recompute K sampled checkpoints and compare every bit", "K", 1, 1'000'000'000);
   add_number(*command, "--measures", options->measures,
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_number(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
-  add_threads_option(*command, options->threads, "Threads of a replay, for large cells");
+  add_threads_option(*command, options->threads, "Threads of a replay; useful for large cells");
   add_common_options(
       *command, context,
-      R"(Proves that no event or file was changed or lost; that each file is the one that its event
-describes (step, cycle, time, units, grains, observables, state); that each run has the
-parameters and swept values of its id and began from a completed packing; that the tables follow
-from the events; that cached measures of pruned checkpoints are those that the log names.
---replay K recomputes K sampled checkpoints from the checkpoints before them, compares every bit
-of the state and of all that is recorded with the state, and records the outcome. It skips a checkpoint if all
-files before it were pruned. --measures K recomputes
-what derived.sqlite caches of K sampled checkpoints.
-Cannot prove: what is not sampled; when, where and how fast a run was computed; trajectories
-of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect the
-last, keep the printed head away from the store and pass it to --against.
+      R"(Proves that no event or file was changed or lost, and that the tables follow from the events. Each
+file must match its event (step, cycle, time, units, grains, observables, state). Each run must have
+the parameters and swept values of its id, and must have begun from a completed packing. Cached
+measures of pruned checkpoints must match the hashes that the log records.
+--replay K recomputes K sampled checkpoints from earlier checkpoints, compares every bit of the
+state and of the values recorded with it, and records the outcome. A checkpoint is skipped if all
+earlier files were pruned. --measures K recomputes the cached measures of K sampled checkpoints.
+Cannot prove: states that are not sampled; when, where and how fast a run was computed; trajectories
+of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect such a
+change of the log, keep the printed head away from the store and pass the head to --against.
 Examples:
   shearcell verify --json
   shearcell verify --replay 5
@@ -248,8 +248,7 @@ void add_rebuild(CLI::App& app, Context& context) {
   command->callback([&context] { rebuild(context); });
   add_common_options(
       *command, context,
-      R"(Use it when `verify` reports a table that differs from the events. Events and checkpoints do
-not change.
+      R"(Use this command if `verify` reports wrong tables. Events and checkpoints do not change.
 Examples:
   shearcell rebuild)");
 }

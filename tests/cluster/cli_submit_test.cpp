@@ -58,7 +58,7 @@ for word; do echo "$word" >> asked; done
 TEST_F(Submit, ADryRunNeedsNoSlurmAndWritesNothing) {
   const auto before = listing();
   expect(0, {"submit", manifest_, "--seeds", "3", "--time", "2:00:00", "--dry-run"},
-         {"6 runs in 3 tasks; cores of each: 2", " --array=1-3 ", " --time=2:00:00 ",
+         {"6 runs in 3 tasks; cores per task: 2", " --array=1-3 ", " --time=2:00:00 ",
           path("shearcell-store/submissions/SUBMISSION").string() + "/task-%a.log"});
   expect(0, {"submit", "--sbatch=--mem=2G", "--sbatch", "--qos=low", manifest_, "--dry-run"},
          {" --mem=2G --qos=low "});
@@ -201,7 +201,7 @@ TEST_F(Submit, KnowsTheNumberOfAJobWhateverIsPrintedWithIt) {
 
 TEST_F(Submit, EndsWithOneIfNoJobMerges) {
   slurm_that_works("[ $number = 100 ] || exit 1; echo $number");
-  expect(1, {"submit", manifest_}, {"are not merged by themselves", "Submitted as job 100"});
+  expect(1, {"submit", manifest_}, {"are not merged automatically", "Submitted as job 100"});
 }
 
 TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {

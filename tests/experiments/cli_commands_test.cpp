@@ -38,7 +38,8 @@ TEST_F(Commands, PruneOnlyListsByDefaultAndRegenerateRestores) {
   expect(0, {"verify"});
 
   const std::string sha = done.at("checkpoints").at(0).at("sha256");
-  expect(0, {"show", "out/tiny/base/S2a.csv"}, {"10 checkpoints: 6 present and right, 4 pruned"});
+  expect(0, {"show", "out/tiny/base/S2a.csv"},
+         {"10 checkpoints: 6 present and unchanged, 4 pruned"});
   fs::remove(path("shearcell-store/derived.sqlite"));
   expect(0, {"figures", "S2"}, {"shearcell regenerate " + sha.substr(0, 12)});
   expect(0, {"show", sha}, {"pruned; `shearcell regenerate"});
@@ -84,7 +85,8 @@ TEST_F(Commands, ShowRejectsAPrefixOfARunAndACheckpoint) {
           "CREATE TEMP TABLE more AS SELECT * FROM checkpoints LIMIT 1; UPDATE more SET step = "
           "step + 1, sha256 = '" +
           brief + std::string(56, '0') + "'; INSERT INTO checkpoints SELECT * FROM more");
-  expect_refused({"show", brief}, {"a run and a checkpoint begin with '" + brief, run});
+  expect_refused({"show", brief},
+                 {"the ids of a run and of a checkpoint begin with '" + brief, run});
   expect(0, {"show", run});
 }
 
@@ -120,7 +122,7 @@ TEST_F(Commands, MergeRejectsConflicts) {
   expect_refused({"merge", "a", "nowhere", "--store", "new"},
                  {"nowhere", "no store here to merge"});
   expect_refused({"merge", "", "--store", "new"}, {"no store here to merge"});
-  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "names no file or folder"});
+  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "is empty; name a file or folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);
@@ -161,10 +163,11 @@ TEST_F(Commands, AnExperimentHasOneManifestAtATime) {
   write("comment.yaml", "# a comment\n" + tiny_manifest("  pressure_Pa: 700\n"));
   expect(0, {"plan", "m.yaml", "other.yaml"},
          {"m.yaml and other.yaml are different manifests of one experiment, tiny",
-          "Give each its own `experiment`."});
+          "Give one of them another `experiment`."});
   expect(0, {"plan", "m.yaml", "same.yaml"}, {"1 run,"});
   const std::string warning =
-      "newest manifest of experiment tiny is another text, with 1 run that this plan does not have";
+      "newest manifest of experiment tiny differs from this file and has 1 run that this plan "
+      "lacks";
   expect(0, {"plan", "other.yaml"}, {warning});
   expect(0, {"run", "other.yaml", "--cycles", "0", "-q"}, {warning});
   for (const char* manifest : {"other.yaml", "comment.yaml"}) {
@@ -250,9 +253,11 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
 
 TEST_F(Commands, PlanSaysWhatTheNextLookTakes) {
   write("m.yaml", tiny_manifest("", "seeds: 4\nlooks: [3, 4]\n"));
-  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"tiny: the next look is at 3 of 4 seeds, "});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"},
+         {"tiny: the next planned look is at 3 of 4 seeds, "});
   expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
-  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"tiny: the next look is at 4 of 4 seeds, "});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"},
+         {"tiny: the next planned look is at 4 of 4 seeds, "});
 }
 
 /// A manifest may start from runs of one that is named after it.
@@ -267,7 +272,7 @@ TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
   write("b.yaml", after("b", "a"));
   expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
-         {"warning: a.yaml: these manifests start from each other's runs in a circle",
+         {"warning: a.yaml: the manifests start from each other's runs in a circle",
           "the store has no run of b"});
 }
 

@@ -78,10 +78,11 @@ TEST_F(Convenience, NewWritesAManifestThatExpandsAndNamesEveryKey) {
 
 TEST_F(Convenience, NewOverwritesNothing) {
   write("mine.yaml", "mine");
-  expect_refused({"new", "mine"}, {"mine.yaml: the file exists already"});
+  expect_refused({"new", "mine"}, {"mine.yaml: the file already exists"});
   EXPECT_EQ(read_bytes(path("mine.yaml")), "mine");
   for (const std::string name : {"no name", "folder/a.b", "-x.yaml", "folder/"}) {
-    expect_refused({"new", "--", name}, {"cannot name an experiment. A name has 1 to 64 letters"});
+    expect_refused({"new", "--", name},
+                   {"is not a valid name of an experiment. A name has 1 to 64"});
   }
 }
 
@@ -125,8 +126,8 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
     EXPECT_TRUE(seen.contains(what)) << what;
   }
   EXPECT_TRUE(listing().empty()) << "it left something behind";
-  const Outcome nowhere =
-      expect(1, {"doctor", "--no-speed", "--store", "/proc/x"}, {"no store can be written there"});
+  const Outcome nowhere = expect(1, {"doctor", "--no-speed", "--store", "/proc/x"},
+                                 {"a store cannot be written there"});
   EXPECT_FALSE(has(nowhere.out, "room for"));
   write("plain", "");
   expect(1, {"doctor", "--no-speed", "--store", "plain"}, {"plain is a file"});
@@ -260,7 +261,7 @@ TEST_F(Convenience, OutputGoesToStreams) {
     EXPECT_EQ(shell(script).out, expect(0, {"table"}).out) << script;
   }
   for (const Arguments& words : {Arguments{"figures"}, {"export", id, "--to", "vtk"}}) {
-    expect_refused(joined(words, {"--out", "-"}), {"this is a folder; name one"});
+    expect_refused(joined(words, {"--out", "-"}), {"a folder is needed; name a folder"});
   }
   EXPECT_EQ(listing(), before);
 }
@@ -300,7 +301,7 @@ TEST_F(Convenience, RunSumsUpManyWarnings) {
     return count;
   };
   EXPECT_GT(warnings(expect(0, {"plan", "m.yaml"})), 3U);
-  EXPECT_EQ(warnings(expect(0, {"run", "m.yaml", "-q"}, {"which `shearcell plan` prints"})), 1U);
+  EXPECT_EQ(warnings(expect(0, {"run", "m.yaml", "-q"}, {"`shearcell plan` prints"})), 1U);
 }
 
 TEST_F(Convenience, StatusShowsWhatEachExperimentAsksFor) {

@@ -69,8 +69,8 @@ TEST_F(CommandLineLineage, EscapesNamesFromTheLog) {
 // A record from elsewhere may name states that the log does not have; its checkpoints are intact.
 TEST_F(CommandLineLineage, CountsCheckpointsApartFromRuns) {
   for (const auto& [file, cycles, counts] :
-       {std::tuple("four.csv", "[[0,1,1]]", "4 checkpoints: 4 present and right"),
-        {"none.csv", "[[77,77,1]]", "0 checkpoints: 0 present and right"}}) {
+       {std::tuple("four.csv", "[[0,1,1]]", "4 checkpoints: 4 present and unchanged"),
+        {"none.csv", "[[77,77,1]]", "0 checkpoints: 0 present and unchanged"}}) {
     std::filesystem::copy(path("out/tiny/base/S2a.csv"), path(file));
     {
       Store store(path("shearcell-store"), Access::write);
@@ -87,18 +87,19 @@ TEST_F(CommandLineLineage, CountsCheckpointsApartFromRuns) {
 }
 
 TEST_F(CommandLineLineage, ChecksAPublishedFile) {
-  expect(0, {"show", "out/tiny/base/S2a.csv"}, {"matches", "4 checkpoints, all present and right"});
+  expect(0, {"show", "out/tiny/base/S2a.csv"},
+         {"matches", "4 checkpoints, all present and unchanged"});
   const nlohmann::json all = json({"show", "out/tiny/base/S2a.csv", "--json"});
   EXPECT_EQ(all.at("check").at("verdict"), "matches");
   const std::string input = all.at("inputs").at(0).at("checkpoints").at(0).at("file");
   std::filesystem::remove(path("shearcell-store/" + input));
-  expect(4, {"show", "out/tiny/base/S2a.csv"}, {"3 present and right, 1 missing or changed"});
+  expect(4, {"show", "out/tiny/base/S2a.csv"}, {"3 present and unchanged, 1 missing or changed"});
 
   write("out/tiny/base/S2b.csv", read_bytes(path("out/tiny/base/S2b.csv")) + "x");
   expect(4, {"show", "out/tiny/base/S2b.csv"}, {"CHANGED"});
 
   write("other.csv", "a,b\n");
-  expect_refused({"show", "other.csv"}, {"unknown to this store"});
+  expect_refused({"show", "other.csv"}, {"this store has no record of the file"});
   expect_refused({"show", "missing.csv"}, {});
 }
 

@@ -378,8 +378,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       {"emptied",
        [&] { fs::resize_file(cache, 0); },
        0,
-       {" absent; the log does not cover 0 checkpoints"}},
-      {"deleted", [&] { fs::remove(cache); }, 0, {" absent; the log does not cover 0 checkpoints"}},
+       {" missing; the log has no hashes for 0 checkpoints"}},
+      {"deleted",
+       [&] { fs::remove(cache); },
+       0,
+       {" missing; the log has no hashes for 0 checkpoints"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -429,7 +432,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"the log does not cover 20 checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"the log has no hashes for 20 checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 
@@ -535,8 +538,7 @@ class OtherBits : public ProgramTest {
 };
 
 TEST_F(OtherBits, AreKeptByPrune) {
-  expect(0, {"prune", "--last-too", "--yes"},
-         {"4 checkpoints kept: LAMMPS or a program with another bits version"});
+  expect(0, {"prune", "--last-too", "--yes"}, {"4 checkpoints kept: not bitwise reproducible"});
   EXPECT_EQ(objects(), 4U);
   EXPECT_EQ(json({"prune", "--keep-every", "2", "--json"}).at("kept_of_other_engines"), 1);
   expect(0, {"verify", "--replay", "9"}, {"4 checkpoints are left out"});

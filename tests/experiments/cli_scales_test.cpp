@@ -44,7 +44,7 @@ TEST_F(Scales, NeverOverwriteEachOther) {
   for (const std::string& scale : names_) {
     const std::string record = "tiny/" + scale + "/S2", file = "out/tiny/" + scale + "/S2a.csv";
     EXPECT_EQ(json({"show", record, "--json"}).at("scale"), scale);
-    expect(0, {"show", file}, {"matches", record, "all present and right"});
+    expect(0, {"show", file}, {"matches", record, "all present and unchanged"});
     expect(0, {"show", scale + "/table1"}, {scale + " scale"});
   }
   expect(2, {"show", "S2"},

@@ -260,12 +260,12 @@ TEST_F(CommandLineTable, ExportsSelectedRunsCompletelyOrNotAtAll) {
   expect(0, {"export", id, id, "--to", "vtk", "--out", "frames/"});  // one run
   EXPECT_TRUE(fs::exists(path("frames/run.json")) && fs::exists(path("frames/frames.pvd")));
   expect(2, {"export", id, "--seed", "1", "--to", "vtk", "--out", "other"});
-  expect(2, {"export", id, "--to", "extxyz", "--out", "frames"}, {"exists already"});
+  expect(2, {"export", id, "--to", "extxyz", "--out", "frames"}, {"already exists"});
   for (const Arguments& command :
        {Arguments{"report"}, {"table"}, {"figures"}, {"export", id, "--to", "extxyz"}}) {
     expect_refused(joined(command, {"--out", "shearcell-store/objects/x/y"}),
                    {"objects is where a store keeps its checkpoints"});
-    expect_refused(joined(command, {"--out", ""}), {"--out: names no file or folder"});
+    expect_refused(joined(command, {"--out", ""}), {"--out: is empty; name a file or folder"});
   }
 
   // The limit on file sizes kills it, or makes write() fail as on a full disk.

@@ -127,7 +127,8 @@ std::vector<Case> damaged_events() {
             })(s);
             Store(s, Access::write).rebuild();
           },
-          "the id is not the hash of the recorded parameters", "found damaged files in the store"),
+          "the id is not the hash of the recorded parameters",
+          "stopped at damaged files in the store"),
   };
 }
 

@@ -241,7 +241,7 @@ TEST_F(Messages, HelpNamesExportedCyclesAndExitCodes) {
   const std::string id = last_run();
   for (const char* cycles : {"1e999", "0:1e999", "nan", "inf", "0x1", "1:2:3:4", "-1", "1 "}) {
     expect_refused({"export", id, "--to", "vtk", "--out", "v", "--cycles", cycles},
-                   {"--cycles takes A, A:B"});
+                   {"--cycles needs A, A:B"});
   }
   for (const char* words : {"--help", "manual"}) expect(0, {words}, {"1 the machine failed"});
 }
