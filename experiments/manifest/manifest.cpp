@@ -84,7 +84,7 @@ Manifest parse_manifest(std::string_view text, std::string_view file) {
 Manifest recorded_manifest(std::string_view text) try {
   return read_manifest(text, "manifest");
 } catch (const ManifestError&) {
-  return {};  // the text belongs to another version of the schema
+  return {};  // written for another version of the schema
 }
 
 std::string_view why_not_until(std::string_view measure) {

@@ -236,8 +236,8 @@ TEST(Expand, TakesOnlyTheRequestedVariants) {
                 manifest, {.variants = {"amplitude_rad=0.05", "amplitude_rad=0.1", "fluid=cell"}})),
             (Strings{"amplitude_rad=0.05,fluid=cell", "amplitude_rad=0.1,fluid=cell"}));
   EXPECT_EQ(message(manifest, {.variants = {"fluid=cell", "amplitude_rad=0.2"}}),
-            "test.yaml: variant: no variant has these values (got amplitude_rad=0.2). It has "
-            "amplitude_rad=0.05,fluid=still; amplitude_rad=0.05,fluid=cell; "
+            "test.yaml: variant: no variant has these values (got amplitude_rad=0.2). The variants "
+            "are amplitude_rad=0.05,fluid=still; amplitude_rad=0.05,fluid=cell; "
             "amplitude_rad=0.1,fluid=still; amplitude_rad=0.1,fluid=cell.");
 }
 
@@ -245,13 +245,15 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
   const Manifest manifest =
       parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
   EXPECT_EQ(message(manifest, {}),
-            "test.yaml: scale: there is no scale desk, the default. Name one with --scale. It has "
-            "smoke, paper.");
+            "test.yaml: scale: there is no scale desk, which is the default. Name a scale with "
+            "--scale. The manifest has smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
-            "test.yaml: scale: is unknown, the nearest is smoke (got smok). It has smoke, paper.");
-  EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
-            "test.yaml: seeds: the manifest lists 1 seeds only (got 2). List more, or state a "
-            "count.");
+            "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
+            "smoke, paper.");
+  EXPECT_EQ(
+      message(manifest, {.scale = "smoke", .seeds = 2}),
+      "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or state a "
+      "count.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");
@@ -325,7 +327,8 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
   EXPECT_TRUE(claim(sides, 3).empty());
   ASSERT_EQ(claim(sides, 4).size(), 1U);
-  EXPECT_TRUE(has(claim(sides, 4)[0], "claim same: it asks for cycle 4, and the runs have 3"));
+  EXPECT_TRUE(
+      has(claim(sides, 4)[0], "claim same: it needs cycle 4, but the last cycle of the runs is 3"));
   ASSERT_EQ(claim("{fluid: still}, {fluid: cell, walls: rough}", 3).size(), 1U);
   EXPECT_TRUE(has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
                   "2 variants have fluid=still"));
@@ -364,7 +367,7 @@ TEST(Expand, WarnsOfClaimsThatTooFewSeedsCannotDecide) {
   };
   EXPECT_TRUE(warnings(3).empty());
   ASSERT_EQ(warnings(2).size(), 1U);
-  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict takes at least 3 seeds, not 2"));
+  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict needs at least 3 seeds, but there are 2"));
 }
 
 // A small scale is for trying; it is only said if no scale decides the claim.
@@ -452,7 +455,7 @@ TEST(Expand, WarnsOfFiguresThatWouldAverageOverTheSweep) {
 TEST(Expand, WarnsOfCellsWithoutInteriorGrains) {
   const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   ASSERT_EQ(warnings("grains: 60").size(), 1U);
-  EXPECT_TRUE(has(warnings("grains: 60")[0], "too small for interior grains"));
+  EXPECT_TRUE(has(warnings("grains: 60")[0], "too small to have interior grains"));
   EXPECT_TRUE(warnings("grains: 300").empty());
 }
 
