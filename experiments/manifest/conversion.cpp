@@ -13,7 +13,7 @@
 namespace shearcell {
 namespace {
 
-/// Steps in `duration`, each Table I's fraction of the stability limit; a whole number, at least 1.
+/// Number of time steps in `duration`, if each is Table I's fraction of the stability limit; >= 1.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts SI parameters to the engine's units (grain diameter d, grain mass m, second), and
-// computes quantities that follow from the parameters without a simulation. No other file converts
-// parameters.
+// Converts SI parameters to the engine's units (grain diameter d, grain mass m, second). Also
+// computes quantities that follow from the parameters without a simulation.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +34,6 @@ double pause_time_steps(const Parameters& parameters);
 /// Length of the stage after settling: number of shear cycles or, for `stiffen`, of stiffnesses.
 std::uint64_t target_cycles(const Parameters& parameters);
 
-/// The geometry of the cell and its filling.
 Geometry geometry(const Parameters& parameters);
 
 double shear_time_step_s(const Parameters& parameters);
@@ -45,8 +43,7 @@ double shear_time_step_s(const Parameters& parameters);
 /// boundary X). FCC is the densest network; looser or disordered packings vibrate more slowly.
 double stability_limit_s(const Parameters& parameters);
 
-/// Whether pressure_at has an effect. It has one only if the bottom wall moves and grains have
-/// weight.
+/// Whether pressure_at has an effect: only if the bottom wall moves and the grains have weight.
 bool depends_on_pressure_at(const Parameters& parameters);
 
 /// Whether the pressure under a moving bottom wall can carry the grains' weight: P d^2 > 1.2 (h/d)
@@ -63,9 +60,8 @@ struct TimeStep {
 
 TimeStep time_step(const Parameters& parameters, double seconds);
 
-/// Whether `settle` may give the parameter another value while the packing settles. True for
-/// parameters that act on the grains or the moving wall; false for the cell, the grains and their
-/// units.
+/// Whether `settle` may give the parameter another value while the packing settles: true for what
+/// acts on the grains or the moving wall, false for the cell, the grains and their units.
 bool may_differ_in_settling(std::string_view key);
 
 /// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
@@ -84,19 +80,19 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// weight per area if P acts on a moving bottom wall, P plus half of it if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
-/// Time [s] after which drag has brought the grains to rest: 18 m/b. The energy of weakly damped
-/// vibrations falls as exp(-b t/m), and must fall by a factor of about exp(18) to reach the default
-/// settle_kinetic_tolerance. At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and
-/// 3.0 s at 0.156 s. Larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite
-/// without drag.
+/// Time [s] after which drag has brought the grains to rest, 18 m/b; infinite without drag. The
+/// energy of weakly damped vibrations falls as exp(-b t/m), and must fall by a factor of about
+/// exp(18) to reach the default settle_kinetic_tolerance. At the time step of Table I, 300 grains
+/// take 18.8 s at m/b = 1 s and 3.0 s at 0.156 s. Larger steps heat the grains (6.6 s at 0.81 of
+/// the limit).
 double damping_time_s(const Parameters& parameters);
 
 /// pressing_time() of protocols/settle.hpp [s]: the shortest time in which settling can end. If the
 /// drag is large, the time grows in proportion to the drag.
 double pressing_time_s(const Parameters& parameters);
 
-/// Whether at least one interior grain (analysis/packing_fraction.hpp) is expected at the nominal
-/// height.
+/// Whether the cell at its nominal height can be expected to have an interior grain
+/// (analysis/packing_fraction.hpp).
 bool has_interior(const Parameters& parameters);
 
 /// A warning if the time step is below 0.15 or above 0.7 of the stability limit, otherwise nothing.

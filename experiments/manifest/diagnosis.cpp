@@ -53,7 +53,6 @@ string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
   return many > most ? "Use more grains." : format("Use at least {} grains.", many);
 }
 
-// Checks one variant at one scale.
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -72,8 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value that the manifest states for a parameter or "settle.KEY", and where. Null if it
-  // states none.
+  // The value that the manifest states for a parameter or "settle.KEY". Null if it states none.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -105,8 +103,7 @@ struct VariantCheck {
     problems.add(at, key, problem, "", remedy);
   }
 
-  // The last key of the list that the manifest states; "" if the manifest states none of these
-  // keys.
+  // The last key of the list that the manifest states; "" if it states none of them.
   string_view last_stated(std::initializer_list<string_view> keys) const {
     string_view last;
     for (const string_view key : keys) last = find(key) != nullptr ? key : last;
@@ -318,7 +315,6 @@ string without_effect(string_view key, const Parameters& p) {
   return "";
 }
 
-// Warns of each stated key that has no effect on any variant.
 void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
                          std::span<const Variant> variants, std::vector<string>& warnings) {
   std::map<string, Position> stated;
@@ -339,8 +335,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
   }
 }
 
-// Warnings about values that can be simulated but are probably mistakes. `settles`: a packing
-// settles.
+// Warnings about parameters that are probably mistakes. `settles`: whether the packing settles.
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
@@ -430,14 +425,14 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// A scale, and one planned run of each variant, without seed and checkpoints.
+/// A scale, and one planned run of each of its variants.
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;
   std::vector<FrameRun> runs = {};
 };
 
-/// B, if the value of the column at cycle C also needs the checkpoint at cycle C - B.
+/// Returns the largest b for which the column needs the checkpoints at cycles c and c - b.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -506,8 +501,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
     return format("it needs cycle {}, but the last cycle of the runs is {}.", last,
                   run.ask.target_cycles);
   }
-  // If some cycle of the range has no checkpoint, then the first, the second or the last cycle has
-  // none.
+  // If any cycle of the range has no checkpoint, the first, the second or the last cycle has none.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
     if (has_checkpoint(run, cycle, cycle, back)) continue;
     return format(
@@ -517,8 +511,8 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message that lists the variants whose packings differ from the packings of the subtracted
-/// variant; "" if there is no such variant.
+/// A message about variants whose packings differ from the packings of the subtracted variant; ""
+/// if all packings are equal.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -676,8 +670,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       // No run of this experiment has the values that a claim of a listed figure selects.
       if (claim.listed && !found.refusals.empty()) continue;
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
-      // Small scales are for trying out, so there is no warning if another scale can decide the
-      // claim.
+      // Small scales are for trying out. Warn only if no other scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);
@@ -716,8 +709,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is the name of runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not state a key that it sweeps. `base` may state one, because the sweep
-    // overrides it.
+    // A scale must not state a key that it sweeps. `base` may, because a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -12,13 +12,11 @@
 
 namespace shearcell {
 
-/// Checks the number of runs, the looks and the labels, and for each variant at each scale the time
-/// steps, the cell, the start and the phases. The manifest must come from read_manifest(). Throws
-/// ManifestError.
+/// Checks the number of runs, looks and labels, and for each variant at each scale the time steps,
+/// cell, start and phases. The manifest must come from read_manifest(). Throws ManifestError.
 void check_variants(const Manifest& manifest);
 
-/// Why LAMMPS cannot compute a run with these parameters; "" if it can, or if LAMMPS is not the
-/// engine.
+/// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
 /// Warnings about a plan of the variants in `planned`, one line each. They concern parameters that

@@ -37,7 +37,6 @@ const utf8proc_uint8_t* bytes_of(string_view text) {
   return reinterpret_cast<const utf8proc_uint8_t*>(text.data());
 }
 
-// Decodes the first character of `text`.
 Character decode(string_view text) {
   utf8proc_int32_t c = 0;
   const auto length = utf8proc_iterate(bytes_of(text), std::ssize(text), &c);
@@ -192,8 +191,7 @@ class TreeBuilder : public YAML::EventHandler {
     anchored_[anchor] = node;
   }
 
-  // Adds the values and bytes of a copy to the totals, and checks the limits. `depth`: levels above
-  // it.
+  // Counts the values and bytes of a copy, and checks the limits. `depth`: levels above the copy.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     copied_ += node.text.size() + node.key.size();

@@ -12,7 +12,6 @@
 
 namespace shearcell {
 
-/// A value of the document.
 struct Node {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
@@ -20,12 +19,11 @@ struct Node {
   std::string text = {};         ///< the value of a scalar
   bool quoted = false;           ///< written in quotes or as a block
   std::vector<Node> parts = {};  ///< items of a list, or values of a map with unique keys
-  std::string key = {};          ///< of this node in its map; "" outside of maps
+  std::string key = {};          ///< key of this node in its map; "" if in no map
   Position key_at = {};          ///< position of the key; for a list item, of the list's key
   std::string path = {};         ///< keys from the root, as in "scales.smoke.grains"
 
   bool is_scalar() const { return kind == Kind::scalar; }
-  /// Whether the node is a map with at least one key.
   bool is_map() const { return kind == Kind::map && !parts.empty(); }
   /// The value of a key of the map, or nullptr.
   const Node* find(std::string_view name) const;
@@ -45,17 +43,17 @@ inline constexpr const char* kDecimalPoint =
 /// than tabs and line ends. `remedy` is for control characters.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text safe to print in a one-line message. Writes as escapes, such as \x1b or \u202e:
-/// control characters, characters that change the direction of text, bytes that are not UTF-8,
-/// noncharacters, invisible characters, and blanks other than the space. Cuts the text to `longest`
-/// bytes.
+/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Writes as
+/// escapes, such as \x1b or \u202e: control characters, characters that change the direction of
+/// text, bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the
+/// space.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text safe to print in a terminal. Escapes less than printable(): blanks and invisible
 /// characters stay, since some scripts need them.
 std::string without_controls(std::string_view text);
 
-/// without_controls(), but line feeds stay.
+/// Like without_controls(), but keeps line feeds.
 std::string for_terminal(std::string_view text);
 
 /// The text as a reader sees it, for comparing names: characters composed (Unicode NFC), invisible

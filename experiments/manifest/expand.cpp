@@ -81,7 +81,7 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: place and ask, without the parts that differ from run to run. `recorded`: the run whose
+// `common`: the parts of place and ask that all runs of the scale share. `recorded`: the run whose
 // state this run begins with, or null. `file`: the file of grains that the packing begins with.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,

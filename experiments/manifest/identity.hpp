@@ -22,7 +22,7 @@ struct StartFile {
 };
 
 /// The inputs of a stage, as read from its record (Stage::resolved). Numbers of cycles, and
-/// parameters that do not affect the stage, have their defaults. The protocol of a stiffening is
+/// parameters that do not affect the stage, have their defaults. A stiffening has protocol
 /// `stiffen`.
 struct StageInputs {
   StageKind stage = StageKind::prepare;
@@ -63,9 +63,9 @@ nlohmann::json effective_parameters(const nlohmann::json& resolved);
 /// The engine that a record states, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
-/// JSON without whitespace, with keys sorted by their bytes, and doubles as the shortest digits
-/// that read back to the same double. Equal values give equal texts. Throws std::invalid_argument
-/// on NaN or infinity.
+/// JSON without whitespace, with keys sorted by their bytes and the shortest digits that read back
+/// to the same double. Equal values give equal texts. Throws std::invalid_argument on NaN or
+/// infinity.
 std::string canonical_json(const nlohmann::json& json);
 
 }  // namespace shearcell

@@ -23,10 +23,9 @@ struct ManifestLine {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 
-/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: an object
-/// with entries such as "cycles": {"run": VALUE, "manifest": VALUE}, with keys "cycles", "seed" and
-/// "engine". The manifest's value of "seed" is its list of seeds. Null if nothing differs or the
-/// manifest cannot be read.
+/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: for each of
+/// "cycles", "seed" and "engine" that differs, {"run": VALUE, "manifest": VALUE}. The manifest's
+/// value of "seed" is a list. Null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask);
 
 }  // namespace shearcell

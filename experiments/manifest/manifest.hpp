@@ -120,8 +120,7 @@ std::string_view why_not_until(std::string_view measure);
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);
 
-/// The inverse of to_json(). Throws std::runtime_error if the JSON, which is not trusted, is
-/// invalid.
+/// The inverse of to_json(). Throws std::runtime_error if the JSON, which is not trusted, is wrong.
 Until until_from_json(const nlohmann::json& json);
 
 /// "crystalline_percent >= 10 and 15 more cycles".
@@ -169,8 +168,7 @@ struct Start {
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }
 };
 
-/// An entry of `scales`, completed with the keys of the top level of the manifest; or the top level
-/// itself.
+/// An entry of `scales`, completed with the keys of the top level; or the top level itself.
 struct Scale {
   std::string name = {};  ///< "" for the top level
   Position at = {};
@@ -182,8 +180,7 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
-  /// Ids (in older manifests: statements) of the claims that the runs of this scale are meant to
-  /// decide.
+  /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
   std::vector<std::string> primary = {};
   /// Numbers of seeds at which claims get verdicts, ascending. Empty: one look, at the end.
   std::vector<std::uint64_t> looks = {};

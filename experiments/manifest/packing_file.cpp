@@ -54,8 +54,8 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"id", kId},
                                  {"wall_side", kWall}};
 
-// The results of the reader of a format. Each text is a constant or a part of the file, so that a
-// message can give the line of the part.
+// The structs below hold what is found in a file. Their texts are constants or parts of the file,
+// so that a message can give the line of a part.
 
 struct Column {
   string_view name;             ///< "" for a column without a name
@@ -81,7 +81,6 @@ struct Box {
   std::array<bool, 3> follows{};
 };
 
-/// A field that is read from each row.
 struct Use {
   int quantity;
   std::size_t field;
@@ -102,7 +101,7 @@ string_view unquoted(string_view text) {
   return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
-/// The end of the first field. Separators in quotes do not count if the field begins with a quote.
+/// The end of the first field. If the field begins with a quote, separators in quotes do not count.
 std::size_t field_end(string_view text, string_view separators) {
   std::size_t from = std::min(text.find_first_not_of(' '), text.size());
   while (from < text.size() && text[from] == '"') {  // "" in quotes is one quote
@@ -111,7 +110,6 @@ std::size_t field_end(string_view text, string_view separators) {
   return text.find_first_of(separators, from);
 }
 
-/// The trimmed fields of a line.
 std::vector<string_view> split(string_view text, char separator) {
   const bool blank = separator == ' ';
   std::vector<string_view> fields;
@@ -201,7 +199,6 @@ class PackingReader {
       "in its header), a LAMMPS dump, or CSV whose first line names the columns, such as "
       "x_m,y_m,z_m.";
 
-  /// The position of a part of the text.
   Position place(string_view part) const {
     const string_view before =
         text_.substr(0, static_cast<std::size_t>(part.data() - text_.data()));
@@ -235,7 +232,6 @@ class PackingReader {
     if (!next_line()) refuse_line(line_, "the file ends after this line", "It lacks " + of + ".");
   }
 
-  /// A finite number; `name` is for the message.
   double number(string_view part, const char* name) const {
     const bool sign = part.size() > 1 && part.front() == '+' && part[1] != '-';
     const auto value = read_number<double>(part.substr(sign ? 1 : 0));
@@ -299,7 +295,7 @@ class PackingReader {
     return columns;
   }
 
-  /// Adds a name to not_read_, unless 100 names are there.
+  /// Adds a name to not_read_, which has at most 100 names.
   void leave(string_view name) {
     constexpr std::size_t most = 100;
     if (name.empty() || not_read_.size() == most) return;
@@ -722,7 +718,7 @@ class PackingReader {
     return rows;
   }
 
-  /// Sets the velocity of each grain from the table of velocities, which has the ids of the grains.
+  /// Sets the velocity of each grain to the velocity with the same id in the table of velocities.
   void join_velocities() {
     std::map<double, GrainRow*> waiting;
     for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
@@ -846,8 +842,7 @@ class PackingReader {
     return packing;
   }
 
-  /// Refuses grains that are outside of the box in x or y. Wraps z, which is periodic, into the
-  /// box.
+  /// Refuses grains that are outside of the box in x or y. Wraps the periodic z into the box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
     if (depth < kShallowestCell) {
@@ -875,8 +870,8 @@ class PackingReader {
     }
   }
 
-  /// Refuses the file at the first pair that overlaps too much, so that many grains at one position
-  /// take no time.
+  /// Refuses the file at the first pair that overlaps too much, because a search for all such pairs
+  /// could be slow.
   void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
     const Eigen::Vector3d size = space.sizes();
     Cell cell;
@@ -914,13 +909,11 @@ class PackingReader {
   string_view rest_;  ///< the text after line_
   string_view line_;
 
-  // Results of the reader of the format.
   std::optional<Box> box_;
   GrainTable grains_, moving_;
   bool units_in_names_ = false;  ///< whether names of columns state units
   std::vector<string> not_read_;
 
-  // Results of the interpretation of these.
   std::optional<LengthUnit> unit_;
   std::vector<Use> uses_;
   string about_diameter_;  ///< appended to remedies about diameters

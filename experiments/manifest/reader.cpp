@@ -57,7 +57,6 @@ Names joined(Names names, const More&... more) {
   return names;
 }
 
-// The parameters whose values distinguish runs.
 Names parameters() {
   return names_of(schema() | std::views::filter([](const Field& field) {
                     return field.identity.distinguishes_runs();
@@ -80,7 +79,6 @@ void fields(Checkpoints& checkpoints, const auto& visit) {
         {.name = "phases", .range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
 }
 
-// A measure as a key of `until`.
 Field field_of_until(const Measure& one) {
   const bool counts = one.kind == MeasureKind::count;
   Field field{.name = one.name, .unit = one.unit, .whole = counts};
@@ -443,7 +441,6 @@ std::vector<Field> keys_of() {
   return keys;
 }
 
-// A range of values of a swept parameter.
 struct ValueRange {
   double from = 0, to = 0;
   std::uint64_t count = 0;
@@ -466,7 +463,7 @@ void fields(ValueRange& range, const auto& visit) {
              "are rounded to 12 significant digits, or to whole numbers if the key needs them"});
 }
 
-// The text by which messages quote the node.
+// The text that messages show for the value of the node.
 string shown(const Node& node) {
   switch (node.kind) {
     case Node::Kind::null:
@@ -495,20 +492,17 @@ string remedy_for(const Node& in, const Field& about) {
   return fmt::format("Write `{{{}: {}}}`.", key, printable(in.text));
 }
 
-// Whether the node is a colour such as "#0072b2".
 bool is_rgb(const Node& in) {
   const string& text = in.text;
   return in.is_scalar() && text.starts_with('#') && text.size() == 7 &&
          text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos;
 }
 
-// Whether the node is the word `auto` and the parameter may be `auto`.
 bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// A valid expression that a text in another notation probably means, such as phi^2 for phi**2. ""
-// if there is none.
+// The valid expression that a text in another notation means, such as phi^2 for phi**2, or "".
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
@@ -540,7 +534,7 @@ struct Reader {
     for (const char* key :
          {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "looks", "scales"}) {
       if (const Node* own = document.find(key)) {
-        reject_key(*own, "does not go with of", "A manifest with `of` has no runs of its own.");
+        reject_key(*own, "cannot be used with `of`", "A manifest with `of` has no runs.");
       }
     }
   }
@@ -616,8 +610,8 @@ struct Reader {
     return std::get<json>(std::move(read));
   }
 
-  // The items of a list. If the value is not a list, or the list is empty or too long, reports this
-  // and returns no items.
+  // The items of a list. If the value is not a list, or the list is empty or too long, reports a
+  // problem and returns no items.
   std::span<const Node> items_of(const Node& in, string_view example) {
     constexpr std::size_t most = ManifestLimits::values_per_list;
     const std::size_t count = in.parts.size();
@@ -702,8 +696,8 @@ struct Reader {
     }
   }
 
-  // Reads a selection such as "fluid=still,amplitude_rad=0.05" from the key or, with `text`, from
-  // the value.
+  // Reads a selection such as "fluid=still,amplitude_rad=0.05" from the key or, if `text` is true,
+  // from the value.
   json read_selector(const Node& in, bool text = false) {
     json where = json::object();
     for (string_view rest = text ? in.text : in.key; !rest.empty();) {
@@ -767,8 +761,7 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // Reads a text. `about` decides if it is one of some names or an expression, a free text, or a
-  // name.
+  // Reads one of several names, an expression, a free text, or a name, as `about` decides.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
     const bool takes_expressions = in.is_scalar() && !about.terms.empty();
@@ -798,7 +791,7 @@ struct Reader {
   }
 
   // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. If the
-  // key has no example, its value is a single one and becomes both.
+  // key has no example, it has one value, which is used for both.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -913,7 +906,7 @@ struct Reader {
     }
   }
 
-  // Reads a list of figures, experiments or claims without repetition.
+  // Reads a list of different figures, experiments or claims.
   void read(const Node& in, const Field& about, std::vector<string>& names) {
     for (const Node& item : items_of(in, about.example)) {
       string name;
@@ -955,8 +948,7 @@ struct Reader {
     return true;
   }
 
-  // Reads the parameters of `base` or `settle`, or a key of `start`, which is the parameter
-  // start_KEY.
+  // Reads the parameters of `base` or `settle`. A key of `start` is the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
       const string key = "start_" + in.key;
@@ -1030,7 +1022,6 @@ struct Reader {
     return values;
   }
 
-  // Reads the axes of `grid` or `zip`.
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
     if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
     for (const Node& part : in.parts) {
@@ -1528,7 +1519,6 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
 
 namespace {
 
-// The allowed values of a key, for a table.
 string takes_markdown(const Field& key) {
   if (key.is_choice() && key.names.size() <= 12)
     return fmt::format("{}", fmt::join(key.names, ", "));

@@ -31,8 +31,8 @@ constexpr Identity kShear = {.stage = StageKind::shear};
 constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
 
-// Lower limit of parameters that are divisors in the conversion to d, m and s: keeps results
-// finite.
+// Smallest value of parameters that are divisors in the conversion to d, m and s, so that no result
+// is infinite.
 constexpr double kSmallest = 1e-30;
 
 constexpr Range above(double min, double max) {
@@ -61,8 +61,7 @@ Field row(string_view name, string_view symbol, string_view unit, const Range& r
   return field;
 }
 
-// The number in the text; infinity if it is too large or too small for a double; nothing for other
-// texts.
+// The number in a text; infinity if no double can hold it; nothing if the text is not a number.
 std::optional<double> parse_real(string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
@@ -204,7 +203,7 @@ std::span<const Field> schema() {
                                      above(0, kLargestOverlapLimit),
                                      {.stage = StageKind::prepare, .recorded_as = "0.1"},
                                      "a stage fails and stops if its largest overlap exceeds this "
-                                     "value; with a larger value it continues"),
+                                     "value; raise the value to continue it"),
       // Shear.
       row<&P::protocol>(
           "protocol", "", "", {}, kShear,

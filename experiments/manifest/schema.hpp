@@ -35,7 +35,6 @@ struct Identity {
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }
 };
 
-/// Range of the allowed numbers.
 struct Range {
   double min = 0;
   double max = 0;
@@ -63,8 +62,7 @@ struct Field {
   bool required = false;
   std::size_t longest = 0;  ///< of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// Reads a parameter as JSON, and sets it from a value that check_value() accepts. Null for other
-  /// keys.
+  /// Convert a parameter to JSON, and back if check_value() accepts the JSON. Null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 

@@ -21,7 +21,7 @@
 namespace shearcell {
 namespace {
 
-/// Whether both have equal values of all keys that both sweep.
+/// Whether `swept` and `others` have equal values for each key that both contain.
 bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   return std::ranges::all_of(swept.items(), [&](const auto& entry) {
     const auto other = others.find(entry.key());
@@ -29,8 +29,7 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   });
 }
 
-/// Throws ManifestError unless the variant has the cell, the grains and the units of the recorded
-/// run.
+/// Throws ManifestError unless cell, grains and units are those of the recorded run.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
   Parameters had;
@@ -56,8 +55,8 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
   }
 }
 
-/// The nominal packing fraction that gives the cell this width; nothing if no allowed value does.
-/// The cell is narrower at a higher fraction.
+/// The nominal packing fraction with which the cell has this width; nothing if it is out of range.
+/// A cell with a higher fraction is narrower.
 std::optional<double> fraction_for_width(Geometry shape, double width) {
   const Range& range = find_field("nominal_packing_fraction")->range;
   const auto excess = [&](double fraction) {

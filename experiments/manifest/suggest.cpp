@@ -20,7 +20,6 @@ using std::string_view;
 
 constexpr std::size_t kLongestGuess = 300;
 
-// The entries of tried_names.txt.
 const std::vector<Tried>& all_tried() {
   static const std::vector<Tried> all = [] {
     std::vector<Tried> entries;
@@ -46,8 +45,7 @@ std::string as_words(string_view name) {
   return words;
 }
 
-// Least number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into
-// `b`.
+// Least number of insertions, deletions, substitutions and swaps of neighbours from `a` to `b`.
 std::size_t edit_distance(string_view a, string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;

@@ -22,9 +22,8 @@ struct Tried {
 };
 
 /// Finds `name` in the table of tried names. An entry with a remark also fits names that contain
-/// its words: `friction` fits `coefficient_of_friction`. If several entries fit, returns the first
-/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if there is no
-/// such entry.
+/// its words: `friction` fits `coefficient_of_friction`. If several entries fit, the first whose
+/// `instead` is one of `candidates`, otherwise the first with a remark. Null if no entry fits.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name

@@ -20,13 +20,13 @@ namespace shearcell {
 /// The value of a parameter that the scale does not sweep, or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
-/// A combination of swept values, and the parameters that follow.
+/// A combination of swept values, with the parameters that result from it.
 struct Variant {
   std::string name = {};                            ///< "fluid=cell"; "base" if nothing is swept
   nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
   Parameters packing = {};  ///< `parameters`, overridden by the values of `settle`
-  /// The variant has only the first of the scale's seeds, this number of them. Default: all.
+  /// Number of seeds: the variant has only the first seeds of the scale. Default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -80,8 +80,7 @@ const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
-/// zip fastest. The scale must include the keys of the top level, and have at most
-/// ManifestLimits::runs variants.
+/// zip fastest. The scale must be completed and have at most ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell
