@@ -150,8 +150,8 @@ struct VariantCheck {
     const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / settle_step > kMostSteps) {
       report("settle_time_step_s",
-             format("settling takes up to {:.3g} time steps, more than {:g}", seconds / settle_step,
-                    kMostSteps),
+             format("settling may need {:.3g} time steps, but at most {:g} are allowed",
+                    seconds / settle_step, kMostSteps),
              format("Use at least {:.3g} s, or lower settle_time_limit_s.",
                     1.001 * seconds / kMostSteps));
     }
@@ -695,7 +695,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
 
 string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
   if (p.engine != EngineKind::lammps) return "";
-  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
+  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot compute protocol stiffen";
   return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
 }
 

@@ -197,7 +197,7 @@ class TreeBuilder : public YAML::EventHandler {
     copied_ += node.text.size() + node.key.size();
     if (copied_ > ManifestLimits::bytes) {
       refuse(file_, at, "",
-             fmt::format("is larger than {} bytes with its aliases written out",
+             fmt::format("is larger than {} bytes when aliases are written out",
                          ManifestLimits::bytes),
              "", "");
     }

@@ -205,7 +205,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                      can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
   static const Names can_be_y = joined(scalars, measures(MeasureKind::curve), runs);
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
-  visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
+  visit(plot.name,
+        {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
   visit(plot.also,
         {.name = "y",
          .doc = "required; a [measure](#measures), a number of each run such as `onset_size_phi`, "
@@ -305,7 +306,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "claim by this id. The part before the first dot is the figure of the claim",
          .example = "S2.phi",
          .longest = kLongestName});
-  visit(claim.id, {.name = "name", .doc = "the older name of `id`"});
+  visit(claim.id, {.name = "name", .doc = "older name of the key `id`"});
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
@@ -377,7 +378,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .longest = 300,
          .folds = true});
   visit(claim.optional, {.name = "optional",
-                         .doc = "`true`: no verdict where a scale lacks one of the variants",
+                         .doc = "`true`: no verdict at scales that lack one of the variants",
                          .example = "true"});
   visit(claim.cannot_be_decided,
         {.name = "cannot_be_decided",
@@ -409,11 +410,11 @@ void fields(Manifest& manifest, const auto& visit) {
          .example = "{\"fluid=still\": fluid at rest}",
          .wanted = "a map of names"});
   visit(manifest.plots, {.name = "plots",
-                         .doc = "figures of your own",
+                         .doc = "your own figures",
                          .example = "[{name: compaction, y: phi, x: cycle}]"});
   visit(manifest.claims,
         {.name = "claims",
-         .doc = "claims of your own, decided like those of the supplement",
+         .doc = "your own claims, decided like the claims of the supplement",
          .example = "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
                     "cell}], margin: 0.001}]"});
   visit(manifest.base.settings,
@@ -422,7 +423,7 @@ void fields(Manifest& manifest, const auto& visit) {
          .example = "{grains: 7900}"});
   fields(manifest.base, visit);
   visit(manifest.scales, {.name = "scales",
-                          .doc = "named sizes, which override the keys above; default `desk`",
+                          .doc = "named sets of keys that override the keys above; default `desk`",
                           .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
 }
 
@@ -1096,7 +1097,7 @@ struct Reader {
   void check_zip(std::span<const SweepAxis> zip, const string& path) {
     const SweepAxis& first = zip.front();
     if (zip.size() == 1 && is_length(first.key)) {
-      return problems.add(first.at, path + "." + first.key, "advances with no other key", "",
+      return problems.add(first.at, path + "." + first.key, "is the only key of the zip", "",
                           "Set it in `base` or in a scale.");
     }
     const std::size_t rows = first.values.size();
@@ -1390,7 +1391,7 @@ struct Reader {
               fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
               "Take `margin`.");
     reject_if(claim.published && claim.published->value == 0.0, relative,
-              "does not go with a published 0", "Take `margin`.");
+              "cannot be used with a published value of 0", "Take `margin`.");
   }
 
   // Reports ids in `primary` that no claim of this manifest or of its figures has.
