@@ -334,7 +334,7 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
                   "2 variants have fluid=still"));
   for (const auto& [plot, problem] :
        {std::pair("y: phi, by: fluid", "average over the values of walls"),
-        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it asks for cycle 50"),
+        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it needs cycle 50"),
         std::pair("y: stress_xy_Pa, x: shear_strain, cycles: [1, 2], show: traces",
                   "shear_strain is 0 at whole cycles"),
         std::pair("y: phi, minus: {fluid: still}",

@@ -66,7 +66,7 @@ TEST(FigureWarnings, OfMeasuresThatNeedAnEarlierCheckpoint) {
             "no run has a checkpoint and another checkpoint 1 cycle earlier, so msd_1_cycle_d2"},
         {plot("y: phi, x: reversible_percent"), "so reversible_percent has no value"},
         {plot("y: msd_10_cycles_d2"), "and another checkpoint 10 cycles earlier"},
-        {plot("y: work_of_walls_per_cycle_J, x: drag_kg_per_s"), "a checkpoint at cycle 4 with"},
+        {plot("y: work_of_walls_per_cycle_J, x: drag_kg_per_s"), "a checkpoint at cycle 4 and"},
         {claim("compare: d2min_1_cycle_d2, at_cycle: 4"),
          "at cycle 4 and another checkpoint 1 cycle"}}) {
     const Strings found = warnings(4, bad);

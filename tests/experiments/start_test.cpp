@@ -528,7 +528,7 @@ TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
     const std::vector<std::string> warnings = expand(manifest(rest, two)).warnings;
     EXPECT_EQ(std::ranges::count_if(warnings,
                                     [](const std::string& one) {
-                                      return one.find("grains.csv: it is 90000 d high, ") !=
+                                      return one.find("grains.csv: the grains are 90000 d high.") !=
                                              one.npos;
                                     }),
               warned ? 1 : 0)
