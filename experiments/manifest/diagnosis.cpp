@@ -176,8 +176,8 @@ struct VariantCheck {
       report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
                  ? "fill_packing_fraction"
                  : "nominal_packing_fraction",
-             format("the cell for the loose grains is {:.3g} d wide and {:.3g} d high with {:.2g} "
-                    "wall grains, too large for {} grains",
+             format("with loose grains, the cell is {:.3g} d wide and {:.3g} d high and has {:.2g} "
+                    "wall grains, which is too large for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
              "Raise it.");
     }
@@ -188,7 +188,7 @@ struct VariantCheck {
         "the random initial packing is denser than the settled packing is to be",
         loose_stated
             ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
-            : format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
+            : format("Choose a value above fill_packing_fraction ({}).", p.fill_packing_fraction));
   }
 
   void check_start() {
@@ -616,7 +616,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
 }
 
 /// The plots or claims of the figures that the manifest lists, then the plots or claims of the
-/// manifest itself. Each has the beginning of its messages, which says where it is stated.
+/// manifest itself. Each comes with a prefix for messages, which says where it is stated.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -728,8 +728,8 @@ void check_variants(const Manifest& manifest) {
     for (const Setting& number :
          numbers == nullptr ? std::span<const Setting>() : numbers->values) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
-      problems.add(number.at, path + ".sweep.zip.seeds", "is more seeds than the scale has",
-                   number.value.dump(),
+      problems.add(number.at, path + ".sweep.zip.seeds",
+                   "is more than the number of seeds of the scale", number.value.dump(),
                    format("State `seeds: {}`, or list as many.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {

@@ -37,7 +37,7 @@ struct StageInputs {
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
                     const std::optional<StartFile>& file = {});
 
-/// The stage that begins with a state of `parent`: a stiffening under `stiffen`, otherwise a shear.
+/// The stage after `parent`: a stiffening if the protocol is `stiffen`, otherwise a shear.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
 /// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. To check a recorded run,
@@ -54,8 +54,8 @@ struct UnreadableRecord : std::runtime_error {
 /// or out of range. Does not compare stage_key(resolved) with the run's id.
 StageInputs read_stage(const nlohmann::json& resolved);
 
-/// The parameters that affect the stage: the parameters in the record, and the parameters that the
-/// record omits because all older runs had their value. Constants of the record
+/// The parameters that affect the stage: the parameters in the record, and omitted parameters with
+/// the value at which records omit them (Identity::omitted_at). Constants of the record
 /// (Identity::recorded_as) are left out, since the run may have had other values. If the record is
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);

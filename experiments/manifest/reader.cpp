@@ -220,7 +220,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.x,
       {.name = "x",
        .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-              "If `x` is a number of the run, `y` is its value at `at_cycle`. A measured number, "
+              "If `x` is a number of the run, `y` is the value at `at_cycle`. A measured number, "
               "such as `core_time_s`, gives one point for each variant, at the mean over its runs",
        .names = can_be_x,
        .terms = terms});
@@ -358,7 +358,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.cycles,
         {.name = "cycles",
          .range = kCycles,
-         .doc = "instead of `at_cycle`: first and last cycle of the mean that is compared",
+         .doc = "instead of `at_cycle`: first and last of the cycles whose mean value is compared",
          .example = "[1, 15]"});
   visit(claim.phi, {.name = "phi",
                     .range = {0, 1},

@@ -95,14 +95,13 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
                        grains.box ? "box and grains" : "grains", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
-           fits_better
-               ? fmt::format(
-                     "Is the unit of the lengths right? If lengths are in {}, these are {:.4g} d.",
-                     in_m ? "d" : "m", in_other)
-           : fraction ? fmt::format("State `nominal_packing_fraction: {:.10g}`. With this "
-                                    "height_over_width, it gives the cell this width and depth.",
-                                    *fraction)
-                      : "Use a file with a box of another size.");
+           fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
+                                     "size would be {:.4g} d.",
+                                     in_m ? "d" : "m", in_other)
+           : fraction  ? fmt::format("State `nominal_packing_fraction: {:.10g}`. With this "
+                                      "height_over_width, it gives the cell this width and depth.",
+                                     *fraction)
+                       : "Use a file with a box of another size.");
   }
   const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),

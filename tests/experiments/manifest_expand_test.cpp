@@ -216,10 +216,10 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(plan.runs[0].place.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
-  EXPECT_EQ(
-      message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-      "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more seeds than the scale has (got 3). "
-      "State `seeds: 3`, or list as many.");
+  EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
+            "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more than the number of seeds of the "
+            "scale (got 3). "
+            "State `seeds: 3`, or list as many.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {

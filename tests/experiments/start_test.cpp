@@ -511,8 +511,9 @@ TEST_F(FromAFile, AWrongUnitIsAskedAbout) {
   EXPECT_EQ(refusal_of(manifest("", two)), "");
   write_grains("x_m,y_m,z_m\n1,1,1\n3,1,1\n");
   const std::string wide = refusal_of(manifest("", two));
-  EXPECT_NE(wide.find(" d. Is the unit of the lengths right? If lengths are in d, these are 3 d."),
-            std::string::npos)
+  EXPECT_NE(
+      wide.find(" d. Is the unit of the lengths right? With lengths in d, the size would be 3 d."),
+      std::string::npos)
       << wide;
   EXPECT_EQ(wide.find("nominal_packing_fraction"), std::string::npos) << wide;
 }
