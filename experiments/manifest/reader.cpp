@@ -503,7 +503,7 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// The valid expression that a text in another notation means, such as phi^2 for phi**2, or "".
+// The valid expression for a text in another notation, such as phi^2 for phi**2. "" if none fits.
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
