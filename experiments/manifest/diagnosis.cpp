@@ -118,7 +118,7 @@ struct VariantCheck {
       const Field& field = *find_field(key);
       const json value = field.get(p);
       if (!check_value(field, value)) continue;
-      report(key, format("comes to {}, which is out of range", value_text(value)),
+      report(key, format("results in {}, which is out of range", value_text(value)),
              format("State {}, or change stiffness_N_per_m, mass_kg or period_s.",
                     expected_values(field)));
       sound = false;
@@ -168,7 +168,7 @@ struct VariantCheck {
     const Geometry shape = geometry(p);
     if (!is_wide_enough(p)) {
       report("grains",
-             format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
+             format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
                     cell_width(shape), kShallowestCell),
              advise_more_grains(p, is_wide_enough));
     }
@@ -183,12 +183,12 @@ struct VariantCheck {
     }
     if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
     const bool loose_stated = find("fill_packing_fraction") != nullptr;
-    report(
-        loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
-        "the random initial packing is denser than the settled packing is to be",
-        loose_stated
-            ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
-            : format("Choose a value above fill_packing_fraction ({}).", p.fill_packing_fraction));
+    report(loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
+           "the random initial packing must be looser than the settled packing",
+           loose_stated ? format("Choose a value below nominal_packing_fraction ({}).",
+                                 p.nominal_packing_fraction)
+                        : format("Choose a value above fill_packing_fraction ({}).",
+                                 p.fill_packing_fraction));
   }
 
   void check_start() {
@@ -203,17 +203,17 @@ struct VariantCheck {
       return;
     }
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse(start.at, "start", "does not go with protocol stiffen",
-             "A recorded state is sheared on.");
+      refuse(start.at, "start", "cannot be used with protocol stiffen",
+             "A recorded state can only be sheared.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "State the seed of the recorded run: `seed: 3`.");
     }
     if (!start.run.empty() && find("start_seed") != nullptr) {
-      report("start_seed", "does not go with checkpoint, which names one run", "Leave it out.");
+      report("start_seed", "cannot be used with checkpoint, which names one run", "Leave it out.");
     }
     if (scale.settle_at.line > 0) {
-      refuse(scale.settle_at, "settle", "has no effect with start: nothing settles",
+      refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
              "Leave it out.");
     }
   }
@@ -225,12 +225,13 @@ struct VariantCheck {
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
     } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(at, key, why, "Leave them out, or the engine.");
+      refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
-             format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
+             format("two phases are at one step, or one is at the end of the cycle, with {} steps "
+                    "in a cycle",
                     cycle_steps(motion)),
-             "Use fewer of them, or more steps_per_cycle.");
+             "Use fewer phases, or more steps_per_cycle.");
     }
   }
 };
@@ -254,9 +255,9 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
     if (!empty && !is_formula(label.name)) continue;
     reject(label,
            format("gives a variant a name {}",
-                  empty ? "with nothing to see" : "that spreadsheets take for a formula"),
+                  empty ? "without visible characters" : "that spreadsheets read as a formula"),
            format("\"{}\"", printable(label.name)),
-           empty ? "Write a name." : "Begin it with a letter or a digit.");
+           empty ? "Write a name with visible characters." : "Begin it with a letter or a digit.");
   }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
@@ -281,13 +282,13 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                         ? format("gives two variants the same name, '{}'", printable(name))
                         : format("gives two variants names that look the same, '{}' and '{}'",
                                  printable(other), printable(name)),
-                    printable(label->name), "Give each variant a name of its own.");
+                    printable(label->name), "Give each variant a different name.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
     if (used.contains(&label)) continue;
     reject(label, "names no variant of any scale", words_of(label.where),
-           "A label states swept keys and one of their values, as `\"fluid=still\"`.");
+           "A label states swept keys and one value of each, such as `\"fluid=still\"`.");
   }
 }
 
@@ -706,7 +707,7 @@ void check_variants(const Manifest& manifest) {
   for (const Scale& scale : scales) {
     const string path = scale.name.empty() ? "" : "scales." + scale.name;
     if (scale.name == "base") {
-      problems.add(scale.at, path, "is the name of runs without a scale", "",
+      problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
     // A scale must not state a key that it sweeps. `base` may, because a sweep overrides `base`.
@@ -721,8 +722,8 @@ void check_variants(const Manifest& manifest) {
     const std::uint64_t seeds = scale.seeds.values.size();
     if (!scale.looks.empty() && scale.looks.back() > seeds) {
       problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
-                   "asks for more seeds than there are", std::to_string(scale.looks.back()),
-                   format("State `seeds: {}`, or list as many.", scale.looks.back()));
+                   "needs more seeds than the scale has", std::to_string(scale.looks.back()),
+                   format("State `seeds: {}`, or list this many seeds.", scale.looks.back()));
     }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
@@ -730,7 +731,7 @@ void check_variants(const Manifest& manifest) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
       problems.add(number.at, path + ".sweep.zip.seeds",
                    "is more than the number of seeds of the scale", number.value.dump(),
-                   format("State `seeds: {}`, or list as many.", number.value.dump()));
+                   format("State `seeds: {}`, or list this many seeds.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,
@@ -743,7 +744,7 @@ void check_variants(const Manifest& manifest) {
   if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
   for (const Placed<ClaimSpec>& claim : manifest.claims) {
     if (!is_formula(claim.statement)) continue;
-    problems.add(claim.at, "claims.statement", "is a text that spreadsheets take for a formula",
+    problems.add(claim.at, "claims.statement", "is a text that spreadsheets read as a formula",
                  printable(claim.statement), "Begin it with a letter or a digit.");
   }
   for (const Scale& scale : scales) {

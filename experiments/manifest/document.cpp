@@ -145,8 +145,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
-    refuse(file_, position(mark), "", fmt::format("the tag {} is not read", printable(tag)), "",
-           "Remove the tag; the key decides the type.");
+    refuse(file_, position(mark), "", fmt::format("the tag {} is not supported", printable(tag)),
+           "", "Remove the tag. The key decides the type.");
   }
 
   // Reports control characters and noncharacters, since texts are written to JSON, XML and
@@ -159,7 +159,7 @@ class TreeBuilder : public YAML::EventHandler {
         refuse(file_, position(mark), "", problem, printable(text), remedy);
       };
       if (length == 0) {
-        reject("the escapes \\_ and \\N are not read",
+        reject("the escapes \\_ and \\N are not supported",
                "Write _ without the backslash, or the text in single quotes.");
       }
       const auto number = static_cast<unsigned>(c);
@@ -277,10 +277,10 @@ int tab_indented_line(string_view text, int last) {
 
 std::string syntax_remedy(string_view text, const YAML::Exception& error) {
   if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
-    return fmt::format("Line {} is indented with a tab; use spaces.", line);
+    return fmt::format("Line {} is indented with a tab. Use spaces.", line);
   }
   if (error.msg.find("unicode") != std::string::npos) {
-    return "This escape names no character; write the character itself.";
+    return "This escape is not a character. Write the character itself.";
   }
   if (error.msg.find("flow") != std::string::npos) {
     return "A { or [ of this line, or of one above it, is not closed.";

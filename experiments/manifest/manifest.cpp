@@ -94,7 +94,7 @@ std::string_view why_not_until(std::string_view measure) {
     if (found->kind == MeasureKind::run) return "is a number of a whole run, which has not ended";
     if (found->kind == MeasureKind::curve) return "is a curve";
     if (found->kind == MeasureKind::grains) return "has a number for each grain";
-    if (by.from == ComputedFrom::simulation) return "takes a simulation";
+    if (by.from == ComputedFrom::simulation) return "needs a simulation";
     return by.cycles_back > 0 ? "compares the checkpoint with an earlier one" : "";
   }
   return "is not a measure";

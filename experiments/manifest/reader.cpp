@@ -566,7 +566,8 @@ struct Reader {
   // Reports a key that is not one of the `allowed` keys of its map, and says what to write.
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
-    if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
+    if (in.key == "<<")
+      return reject_key(in, "merge keys are not supported", "Write the values out.");
     if (read_number<double>(in.key)) {
       return reject_key(in, "is a number where a key belongs", kDecimalPoint);
     }
@@ -654,7 +655,7 @@ struct Reader {
     }
     if (of_run && of_checkpoint) {
       reject_value(in, "combines a number of the whole run with one of its checkpoints",
-                   "Take measures of one kind.");
+                   "Use measures of one kind.");
     }
     return !(of_run && of_checkpoint);
   }
@@ -780,7 +781,7 @@ struct Reader {
                                        about.folds ? "text" : "line", about.longest));
       }
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
-                      "has a $ without its partner", "A formula stands between two $.");
+                      "has an odd number of $", "Write a formula between two $.");
     } else if (in.is_scalar() && is_name(text)) {
       value = text;
     } else {
@@ -1035,7 +1036,7 @@ struct Reader {
       }
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
-        reject_key(part, "cannot be swept, since another value does not make another run",
+        reject_key(part, "cannot be swept, since runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
                    : length ? "Set it in `base` or in a scale, or zip it with a key that does."
                             : "Set it in `base` or in a scale.");
@@ -1049,7 +1050,7 @@ struct Reader {
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
         if (is_auto(*field, item)) {
           reject(item, "cannot be swept as `auto`",
-                 "Set it in `base` or in a scale; it then follows the variant.");
+                 "Set it in `base` or in a scale. The value then depends on the variant.");
         } else if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
@@ -1106,7 +1107,7 @@ struct Reader {
       return problems.add(axis.at, path + "." + axis.key,
                           fmt::format("differs in length from {}, which has {}", first.key, rows),
                           counted(axis.values.size(), "value"),
-                          "The lists of a zip advance together; make them equally long.");
+                          "The lists of a zip advance together. Make them equally long.");
     }
     check_rows(zip, path, "row of values");
   }
@@ -1212,7 +1213,7 @@ struct Reader {
     for (const Node& part : in.parts) {
       if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
       if (find_named(known, part.key) == nullptr) continue;  // reported already
-      reject_key(part, fmt::format("does not go with {}", sources.front()),
+      reject_key(part, fmt::format("cannot be used with {}", sources.front()),
                  part.key == "noise_d" ? "Run a manifest with the file first, and begin with its "
                                          "state: `{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
                                        : "Leave it out.");
@@ -1240,7 +1241,7 @@ struct Reader {
     reject_if(range.from == range.to, &in, "begins and ends with the same value",
               "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
-              "has equal ratios, and an end that is not above 0", "Use `spacing: linear`.");
+              "has equal ratios, so both ends must be above 0", "Use `spacing: linear`.");
   }
 
   void check(const Node&, const Field&, const auto&) {}
@@ -1255,29 +1256,29 @@ struct Reader {
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
-    const string not_with_curve = "does not go with " + plot.y;
+    const string not_with_curve = "cannot be used with " + plot.y;
     reject_value_if(is_curve, x, not_with_curve,
-                    fmt::format("Leave it out: {} is drawn against {}.", plot.y,
+                    fmt::format("Leave it out. {} is drawn against {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
               fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
-      reject_key(*minus, not_with_curve, "Take a number as y: curves are not subtracted.");
+      reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
     }
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
-                    in.find("show"), fmt::format("does not go with {} as x", plot.x),
-                    "Take `cycle` or a number of the run as x.");
+                    in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
+                    "Use `cycle` or a number of the run as x.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
-    reject_if(!of_runs || of_run, cycles, "draws each run along its cycles",
-              "It takes `show: traces`, and `cycle` or a measure as x.");
-    reject_if(!plot.figure.empty(), cycles, "does not go with figure",
-              "Give the plot a figure of its own.");
+    reject_if(!of_runs || of_run, cycles, "can only be used if each run is drawn along its cycles",
+              "Use `show: traces`, and `cycle` or a measure as x.");
+    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure",
+              "Give the plot a separate figure.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
-      reject(*also, "goes with means", "Leave it out.");
+      reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
-             "Give one another name: `also: {NAME: measure}`.");
+             "Give one of them another name: `also: {NAME: measure}`.");
     }
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;
@@ -1324,7 +1325,8 @@ struct Reader {
   }
 
   void check_published(const Node& in, const PublishedSpec& published) {
-    reject_if(published.label.empty(), &in, "lacks label", "Name it for the key of the plot.");
+    reject_if(published.label.empty(), &in, "lacks label",
+              "State the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
               "does not have either a value or points", "State one of them.");
   }
@@ -1339,7 +1341,8 @@ struct Reader {
       for (const char* key : keys) {
         const Node* one = in.find(key);
         if (one != nullptr && first != nullptr) {
-          return reject(*one, fmt::format("does not go with {}", first->key), "State one of them.");
+          return reject(*one, fmt::format("cannot be used with {}", first->key),
+                        "State one of them.");
         }
         if (one != nullptr) first = one;
       }
@@ -1357,11 +1360,11 @@ struct Reader {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
-                fmt::format("`estimator: {}` takes it.", named->name));
+                fmt::format("`estimator: {}` needs this key.", named->name));
       const bool any = claim.compare.empty() || !named->of_run;
       reject_value_if(!any && is_of_run(claim.compare) != *named->of_run, in.find("estimator"),
-                      fmt::format("does not go with {}", claim.compare),
-                      *named->of_run ? "Compare a number of the whole run, as onset_size_phi."
+                      fmt::format("cannot be used with {}", claim.compare),
+                      *named->of_run ? "Compare a number of the whole run, such as onset_size_phi."
                                      : "Compare a number of checkpoints, such as phi.");
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
@@ -1370,8 +1373,8 @@ struct Reader {
               "State the published number.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "State `at_cycle` or `cycles`.");
-    reject_if(published == nullptr && !of_all, in.find("of"), "goes with published",
-              "Take `between` for two variants.");
+    reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
+              "Use `between` for two variants.");
     claim.relative = relative != nullptr;
     if (claim.compare.empty()) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
@@ -1385,13 +1388,13 @@ struct Reader {
       reject(*in.find(*stated), fmt::format("{} is one number of a run", claim.compare),
              "Leave it out.");
     }
-    reject_if(in.find("between") == nullptr, reaches, "goes with between",
-              "A waiting time is compared with another one.");
+    reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
+              "A waiting time can only be compared with another waiting time.");
     reject_if(compares_waits(claim), relative,
-              fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
-              "Take `margin`.");
+              fmt::format("cannot be used with {}", reaches != nullptr ? "reaches" : claim.compare),
+              "Use `margin`.");
     reject_if(claim.published && claim.published->value == 0.0, relative,
-              "cannot be used with a published value of 0", "Take `margin`.");
+              "cannot be used with a published value of 0", "Use `margin`.");
   }
 
   // Reports ids in `primary` that no claim of this manifest or of its figures has.

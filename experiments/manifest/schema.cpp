@@ -99,7 +99,7 @@ std::string number_remedy(const Field& field, const std::string& text) {
   plain = field.whole ? std::regex_replace(plain, thousands, "")
                       : std::regex_replace(plain, comma, ".");
   if (parse_real(plain)) {
-    return fmt::format("Write {}: a number has a decimal point and no separators.", plain);
+    return fmt::format("Write {}. A number has a decimal point and no separators.", plain);
   }
   if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
     const double value = evaluator_of(text)({});
@@ -306,7 +306,7 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
     }
     if (real && !field.whole && text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
       return ValueProblem{"begins with a zero",
-                          fmt::format("{} Else write {}.", kDecimalPoint, *real)};
+                          fmt::format("{} Otherwise write {}.", kDecimalPoint, *real)};
     }
     if (!real || (field.whole && *real != std::floor(*real))) {
       return ValueProblem{field.whole ? "is not a whole number" : "is not a number",
