@@ -13,12 +13,12 @@
 namespace shearcell {
 namespace {
 
-/// Whole steps in `duration` at Table I's fraction of the stability limit; at least 1.
+/// Number of time steps in `duration`, if each is Table I's fraction of the stability limit; >= 1.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);
   const double steps = std::nearbyint(duration / (part * stability_limit_s(p)));
-  constexpr double most = 1e15;  // an exact double, beyond the range of the parameter
+  constexpr double most = 1e15;  // a double holds it exactly; above the allowed range
   return steps >= 1 ? std::min(steps, most) : 1;
 }
 
@@ -157,16 +157,16 @@ bool has_interior(const Parameters& p) {
 }
 
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key) {
-  // Parts of the stability limit (core/ACCURACY.md).
+  // Fractions of the stability limit; core/ACCURACY.md gives the reasons.
   constexpr double too_small = 0.15, too_large = 0.7;
   const bool large = step.over_stability_limit > too_large;
   if (!large && step.over_stability_limit >= too_small) return std::nullopt;
-  return fmt::format("{}: the time step of {:.3g} s is {:.3g} of the stability limit, {} {:g}: {}",
+  return fmt::format("{}: the time step of {:.3g} s is {:.3g} of the stability limit ({} {:g}). {}",
                      key, step.seconds, step.over_stability_limit, large ? "above" : "below",
                      large ? too_large : too_small,
-                     large ? "the fastest vibrations are wrong by more than 10 %"
-                           : "so small a step only costs time: it changes measures by less than "
-                             "the scatter between seeds");
+                     large ? "The fastest vibrations are wrong by more than 10 %"
+                           : "A larger step saves time and changes measures by less than the "
+                             "scatter between seeds");
 }
 
 }  // namespace shearcell

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one place where SI parameters become the engine's units (grain diameter d, grain mass m,
-// second), and quantities that follow from them before anything is simulated.
+// Converts SI parameters to the engine's units (grain diameter d, grain mass m, second). Also
+// computes quantities that follow from the parameters without a simulation.
 #pragma once
 
 #include <cstdint>
@@ -19,58 +19,57 @@ Units units(const Parameters& parameters);
 /// The scene of a shear; its time step is period / steps per cycle.
 Scene shear_scene(const Parameters& parameters);
 
-/// The scene of settling: upright walls, a fluid at rest, a time step of its own.
+/// The scene of settling: upright walls, a fluid at rest, and the time step settle_time_step_s.
 Scene settle_scene(const Parameters& parameters);
 
-/// Motion of the walls; a pause has the whole number of time steps nearest to pause_s, at least 1.
+/// Motion of the walls. A pause is rounded to a whole number of time steps, at least 1.
 Drive drive(const Parameters& parameters);
 
 /// Largest number of time steps in a pause.
 inline constexpr double kMostPauseSteps = 1e9;
 
-/// pause_s in time steps of the shear, not rounded.
+/// Duration of a pause in time steps of the shear, not rounded.
 double pause_time_steps(const Parameters& parameters);
 
-/// Length of the stage after settling: cycles of shear, or stiffnesses.
+/// Length of the stage after settling: number of shear cycles or, for `stiffen`, of stiffnesses.
 std::uint64_t target_cycles(const Parameters& parameters);
 
-/// The geometry of the cell and its filling.
 Geometry geometry(const Parameters& parameters);
 
 double shear_time_step_s(const Parameters& parameters);
 
-/// Largest stable time step of the leapfrog [s]: 2/omega_max with omega_max^2 = 8 k/m, the fastest
-/// mode of an FCC contact network (twelve springs, longitudinal, at the zone boundary X). FCC is
-/// the densest network; looser or disordered packings vibrate more slowly.
+/// Largest stable time step of the leapfrog [s], 2/omega_max. omega_max^2 = 8 k/m belongs to the
+/// fastest mode of an FCC contact network (twelve springs per grain, longitudinal, at the zone
+/// boundary X). FCC is the densest network; looser or disordered packings vibrate more slowly.
 double stability_limit_s(const Parameters& parameters);
 
-/// Whether pressure_at has an effect: only if a moving bottom wall lifts grains with weight.
+/// Whether pressure_at has an effect: only if the bottom wall moves and the grains have weight.
 bool depends_on_pressure_at(const Parameters& parameters);
 
-/// Whether the pressure under a moving bottom wall can carry the grains' weight:
-/// P d^2 > 1.2 (h/d) m g, with 1.2 grains per d^3. True for a moving top wall, which lifts no
-/// grains, and for `pressure_at: top`, where the load includes the weight.
+/// Whether the pressure under a moving bottom wall can carry the grains' weight: P d^2 > 1.2 (h/d)
+/// m g, with 1.2 grains per d^3. Also true for a moving top wall, which lifts no grains, and for
+/// `pressure_at: top`, where the load on the wall includes the grains' weight.
 bool pressure_lifts_column(const Parameters& parameters);
 
 /// A time step, and its ratios to two other times.
 struct TimeStep {
   double seconds = 0;
-  double over_contact_time = 0;     ///< of a collision, pi/sqrt(2 k/m)
-  double over_stability_limit = 0;  ///< of stability_limit_s()
+  double over_contact_time = 0;     ///< ratio to the duration of a collision, pi/sqrt(2 k/m)
+  double over_stability_limit = 0;  ///< ratio to stability_limit_s()
 };
 
 TimeStep time_step(const Parameters& parameters, double seconds);
 
-/// Whether `settle` may state the parameter for the packing alone: it acts on the grains or on the
-/// moving wall, and is not part of the cell, the grains or their units.
+/// Whether `settle` may give the parameter another value while the packing settles: true for what
+/// acts on the grains or the moving wall, false for the cell, the grains and their units.
 bool may_differ_in_settling(std::string_view key);
 
 /// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
 bool takes_auto(std::string_view key);
 
-/// Sets the parameter to the value that keeps the time step at Table I's part of the stability
-/// limit, 0.3547: a whole number of steps in a cycle, or in 2 s of settling. The parameters of
-/// Table I give Table I's time step. The result may be out of range (check_value).
+/// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I, and a
+/// cycle or 2 s of settling has a whole number of steps. From the parameters of Table I follows
+/// Table I's time step. The result may be out of range; check it with check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
@@ -81,23 +80,23 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// weight per area if P acts on a moving bottom wall, P plus half of it if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
-/// Time [s] after which drag has brought the grains to rest: 18 m/b. The energy of weakly damped
-/// vibrations falls as exp(-b t/m), and must fall by about exp(18) to reach the default
-/// settle_kinetic_tolerance. At the time step of Table I, 300 grains take 18.8 s at m/b = 1 s and
-/// 3.0 s at 0.156 s; larger steps heat the grains (6.6 s at 0.81 of the stability limit). Infinite
-/// without drag.
+/// Time [s] after which drag has brought the grains to rest, 18 m/b; infinite without drag. The
+/// energy of weakly damped vibrations falls as exp(-b t/m), and must fall by a factor of about
+/// exp(18) to reach the default settle_kinetic_tolerance. At the time step of Table I, 300 grains
+/// take 18.8 s at m/b = 1 s and 3.0 s at 0.156 s. Larger steps heat the grains (6.6 s at 0.81 of
+/// the limit).
 double damping_time_s(const Parameters& parameters);
 
-/// pressing_time() of protocols/settle.hpp [s], proportional to a large drag. Settling cannot end
-/// earlier.
+/// pressing_time() of protocols/settle.hpp [s]: the shortest time in which settling can end. If the
+/// drag is large, the time grows in proportion to the drag.
 double pressing_time_s(const Parameters& parameters);
 
-/// Whether at least one interior grain (analysis/packing_fraction.hpp) is expected at the nominal
-/// height.
+/// Whether the cell at its nominal height can be expected to have an interior grain
+/// (analysis/packing_fraction.hpp).
 bool has_interior(const Parameters& parameters);
 
-/// Advice against a time step below 0.15 or above 0.7 of the stability limit; `key` names it
-/// ("steps_per_cycle"). Nothing for other time steps.
+/// A warning if the time step is below 0.15 or above 0.7 of the stability limit, otherwise nothing.
+/// `key` is the parameter that sets the time step ("steps_per_cycle").
 std::optional<std::string> time_step_advice(const TimeStep& step, const std::string& key);
 
 }  // namespace shearcell

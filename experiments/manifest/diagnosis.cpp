@@ -41,8 +41,8 @@ bool is_wide_enough(const Parameters& p) {
   return cell_width(geometry(p)) >= kShallowestCell;
 }
 
-/// "Use at least N grains." with the smallest N for which `enough` is true; it must be true for all
-/// larger N. "Use more grains." if N is beyond the range of `grains`.
+/// "Use at least N grains." with the smallest N for which `enough` is true, or "Use more grains."
+/// if N is beyond the range of `grains`. `enough` must be true for all larger N.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
   const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
   std::uint64_t few = p.grains, many = most + 1;
@@ -53,7 +53,6 @@ string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
   return many > most ? "Use more grains." : format("Use at least {} grains.", many);
 }
 
-// Checks one variant at one scale.
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -72,7 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value of a parameter or of "settle.KEY", and where it is stated. Null if it is a default.
+  // The value that the manifest states for a parameter or "settle.KEY". Null if it states none.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -88,7 +87,8 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // Reports a problem with the value of `key`, at the place of `cause` if the value is a default.
+  // Reports a problem with the value of `key`. The message gives the line of `key` or, if the value
+  // is a default, the line of `cause`.
   void report(string_view key, const string& problem, const string& remedy,
               string_view cause = "") {
     const Setting* stated = find(key);
@@ -103,14 +103,14 @@ struct VariantCheck {
     problems.add(at, key, problem, "", remedy);
   }
 
-  // The last of the keys that the manifest states; "" if it states none.
+  // The last key of the list that the manifest states; "" if it states none of them.
   string_view last_stated(std::initializer_list<string_view> keys) const {
     string_view last;
     for (const string_view key : keys) last = find(key) != nullptr ? key : last;
     return last;
   }
 
-  // Whether the values that `auto` resolved to are in range.
+  // Whether the numbers that were computed for `auto` are in range. Reports those that are not.
   bool autos_are_in_range() {
     bool sound = true;
     for (const auto& [key, setting] : scale.settings) {
@@ -118,7 +118,7 @@ struct VariantCheck {
       const Field& field = *find_field(key);
       const json value = field.get(p);
       if (!check_value(field, value)) continue;
-      report(key, format("comes to {}, which is out of range", value_text(value)),
+      report(key, format("results in {}, which is out of range", value_text(value)),
              format("State {}, or change stiffness_N_per_m, mass_kg or period_s.",
                     expected_values(field)));
       sound = false;
@@ -150,8 +150,8 @@ struct VariantCheck {
     const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / settle_step > kMostSteps) {
       report("settle_time_step_s",
-             format("settling takes up to {:.3g} time steps, more than {:g}", seconds / settle_step,
-                    kMostSteps),
+             format("settling may need {:.3g} time steps, but at most {:g} are allowed",
+                    seconds / settle_step, kMostSteps),
              format("Use at least {:.3g} s, or lower settle_time_limit_s.",
                     1.001 * seconds / kMostSteps));
     }
@@ -168,7 +168,7 @@ struct VariantCheck {
     const Geometry shape = geometry(p);
     if (!is_wide_enough(p)) {
       report("grains",
-             format("the cell for so few grains is {:.3g} d wide and deep, less than {} d",
+             format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
                     cell_width(shape), kShallowestCell),
              advise_more_grains(p, is_wide_enough));
     }
@@ -176,19 +176,19 @@ struct VariantCheck {
       report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
                  ? "fill_packing_fraction"
                  : "nominal_packing_fraction",
-             format("the cell for the loose grains is {:.3g} d wide and {:.3g} d high with {:.2g} "
-                    "wall grains, too large for {} grains",
+             format("with loose grains, the cell is {:.3g} d wide and {:.3g} d high and has {:.2g} "
+                    "wall grains, which is too large for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
              "Raise it.");
     }
     if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
     const bool loose_stated = find("fill_packing_fraction") != nullptr;
-    report(
-        loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
-        "the random initial packing is denser than the settled packing is to be",
-        loose_stated
-            ? format("Choose it below nominal_packing_fraction ({}).", p.nominal_packing_fraction)
-            : format("Choose it above fill_packing_fraction ({}).", p.fill_packing_fraction));
+    report(loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
+           "the random initial packing must be looser than the settled packing",
+           loose_stated ? format("Choose a value below nominal_packing_fraction ({}).",
+                                 p.nominal_packing_fraction)
+                        : format("Choose a value above fill_packing_fraction ({}).",
+                                 p.fill_packing_fraction));
   }
 
   void check_start() {
@@ -203,17 +203,17 @@ struct VariantCheck {
       return;
     }
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse(start.at, "start", "does not go with protocol stiffen",
-             "A recorded state is sheared on.");
+      refuse(start.at, "start", "cannot be used with protocol stiffen",
+             "A recorded state can only be sheared.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "State the seed of the recorded run: `seed: 3`.");
     }
     if (!start.run.empty() && find("start_seed") != nullptr) {
-      report("start_seed", "does not go with checkpoint, which names one run", "Leave it out.");
+      report("start_seed", "cannot be used with checkpoint, which names one run", "Leave it out.");
     }
     if (scale.settle_at.line > 0) {
-      refuse(scale.settle_at, "settle", "has no effect with start: nothing settles",
+      refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
              "Leave it out.");
     }
   }
@@ -225,24 +225,25 @@ struct VariantCheck {
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
     } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(at, key, why, "Leave them out, or the engine.");
+      refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
-             format("two of them are one step, or the end of the cycle, with {} steps in a cycle",
+             format("two phases are at one step, or one is at the end of the cycle, with {} steps "
+                    "in a cycle",
                     cycle_steps(motion)),
-             "Use fewer of them, or more steps_per_cycle.");
+             "Use fewer phases, or more steps_per_cycle.");
     }
   }
 };
 
-/// Whether a spreadsheet that opens a table takes the text for a formula.
+/// Whether a spreadsheet program would read the text as a formula.
 bool is_formula(const string& text) {
   const std::size_t first = text.find_first_not_of(' ');
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Each label must name a variant of some scale and have visible characters. The names of the
-/// variants of one scale must look different.
+/// Checks that each label names a variant of some scale and has visible characters, and that the
+/// names of the variants of a scale look different.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
@@ -254,15 +255,15 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
     if (!empty && !is_formula(label.name)) continue;
     reject(label,
            format("gives a variant a name {}",
-                  empty ? "with nothing to see" : "that spreadsheets take for a formula"),
+                  empty ? "without visible characters" : "that spreadsheets read as a formula"),
            format("\"{}\"", printable(label.name)),
-           empty ? "Write a name." : "Begin it with a letter or a digit.");
+           empty ? "Write a name with visible characters." : "Begin it with a letter or a digit.");
   }
   std::set<const VariantLabel*> used;
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // Names with their labels (or null), by what a reader sees.
+    // For each name as a reader sees it: the name itself, and its label or null.
     std::map<string, std::pair<string, const VariantLabel*>> named;
     for (const json& variant : variants) {
       const string& name = names.at(variant);
@@ -281,13 +282,13 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                         ? format("gives two variants the same name, '{}'", printable(name))
                         : format("gives two variants names that look the same, '{}' and '{}'",
                                  printable(other), printable(name)),
-                    printable(label->name), "Give each variant a name of its own.");
+                    printable(label->name), "Give each variant a different name.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
     if (used.contains(&label)) continue;
     reject(label, "names no variant of any scale", words_of(label.where),
-           "A label states swept keys and one of their values, as `\"fluid=still\"`.");
+           "A label states swept keys and one value of each, such as `\"fluid=still\"`.");
   }
 }
 
@@ -315,7 +316,6 @@ string without_effect(string_view key, const Parameters& p) {
   return "";
 }
 
-// Warns of each stated key that has no effect on any variant.
 void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
                          std::span<const Variant> variants, std::vector<string>& warnings) {
   std::map<string, Position> stated;
@@ -336,11 +336,11 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
   }
 }
 
-// Advice on parameters that can be simulated but are unlikely to be meant.
+// Warnings about parameters that are probably mistakes. `settles`: whether the packing settles.
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
-  // Kilograms per cubic metre; no solid is outside of this range by far.
+  // [kg/m^3]. No known solid is outside of the range below.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
     const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
@@ -362,14 +362,14 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   }
   if (!has_interior(p)) {
     advice.push_back(
-        format("the cell of {} grains is too small for interior grains, at least 1.5 d from the "
-               "walls: phi and other measures of these have no value. {}",
+        format("the cell of {} grains is too small to have interior grains, which are at least 1.5 "
+               "d from the walls. So phi and other measures of interior grains have no value. {}",
                p.grains, advise_more_grains(p, has_interior)));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
     advice.push_back(
-        format("grains will overlap by {:.2g} d on average; the run fails at max_overlap_diameters "
-               "({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
+        format("grains will overlap by {:.2g} d on average, and a run stops if an overlap exceeds "
+               "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                overlap, p.max_overlap_diameters));
   }
   if (settles && packing.drag_kg_per_s == 0) {
@@ -380,16 +380,16 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
     advice.push_back(
         format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-               "settle_time_limit_s ({:g} s). Raise one of them.",
+               "settle_time_limit_s ({:g} s). Raise the drag or the limit.",
                packing.drag_kg_per_s, when(time), p.settle_time_limit_s));
   }
   if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(format(
-        "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses the "
-        "grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower the drag, or "
-        "raise pressure_Pa or that limit.",
-        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
-        p.settle_time_limit_s));
+    advice.push_back(
+        format("with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses "
+               "the grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower "
+               "the drag, or raise pressure_Pa or settle_time_limit_s.",
+               packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
+               p.settle_time_limit_s));
   }
   for (const auto& [step, key, is_used] :
        {std::tuple(time_step(p, shear_time_step_s(p)), "steps_per_cycle",
@@ -400,17 +400,17 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   return advice;
 }
 
-// Warns of each advice once, with the variants that it concerns.
+// Adds each warning about parameter values once, with the variants that it concerns.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::size_t seeds,
                         std::vector<string>& warnings) {
   const Start& start = scale.start;
   const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
-  nlohmann::ordered_map<string, std::vector<string>> advice;  // with the names of the variants
+  nlohmann::ordered_map<string, std::vector<string>> advice;  // each with the names of its variants
   for (const Variant& variant : variants) {
     for (const string& one : advice_on(variant, settles)) advice[one].push_back(variant.name);
   }
-  const auto draws = [&](const Variant& variant) {  // something by the seed
+  const auto draws = [&](const Variant& variant) {  // whether the run depends on the seed
     return start.is_recorded()
                ? variant.parameters.start_noise_d > 0
                : start.file.empty() || variant.parameters.walls == WallTexture::rough;
@@ -426,14 +426,14 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   }
 }
 
-/// A scale, with one planned run of each variant in the form that figures expect.
+/// A scale, and one planned run of each of its variants.
 struct ScaleRuns {
   const Scale& scale;
   std::size_t seeds;
   std::vector<FrameRun> runs = {};
 };
 
-/// The number of cycles back to the earliest checkpoint that the column needs.
+/// Returns the largest b for which the column needs the checkpoints at cycles c and c - b.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -442,15 +442,16 @@ std::uint64_t cycles_back(const string& column) {
   return most;
 }
 
-/// "a checkpoint at cycle 3 with another one 1 cycle before it".
+/// For example "a checkpoint at cycle 3 and another checkpoint 1 cycle earlier".
 string words_of_checkpoint(const string& where, std::uint64_t back) {
-  return format("a checkpoint{}{}", where,
-                back == 0 ? "" : format(" with another one {} before it", counted(back, "cycle")));
+  return format(
+      "a checkpoint{}{}", where,
+      back == 0 ? "" : format(" and another checkpoint {} earlier", counted(back, "cycle")));
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles before it. For all multiples of the cadence the answer is the same, so only the
-// first multiple, the first cycle and the last cycle are tried.
+// `back` cycles before it. All multiples of the cadence give the same answer, so only the first
+// multiple, the first cycle and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
@@ -462,7 +463,7 @@ bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
   return false;
 }
 
-/// Why no run has a value that the plot draws; "" if some run may have one.
+/// Why no run will have a value for the plot; "" if some run may have one.
 string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRun> runs) {
   const auto [shortest, longest] = std::ranges::minmax(
       std::views::transform(runs, [](const FrameRun& run) { return run.ask.target_cycles; }));
@@ -472,12 +473,12 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRu
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
   } else if (!draws_every_cycle(plot) && !is_of_run(plot.y)) {
-    if (!plot.cycle && scale.until.until) return "";  // not known where the runs end
+    if (!plot.cycle && scale.until.until) return "";  // `until` decides the last cycle
     cycles.fill(plot.cycle.value_or(shortest));
     where = format(" at cycle {}", cycles[0]);
   }
   if (cycles[1] > longest) {
-    return format("it asks for cycle {}, and the runs have {}.", cycles[1], longest);
+    return format("it needs cycle {}, but the last cycle of the runs is {}.", cycles[1], longest);
   }
   for (const string& measure : {plot.y, plot.x}) {
     const std::uint64_t back = cycles_back(measure);
@@ -485,31 +486,34 @@ string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRu
         runs, [&](const FrameRun& run) { return has_checkpoint(run, cycles[0], cycles[1], back); });
     if (any) continue;
     return format(
-        "no run has {}, so {} has no value. Ask for more checkpoints (`every_cycles`) or cycles.",
+        "no run has {}, so {} has no value. Record more checkpoints (`every_cycles`) or more "
+        "cycles.",
         words_of_checkpoint(where, back), measure);
   }
   return "";
 }
 
-/// Why the run will have no value for the claim; "" if it may have one.
+/// Why a run will have no value for the claim; "" if the run may have one.
 string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
   const std::uint64_t back = cycles_back(claim.compare);
   if (last > run.ask.target_cycles) {
-    return format("it asks for cycle {}, and the runs have {}.", last, run.ask.target_cycles);
+    return format("it needs cycle {}, but the last cycle of the runs is {}.", last,
+                  run.ask.target_cycles);
   }
-  // If a cycle of the range has no checkpoint, then the first, second or last cycle has none.
+  // If any cycle of the range has no checkpoint, the first, the second or the last cycle has none.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
     if (has_checkpoint(run, cycle, cycle, back)) continue;
     return format(
-        "it needs {}, which the runs do not have. Ask for more checkpoints (`every_cycles`).",
+        "it needs {}, which the runs do not have. Record more checkpoints (`every_cycles`).",
         words_of_checkpoint(format(" at cycle {}", cycle), back));
   }
   return "";
 }
 
-/// Says which variants have other packings than the subtracted variant; "" if none has.
+/// A message about variants whose packings differ from the packings of the subtracted variant; ""
+/// if all packings are equal.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -519,13 +523,13 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   }
   if (alone.empty()) return "";
   return format(
-      "{} {} other packings than {}, so nothing is drawn of {}. State with `settle` what all "
-      "packings are to have in common.",
+      "{} {} other packings than {}, so the plot omits {}. Under `settle`, state the parameters "
+      "that all packings must share.",
       some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
-      alone.size() == 1 ? "it" : "them");
+      alone.size() == 1 ? "this variant" : "these variants");
 }
 
-/// The number of the plot's curves that the entry of `series` fits.
+/// Number of curves of the plot that the entry of `series` matches.
 std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
                       std::span<const FrameRun> runs) {
   std::set<json> curves;
@@ -549,9 +553,10 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   const bool averages = !plot.by.empty() && !is_measured_of_run(plot.x);
   const string key = averages ? averaged_key(runs, keys) : "";
   if (!key.empty()) {
-    found.push_back(format(
-        "it would average over the values of {}. Leave out `by` for a curve of each variant.",
-        key));
+    found.push_back(
+        format("the plot would average over the values of {}. Leave out `by` to draw one curve for "
+               "each variant.",
+               key));
   }
   found.push_back(problem_of_minus(plot, count_variants(runs_with(plot.minus, runs))));
   found.push_back(lack_of_partner(plot, runs));
@@ -563,25 +568,27 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // only of the manifest that states the plot
+    if (plot.listed) break;  // checked only in the manifest that states the plot
     if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const bool of_another = std::ranges::any_of(
         all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
-      found.push_back(
-          format("the style of {} fits {} curves, so it is not used. State more of the swept keys.",
-                 words_of(one.where), curves));
+      found.push_back(format(
+          "the style for {} matches {} curves, so it is not used. State more of the swept keys.",
+          words_of(one.where), curves));
     } else if (curves == 0 && !of_another) {
-      found.push_back(format("the style of {} fits no curve at any scale. State swept values.",
-                             words_of(one.where)));
+      found.push_back(
+          format("the style for {} matches no curve at any scale. State values that are swept.",
+                 words_of(one.where)));
     }
   }
   if (plot.cycle && is_of_run(plot.y)) {
-    found.push_back(
-        format("at_cycle has no effect on {}, one number of a run. Leave it out.", plot.y));
+    found.push_back(format(
+        "at_cycle has no effect on {}, which is one number per run. Leave at_cycle out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
-    found.emplace_back("at_cycle has no effect, since it draws every cycle. Leave it out.");
+    found.emplace_back(
+        "at_cycle has no effect, since the plot draws every cycle. Leave at_cycle out.");
   }
   found.push_back(lack_of(plot, scale, runs));
   return found;
@@ -604,13 +611,13 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   }
   if (here.seeds < least_runs) {
     found.lacks.push_back(
-        format("a verdict takes at least {} seeds, not {}.", least_runs, here.seeds));
+        format("a verdict needs at least {} seeds, but there are {}.", least_runs, here.seeds));
   }
   return found;
 }
 
-/// The plots or claims of the figures that the manifest lists, then the manifest's own plots or
-/// claims. Each comes with its place, for messages.
+/// The plots or claims of the figures that the manifest lists, then the plots or claims of the
+/// manifest itself. Each comes with a prefix for messages, which says where it is stated.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -637,8 +644,8 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     const string key = averaged_key(here.runs, figure.keys);
     if (key.empty()) continue;
     warnings.push_back(
-        format("{}: figure {} would average over the values of {}. Give each an experiment of its "
-               "own, or state a plot (`plots`).",
+        format("{}: figure {} would average over the values of {}. Use one experiment for each "
+               "value, or state a plot (`plots`).",
                manifest.file, name, key));
   }
   const std::vector<Scale> scales = scales_of(manifest);
@@ -654,16 +661,17 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
     warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
   }
-  std::map<string, string> said;  // ids of claims, by what they say
+  std::map<string, string> said;  // from the statement of a claim to its id
   std::vector<string> ids;
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
       ids.push_back(claim.id);
       said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
-      if (claim.listed && !found.refusals.empty()) continue;  // of variants that it does not have
+      // No run of this experiment has the values that a claim of a listed figure selects.
+      if (claim.listed && !found.refusals.empty()) continue;
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
-      // A small scale is for trying, so there is no warning if another scale can decide the claim.
+      // Small scales are for trying out. Warn only if no other scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);
@@ -673,13 +681,13 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     }
   }
   for (const string& primary : here.scale.primary) {
-    if (primary.find(' ') == string::npos) continue;  // an id, which the reader has found
+    if (primary.find(' ') == string::npos) continue;  // an id, which reader.cpp has checked
     const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
-            ? format("{}: primary: '{}' is a statement; write the claim's id, {}.", manifest.file,
+            ? format("{}: primary: '{}' is a statement. Write the claim's id, {}.", manifest.file,
                      primary, found->second)
-            : format("{}: primary: no claim has the statement '{}'; write the id of a claim: {}.",
+            : format("{}: primary: no claim has the statement '{}'. Write one of the ids: {}.",
                      manifest.file, primary, fmt::join(ids, ", ")));
   }
 }
@@ -688,7 +696,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
 
 string unfit_for_lammps(const Parameters& p, const Checkpoints& checkpoints) {
   if (p.engine != EngineKind::lammps) return "";
-  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot do the protocol stiffen";
+  if (p.protocol == ProtocolKind::stiffen) return "LAMMPS cannot compute protocol stiffen";
   return checkpoints.phases.empty() ? "" : "LAMMPS makes no checkpoints within a cycle";
 }
 
@@ -699,10 +707,10 @@ void check_variants(const Manifest& manifest) {
   for (const Scale& scale : scales) {
     const string path = scale.name.empty() ? "" : "scales." + scale.name;
     if (scale.name == "base") {
-      problems.add(scale.at, path, "is the name of runs without a scale", "",
+      problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not state a key that it sweeps. `base` may: its value has no effect here.
+    // A scale must not state a key that it sweeps. `base` may, because a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
@@ -714,16 +722,16 @@ void check_variants(const Manifest& manifest) {
     const std::uint64_t seeds = scale.seeds.values.size();
     if (!scale.looks.empty() && scale.looks.back() > seeds) {
       problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
-                   "asks for more seeds than there are", std::to_string(scale.looks.back()),
-                   format("State `seeds: {}`, or list as many.", scale.looks.back()));
+                   "needs more seeds than the scale has", std::to_string(scale.looks.back()),
+                   format("State `seeds: {}`, or list this many seeds.", scale.looks.back()));
     }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
          numbers == nullptr ? std::span<const Setting>() : numbers->values) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
-      problems.add(number.at, path + ".sweep.zip.seeds", "is more seeds than the scale has",
-                   number.value.dump(),
-                   format("State `seeds: {}`, or list as many.", number.value.dump()));
+      problems.add(number.at, path + ".sweep.zip.seeds",
+                   "is more than the number of seeds of the scale", number.value.dump(),
+                   format("State `seeds: {}`, or list this many seeds.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,
@@ -736,7 +744,7 @@ void check_variants(const Manifest& manifest) {
   if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
   for (const Placed<ClaimSpec>& claim : manifest.claims) {
     if (!is_formula(claim.statement)) continue;
-    problems.add(claim.at, "claims.statement", "is a text that spreadsheets take for a formula",
+    problems.add(claim.at, "claims.statement", "is a text that spreadsheets read as a formula",
                  printable(claim.statement), "Begin it with a letter or a digit.");
   }
   for (const Scale& scale : scales) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors in the variants of a manifest, and warnings of what is unlikely to be meant. Errors in the
-// text itself are found when the text is read (reader.cpp).
+// Finds errors in the variants of a manifest, and warns of values that are probably mistakes.
+// reader.cpp finds errors in the text of the manifest.
 #pragma once
 
 #include <span>
@@ -12,17 +12,17 @@
 
 namespace shearcell {
 
-/// Checks the number of runs, the labels, and time steps and geometry of every variant of every
-/// scale. The manifest must come from read_manifest(). Throws ManifestError.
+/// Checks the number of runs, looks and labels, and for each variant at each scale the time steps,
+/// cell, start and phases. The manifest must come from read_manifest(). Throws ManifestError.
 void check_variants(const Manifest& manifest);
 
-/// Why LAMMPS cannot compute such a run; "" if it can, or if LAMMPS is not the engine.
+/// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// Warnings for a plan of the `planned` variants, one line each. They concern parameters that make
-/// settling fail, lie outside of advised ranges or have no effect on any variant; figures, plots
-/// and claims for which there will be no data; and claims that `primary` names by their statements.
-/// `all`: the variants of the scale.
+/// Warnings about a plan of the variants in `planned`, one line each. They concern parameters that
+/// make settling fail, are outside the advised range or have no effect on any variant. They also
+/// concern figures, plots and claims that will have no data, and entries of `primary` that are not
+/// ids of claims. `all`: all variants of the scale.
 std::vector<std::string> warnings_of(const Manifest& manifest, const Scale& scale,
                                      std::span<const Variant> all, std::span<const Variant> planned,
                                      std::size_t seeds);

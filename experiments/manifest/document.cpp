@@ -37,7 +37,6 @@ const utf8proc_uint8_t* bytes_of(string_view text) {
   return reinterpret_cast<const utf8proc_uint8_t*>(text.data());
 }
 
-// Decodes the first character of `text`.
 Character decode(string_view text) {
   utf8proc_int32_t c = 0;
   const auto length = utf8proc_iterate(bytes_of(text), std::ssize(text), &c);
@@ -62,7 +61,7 @@ bool is_unseen(char32_t c) {
          utf8proc_get_property(code_point)->ignorable != 0;
 }
 
-// Code points that are no characters; XML does not allow the last two.
+// Noncharacters of Unicode. XML does not allow U+FFFE and U+FFFF.
 bool is_noncharacter(char32_t c) {
   return (c >= 0xFDD0 && c <= 0xFDEF) || (c & 0xFFFE) == 0xFFFE;
 }
@@ -107,10 +106,10 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     keep(anchor, add({.at = position(mark)}));
   }
-  // An alias is a copy of the anchored value, which counts like a value that is written out.
+  // Adds a copy of the anchored value. The limits count the copy like a value that is written out.
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchored_.find(anchor);
-    if (known == anchored_.end()) refuse_reference(mark);  // within its own anchor
+    if (known == anchored_.end()) refuse_reference(mark);  // an alias within its own anchor
     check_size(known->second, position(mark), open_.size());
     add(known->second);
   }
@@ -146,12 +145,13 @@ class TreeBuilder : public YAML::EventHandler {
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
-    refuse(file_, position(mark), "", fmt::format("the tag {} is not read", printable(tag)), "",
-           "Remove the tag; the key decides the type.");
+    refuse(file_, position(mark), "", fmt::format("the tag {} is not supported", printable(tag)),
+           "", "Remove the tag. The key decides the type.");
   }
 
-  // A text that is kept must be plain: it reaches JSON, XML and terminals. Escapes in double quotes
-  // can name any character, and yaml-cpp reads \_ and \N as bytes that are not UTF-8.
+  // Reports control characters and noncharacters, since texts are written to JSON, XML and
+  // terminals. Escapes in double quotes can stand for any character, and yaml-cpp reads \_ and \N
+  // as bytes that are not UTF-8.
   void check_text(const YAML::Mark& mark, string_view text) {
     for (string_view rest = text; !rest.empty();) {
       const auto [length, c] = decode(rest);
@@ -159,7 +159,7 @@ class TreeBuilder : public YAML::EventHandler {
         refuse(file_, position(mark), "", problem, printable(text), remedy);
       };
       if (length == 0) {
-        reject("the escapes \\_ and \\N are not read",
+        reject("the escapes \\_ and \\N are not supported",
                "Write _ without the backslash, or the text in single quotes.");
       }
       const auto number = static_cast<unsigned>(c);
@@ -184,26 +184,26 @@ class TreeBuilder : public YAML::EventHandler {
     open_.pop_back();
   }
 
-  // Keeps a copy of an anchored value (0: no anchor) for its aliases.
+  // Keeps a copy of an anchored value for its aliases. `anchor` is 0 for a value without anchor.
   void keep(YAML::anchor_t anchor, const Node& node) {
     if (anchor == 0) return;
     check_size(node, node.at, 0);
     anchored_[anchor] = node;
   }
 
-  // Counts the values and bytes of a copy, which begins at this depth.
+  // Counts the values and bytes of a copy, and checks the limits. `depth`: levels above the copy.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     copied_ += node.text.size() + node.key.size();
     if (copied_ > ManifestLimits::bytes) {
       refuse(file_, at, "",
-             fmt::format("is larger than {} bytes with its aliases written out",
+             fmt::format("is larger than {} bytes when aliases are written out",
                          ManifestLimits::bytes),
              "", "");
     }
     if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
     for (const Node& part : node.parts) {
-      if (node.kind == Node::Kind::map) count_value(at);  // its key
+      if (node.kind == Node::Kind::map) count_value(at);  // the key of the part
       check_size(part, at, depth + 1);
     }
   }
@@ -219,8 +219,8 @@ class TreeBuilder : public YAML::EventHandler {
     refuse(file_, at, "", fmt::format("holds more than {} values", ManifestLimits::nodes), "", "");
   }
 
-  // Adds an item, key or value to the innermost open list or map. It stays in its place until that
-  // list or map gets the next one.
+  // Adds an item, key or value to the innermost open list or map. The returned reference is valid
+  // until this list or map gets another item, key or value.
   Node& add(Node node) {
     count_value(node.at);
     if (open_.empty()) return root_ = std::move(node);
@@ -257,14 +257,14 @@ class TreeBuilder : public YAML::EventHandler {
   std::string file_;
   bool started_ = false;
   std::size_t nodes_ = 0;
-  std::size_t copied_ = 0;  // bytes of text
+  std::size_t copied_ = 0;  // bytes in copies of anchored values
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Node> anchored_;
   Node root_;
 };
 
-// The first line up to `last` that is indented with a tab, or 0. The parser's own messages for it
-// vary.
+// Number of the first line up to `last` that is indented with a tab; 0 if there is none. The
+// messages of yaml-cpp about such lines vary.
 int tab_indented_line(string_view text, int last) {
   for (int line = 1; line <= last && !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -277,10 +277,10 @@ int tab_indented_line(string_view text, int last) {
 
 std::string syntax_remedy(string_view text, const YAML::Exception& error) {
   if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
-    return fmt::format("Line {} is indented with a tab; use spaces.", line);
+    return fmt::format("Line {} is indented with a tab. Use spaces.", line);
   }
   if (error.msg.find("unicode") != std::string::npos) {
-    return "This escape names no character; write the character itself.";
+    return "This escape is not a character. Write the character itself.";
   }
   if (error.msg.find("flow") != std::string::npos) {
     return "A { or [ of this line, or of one above it, is not closed.";

@@ -36,16 +36,17 @@ Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& w
   const std::string name = wanted.value_or(std::string(kDefaultScale));
   if (const Scale* found = find_named(manifest.scales, name)) return *found;
   const std::vector<std::string_view> names = names_of(manifest.scales);
-  const std::string known = fmt::format("It has {}.", fmt::join(names, ", "));
+  const std::string known = fmt::format("The manifest has {}.", fmt::join(names, ", "));
   if (!wanted) {
-    refuse(manifest.file, {}, "scale", fmt::format("there is no scale {}, the default", name), "",
-           fmt::format("Name one with --scale. {}", known));
+    refuse(manifest.file, {}, "scale",
+           fmt::format("there is no scale {}, which is the default", name), "",
+           fmt::format("Name a scale with --scale. {}", known));
   }
   refuse(manifest.file, {}, "scale", with_nearest("is unknown", name, names), printable(name),
          known);
 }
 
-// Checks an option that replaces what the manifest states.
+// Checks a value from the command line that replaces a value of the manifest.
 void check_option(const Manifest& manifest, const char* key, const nlohmann::json& value,
                   const Field& field) {
   if (const auto wrong = check_value(field, value)) {
@@ -60,8 +61,8 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
   if (!stated.counted && *wanted > seeds.size()) {
     refuse(manifest.file, {}, "seeds",
-           fmt::format("the manifest lists {} seeds only", seeds.size()), std::to_string(*wanted),
-           "List more, or state a count.");
+           fmt::format("the manifest lists only {} seeds", seeds.size()), std::to_string(*wanted),
+           "List more seeds, or state a count.");
   }
   seeds.resize(*wanted);
   if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);
@@ -80,8 +81,8 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: the facts that all runs of the scale share. `recorded`: the run with whose state this
-// run begins, or null. `file`: the file of its grains.
+// `common`: the parts of place and ask that all runs of the scale share. `recorded`: the run whose
+// state this run begins with, or null. `file`: the file of grains that the packing begins with.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
@@ -110,11 +111,11 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   return run;
 }
 
-// Gives each variant the number of cycles that the same version of the manifest asked for earlier,
-// if that number is larger. `place`: manifest, experiment and scale.
+// Raises the number of cycles of each variant to the largest number that this version of the
+// manifest asked for before. `place`: manifest, experiment and scale.
 void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
-  std::map<std::string, std::uint64_t> longest;  // by variant
+  std::map<std::string, std::uint64_t> longest;  // by name of the variant
   for (const Stage& stage : known) {
     for (const auto& [other, ask, newest] : stage.memberships) {
       if (other.experiment != place.experiment || other.scale != place.scale) continue;
@@ -148,7 +149,7 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
 }
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
-  if (!manifest.of.empty()) return {manifest, "", {}, {}, {}};  // runs of other experiments
+  if (!manifest.of.empty()) return {manifest, "", {}, {}, {}};  // uses other experiments' runs
   Scale scale = choose_scale(manifest, options.scale);
   if (options.cycles) {
     check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));
@@ -174,15 +175,16 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                      .manifest = sha256_hex(manifest.text)}};
   common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   common.ask.checkpoint_phases = scale.checkpoints.phases;
-  std::map<std::string, std::string> variant_of;  // by the last stage's key
-  std::set<std::string> fitted;                   // packings into which the file fits
+  std::map<std::string, std::string> variant_of;  // by id of the last stage
+  std::set<std::string> fitted;                   // ids of packings for which the file was checked
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds = seeds;
   std::erase_if(chosen_seeds,
                 [&](std::uint64_t seed) { return !seed_filter.passes(std::to_string(seed)); });
   if (const std::string* missing = seed_filter.unfound()) {
-    refuse(manifest.file, {}, "seed", "the manifest has no such seed", *missing,
-           fmt::format("It has {} (--seeds states how many).", some_of(seed_filter.seen(), 8)));
+    refuse(manifest.file, {}, "seed", "the manifest does not have this seed", *missing,
+           fmt::format("The manifest has {} (--seeds sets the number of seeds).",
+                       some_of(seed_filter.seen(), 8)));
   }
   const auto all_names = variant_names(swept_in(variants), manifest.labels);
   std::vector<Variant> chosen;
@@ -192,7 +194,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {
       refuse(manifest.file, {}, "engine", why, "lammps",
-             "Leave out `--engine`, or what LAMMPS cannot do in this manifest.");
+             "Leave out `--engine`, or remove from the manifest what LAMMPS cannot do.");
     }
     const Stage* recorded = nullptr;
     if (scale.start.is_recorded()) {
@@ -214,11 +216,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
             pressing_time(settle_scene(run.packing), height,
                           static_cast<double>(run.packing.grains) / (cell.width * cell.depth));
         if (plan.file->file.settles && time > run.packing.settle_time_limit_s) {
-          plan.warnings.push_back(fmt::format(
-              "{}: it is {:.6g} d high, which the moving wall presses together in about "
-              "{:.2g} s, so settling fails at settle_time_limit_s ({:g} s). Cut off "
-              "the empty space, or raise that limit.",
-              plan.file->path, height, time, run.packing.settle_time_limit_s));
+          plan.warnings.push_back(
+              fmt::format("{}: the grains are {:.6g} d high. The moving wall presses them together "
+                          "in about {:.2g} s, so settling fails at settle_time_limit_s ({:g} s). "
+                          "Remove the empty space, or raise settle_time_limit_s.",
+                          plan.file->path, height, time, run.packing.settle_time_limit_s));
         }
       }
 
@@ -230,12 +232,12 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
   if (const std::string* missing = wanted.unfound()) {
     refuse(manifest.file, {}, "variant", "no variant has these values", printable(*missing),
-           fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
+           fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
   }
   if (plan.runs.empty()) {
     refuse(manifest.file, {}, "variant", "no variant has all of these values",
            printable(fmt::format("{}", fmt::join(options.variants, " and "))),
-           fmt::format("It has {}.", fmt::join(wanted.seen(), "; ")));
+           fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
   }
   std::vector<nlohmann::json> swept;
   for (const PlannedRun& run : plan.runs) swept.push_back(run.place.swept);
@@ -248,7 +250,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 }
 
 void add_as_computed(const Plan& plan, std::vector<Stage>& known) {
-  std::map<std::string, std::size_t> places;  // in `known`, by id
+  std::map<std::string, std::size_t> places;  // indices in `known`, by id
   for (std::size_t k = 0; k < known.size(); ++k) {
     places.emplace(known[k].id, k);
     for (auto& [place, ask, newest] : known[k].memberships) {

@@ -18,38 +18,38 @@
 namespace shearcell {
 
 struct ExpandOptions {
-  std::optional<std::string> scale = {};       ///< default: `desk`, or `base` without scales
-  std::optional<std::uint64_t> cycles = {};    ///< instead of the manifest's
-  std::optional<std::uint64_t> seeds = {};     ///< number of seeds, the first ones of a list
-  std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
+  std::optional<std::string> scale = {};     ///< default: `desk`, or `base` if there are no scales
+  std::optional<std::uint64_t> cycles = {};  ///< replaces the number in the manifest
+  std::optional<std::uint64_t> seeds = {};   ///< replaces the number of seeds; shortens a list
+  std::vector<std::string> variants = {};    ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
-  std::optional<std::string> engine = {};      ///< instead of the manifest's; part of the variant
-  /// Stages of the store, and stages that are computed before this manifest. If this manifest asked
-  /// for more cycles earlier, warnings assume that larger number.
+  std::optional<std::string> engine = {};      ///< replaces the engine; becomes a swept key
+  /// Stages in the store, and stages that the same command computes before this manifest. If this
+  /// version of the manifest asked for more cycles before, warnings assume the larger number.
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest states it; each of its stages has one ask. The scale is empty if the
-/// manifest has no scales, the variant "base" if nothing is swept.
+/// A run as a manifest states it. Each of its stages has one membership. The name of the scale is
+/// empty if the manifest has no scales; the name of the variant is "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;
-  Parameters packing;  ///< parameters with which the packing settles
+  Parameters packing;  ///< parameters while the packing settles
 };
 
 struct Plan {
   Manifest manifest;
   std::string scale;
-  std::optional<PackingText> file = {};  ///< the grains of all packings
-  std::vector<PlannedRun> runs;          ///< variants in manifest order, and within each its seeds
-  std::vector<std::string> warnings;     ///< of what is unlikely to be meant; one line each
+  std::optional<PackingText> file = {};  ///< the file with which all packings begin
+  std::vector<PlannedRun> runs;          ///< by variant, then by seed, as the manifest lists them
+  std::vector<std::string> warnings;     ///< about probable mistakes; one line each
   std::string read = {};                 ///< what was read from the file of grains, in one line
 };
 
-/// Throws ManifestError when an option does not fit the manifest (unknown scale, no seeds, ...).
+/// Throws ManifestError if an option does not fit the manifest, such as an unknown scale.
 Plan expand(const Manifest& manifest, const ExpandOptions& options = {});
 
-/// One run of each variant in the form that figures expect, without seed and checkpoints.
+/// One run of each variant, with seed 1 and without checkpoints, for checks of plots and claims.
 std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
                                    std::span<const Variant> variants);
 

@@ -18,8 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-// This text must change if the meaning of a key changes, so that keys of different meanings never
-// collide.
+// If the meaning of a stage's key changes, this text must change too, so that keys with different
+// meanings never collide.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
 json as_json(const Field& field, std::string_view text) {
@@ -61,7 +61,7 @@ Stage new_stage(const StageInputs& stage) {
 
 void append_canonical(const json& value, std::string& text) {
   if (value.is_structured()) {
-    const bool object = value.is_object();  // a std::map, sorted by bytes
+    const bool object = value.is_object();  // a std::map, which sorts keys by bytes
     const char* separator = "";
     text += object ? '{' : '[';
     for (const auto& [key, item] : value.items()) {
@@ -86,12 +86,12 @@ UnreadableRecord damaged(std::string_view key, std::string_view problem) {
   return UnreadableRecord(fmt::format("record of a stage: {} {}", key, problem));
 }
 
-// A parameter that does not affect the stage keeps its default. One that affects it and is missing
-// from the record has the value at which it is omitted.
+// A parameter that does not affect the stage keeps its default. A parameter that affects the stage
+// and is missing from the record gets the value at which records omit it (omitted_at).
 void read_parameters(const json& values, StageInputs& record) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   Parameters& p = record.parameters;
-  for (const Field& field : schema()) {  // `protocol` before what depends on it
+  for (const Field& field : schema()) {  // `protocol` precedes parameters that depend on it
     const auto found = values.find(field.name);
     const Identity& identity = field.identity;
     if (found == values.end()) {
@@ -115,7 +115,7 @@ StartFile read_start(const json& start) {
   if (!settles.is_boolean()) throw damaged("settles", "is not true or false");
   file.settles = settles.get<bool>();
   if (unit.is_string()) file.unit = value_of<LengthUnit>(unit.get<std::string>());
-  return file;  // read_stage() finds other keys and values
+  return file;  // read_stage() reports unknown keys and values
 }
 
 }  // namespace
@@ -151,19 +151,21 @@ StageInputs read_stage(const json& resolved) {
   read_parameters(values, record);
   if (record.stage != StageKind::prepare &&
       stage_after_settling(record.parameters.protocol) != record.stage) {
-    throw damaged("protocol", "is not one that shears");  // this program never writes such a record
+    throw damaged("protocol",
+                  "is not a protocol that shears");  // this program never writes such a record
   }
   json own = record_of(record);
   for (const Field& field : schema()) {
     const auto found = values.find(field.name);
     if (field.identity.recorded_as.empty() || found == values.end()) continue;
-    own["parameters"][std::string(field.name)] = *found;  // older runs have other values
+    own["parameters"][std::string(field.name)] = *found;  // older records have other values
   }
   for (const json& change : json::diff(own, resolved)) {
     const std::string key = change.at("path").get<std::string>();
-    throw damaged(
-        key.substr(key.rfind('/') + 1, 64),
-        change.at("op") == "remove" ? "is missing" : "is unknown, or has no effect on such a run");
+    throw damaged(key.substr(key.rfind('/') + 1, 64),
+                  change.at("op") == "remove"
+                      ? "is missing"
+                      : "is unknown, or has no effect on a run of this kind");
   }
   return record;
 }

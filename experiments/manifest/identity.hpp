@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The id of a run: the SHA-256 of the values that decide its bits, and of nothing else.
+// The id of a run: the SHA-256 of all values that determine the bits of the run, and of no others.
 #pragma once
 
 #include <cstdint>
@@ -16,54 +16,56 @@ namespace shearcell {
 
 /// The file of grains that a packing begins with, instead of loose grains.
 struct StartFile {
-  std::string sha256;                   ///< of the text, which the store keeps
-  std::optional<LengthUnit> unit = {};  ///< of lengths, if the manifest states it
+  std::string sha256;                   ///< of the text of the file, which the store keeps
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest states one
   bool settles = false;                 ///< whether the grains settle further
 };
 
-/// A stage, as read from its `resolved` record. Lengths, and parameters that do not affect the
-/// stage, have their defaults; the protocol of a stiffening is `stiffen`.
+/// The inputs of a stage, as read from its record (Stage::resolved). Numbers of cycles, and
+/// parameters that do not affect the stage, have their defaults. A stiffening has protocol
+/// `stiffen`.
 struct StageInputs {
   StageKind stage = StageKind::prepare;
   std::string parent;
   std::uint64_t seed = 0;
   Parameters parameters;
-  std::optional<StartFile> file = {};  ///< of a packing
+  std::optional<StartFile> file = {};  ///< of a packing that begins with a file
 };
 
-/// The preparation: fill the cell, or place the grains of the file, and settle. The result has no
-/// asks; its id is the hash of `resolved`. Equal ids mean equal trajectories.
+/// The stage that fills the cell, or places the grains of the file, and settles. The result has no
+/// memberships; the id of the result is stage_key(resolved). Equal ids mean equal trajectories.
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
                     const std::optional<StartFile>& file = {});
 
-/// The shear or, by the protocol, the stiffening that begins with the last state of `parent`.
+/// The stage after `parent`: a stiffening if the protocol is `stiffen`, otherwise a shear.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
-/// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. A reader recomputes it to
-/// check a recorded run against its id.
+/// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. To check a recorded run,
+/// compute it again and compare it with the run's id.
 std::string stage_key(const nlohmann::json& resolved);
 
-/// The record of a stage is damaged, or another version of the program wrote it. The message names
-/// the key.
+/// Thrown if the record of a stage is damaged or was written by another version of the program. The
+/// message names the key.
 struct UnreadableRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The record is not trusted: throws UnreadableRecord when something is missing, unknown or out of
-/// range. Compare stage_key(resolved) with the run's id as well.
+/// Reads a record, which is not trusted. Throws UnreadableRecord if something is missing, unknown
+/// or out of range. Does not compare stage_key(resolved) with the run's id.
 StageInputs read_stage(const nlohmann::json& resolved);
 
-/// The parameters that affect the stage: the parameters that the record states, and the parameters
-/// that it omits because they have the value of all older runs. Constants of the record
+/// The parameters that affect the stage: the parameters in the record, and omitted parameters with
+/// the value at which records omit them (Identity::omitted_at). Constants of the record
 /// (Identity::recorded_as) are left out, since the run may have had other values. If the record is
-/// damaged, the result is the parameters that it states.
+/// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
-/// The engine that a record names, even if other parts of the record are damaged.
+/// The engine that a record states, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
-/// JSON without whitespace, keys sorted by their bytes, doubles as the shortest digits that read
-/// back to the same value: one text for one value. Throws std::invalid_argument on NaN or infinity.
+/// JSON without whitespace, with keys sorted by their bytes and the shortest digits that read back
+/// to the same double. Equal values give equal texts. Throws std::invalid_argument on NaN or
+/// infinity.
 std::string canonical_json(const nlohmann::json& json);
 
 }  // namespace shearcell

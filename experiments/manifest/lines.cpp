@@ -21,7 +21,7 @@ std::string text_of_line(std::string_view text, int line) {
   return printable(trimmed(text.substr(0, text.find('\n'))), longest);
 }
 
-// The scale of this name, or the top level of the manifest if there is none.
+// The scale of this name; the top level of the manifest if no scale has this name.
 const Scale& scale_of(const Manifest& manifest, std::string_view name) {
   const Scale* found = find_named(manifest.scales, name);
   return found == nullptr ? manifest.base : *found;

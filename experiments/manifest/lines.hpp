@@ -17,15 +17,15 @@ struct ManifestLine {
   std::string text;  ///< the line, without surrounding blanks, fit for a message
 };
 
-/// The lines of a run and its figure: experiment, scale, the value of each key in `swept`, cycles,
-/// seeds, `checkpoints`, `until`, the label of the variant, and the plots and claims of `figure`.
-/// Empty if this program cannot read the manifest.
+/// The lines that state a run and its figure: experiment, scale, the value of each key in `swept`,
+/// cycles, `settle`, seeds, `checkpoints`, `until`, the label of the variant, and the plots and
+/// claims of `figure`. Empty if this program cannot read the manifest.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 
-/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: {"cycles",
-/// "seed" or "engine": {"run": VALUE, "manifest": VALUE}}. The manifest's value of "seed" is its
-/// list of seeds. Null if nothing differs or the manifest cannot be read.
+/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: for each of
+/// "cycles", "seed" and "engine" that differs, {"run": VALUE, "manifest": VALUE}. The manifest's
+/// value of "seed" is a list. Null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask);
 
 }  // namespace shearcell

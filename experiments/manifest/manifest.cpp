@@ -26,7 +26,7 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   if (type == std::filesystem::file_type::not_found) refuse_file("there is no such file");
   if (error) refuse_file(fmt::format("cannot be read: {}", error.message()));
   if (type == std::filesystem::file_type::directory) {
-    refuse_file("is a directory", "Name a file in it.");
+    refuse_file("is a directory", "Name a file in this directory.");
   }
   // Reading a pipe or a device might never end.
   if (type != std::filesystem::file_type::regular) refuse_file("is not a regular file");
@@ -84,7 +84,7 @@ Manifest parse_manifest(std::string_view text, std::string_view file) {
 Manifest recorded_manifest(std::string_view text) try {
   return read_manifest(text, "manifest");
 } catch (const ManifestError&) {
-  return {};  // the text belongs to another version of the schema
+  return {};  // the text has keys that this version cannot read
 }
 
 std::string_view why_not_until(std::string_view measure) {
@@ -94,7 +94,7 @@ std::string_view why_not_until(std::string_view measure) {
     if (found->kind == MeasureKind::run) return "is a number of a whole run, which has not ended";
     if (found->kind == MeasureKind::curve) return "is a curve";
     if (found->kind == MeasureKind::grains) return "has a number for each grain";
-    if (by.from == ComputedFrom::simulation) return "takes a simulation";
+    if (by.from == ComputedFrom::simulation) return "needs a simulation";
     return by.cycles_back > 0 ? "compares the checkpoint with an earlier one" : "";
   }
   return "is not a measure";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest: one experiment as a YAML text. For any bytes, reading gives a Manifest, or throws a
-// ManifestError that names the place and the remedy of each problem.
+// A manifest is a YAML text that states one experiment. Reading any bytes returns a Manifest, or
+// throws ManifestError with the position and the remedy of each problem.
 #pragma once
 
 #include <compare>
@@ -31,7 +31,7 @@ struct ManifestLimits {
   static constexpr std::uint64_t runs = 10'000;  ///< of all scales together
 };
 
-/// Place in a text, counted from 1; line 0 means the whole file.
+/// Position in a text. Lines and columns count from 1; line 0 means the whole file.
 struct Position {
   int line = 0;
   int column = 0;
@@ -39,14 +39,14 @@ struct Position {
   auto operator<=>(const Position&) const = default;
 };
 
-/// One problem of a manifest: "file:line:column: key: problem (got VALUE). remedy". `key` is the
-/// path to the key, as in "scales.smoke.grains"; `got` the offending value as written; `remedy` a
-/// sentence. Each of these may be empty.
+/// The message about one problem: "file:line:column: key: problem (got VALUE). remedy". `key` is
+/// the path to the key, as in "scales.smoke.grains"; `got` is the value as written; `remedy` is a
+/// sentence. `key`, `got` and `remedy` may be empty.
 std::string problem_text(std::string_view file, Position at, const std::string& key,
                          const std::string& problem, const std::string& got,
                          const std::string& remedy);
 
-/// The problems of one manifest; what() has one per line.
+/// The problems of one manifest; what() has one line for each problem.
 struct ManifestError : UsageError {
   using UsageError::UsageError;
 };
@@ -56,7 +56,7 @@ class ProblemList {
  public:
   explicit ProblemList(std::string_view file) : file_(file) {}
 
-  /// Adds a problem_text(), unless it was added before: many variants may share one.
+  /// Adds a problem_text(), unless it was added before: many variants may have an equal problem.
   void add(Position at, const std::string& key, const std::string& problem, const std::string& got,
            const std::string& remedy);
 
@@ -76,7 +76,7 @@ class ProblemList {
                          const std::string& problem, const std::string& got,
                          const std::string& remedy);
 
-/// A checked value, or "auto" (resolve_auto), and where it was written.
+/// A checked value, or "auto" (see resolve_auto()), and its position in the text.
 struct Setting {
   nlohmann::json value;
   Position at;
@@ -89,14 +89,14 @@ struct SweepAxis {
   std::vector<Setting> values;
 };
 
-/// Variants: every combination of the `grid` axes (the first varies slowest), each with every row
-/// of the `zip` axes (which advance together).
+/// The variants are every combination of the `grid` axes (the first varies slowest), each with
+/// every row of the `zip` axes (whose values advance together).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1..n if a manifest states a count, else those that it lists.
+/// The seeds 1 to n if the manifest states a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
@@ -104,7 +104,7 @@ struct Seeds {
 };
 
 /// `until`: a run ends `extra_cycles` after the first checkpoint at which the measure is at least
-/// `value`. It is not part of a run's identity.
+/// `value`. The id of a run does not depend on `until`.
 struct Until {
   std::string measure = {};
   double value = 0;
@@ -113,29 +113,29 @@ struct Until {
   bool operator==(const Until&) const = default;
 };
 
-/// Why the measure cannot end a run; "" if it can. A measure that can is one number of a checkpoint
-/// that follows from this checkpoint alone, without a simulation.
+/// Why `until` cannot use the measure; "" if it can. The measure must be one number of a
+/// checkpoint, computed from this checkpoint alone and without a simulation.
 std::string_view why_not_until(std::string_view measure);
 
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);
 
-/// The inverse of to_json(). The JSON is not trusted: throws std::runtime_error.
+/// The inverse of to_json(). Throws std::runtime_error if the JSON, which is not trusted, is wrong.
 Until until_from_json(const nlohmann::json& json);
 
 /// "crystalline_percent >= 10 and 15 more cycles".
 std::string describe(const Until& until);
 
-/// The value of `until`, and where it was written; nothing for `until: none` in a scale.
+/// The value of `until` and its position in the text. `until: none` in a scale has no value.
 struct StatedUntil {
   std::optional<Until> until;
   Position at;
 };
 
-/// The value of `checkpoints`, and where it was written.
+/// The value of `checkpoints` and its position in the text.
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
-  std::vector<double> phases = {};  ///< of the cycle after a checkpoint; ascending, 0 < p < 1
+  std::vector<double> phases = {};  ///< parts of the cycle after a checkpoint, ascending, in (0, 1)
   Position at = {};
 };
 
@@ -146,21 +146,21 @@ struct VariantLabel {
   Position at;
 };
 
-/// A plot or claim, and where it was written.
+/// A plot or claim and its position in the text.
 template <class Spec>
 struct Placed : Spec {
   Position at;
 };
 
-/// `start`: the recorded run whose state a shear begins with, or a file of grains; default: loose
-/// grains that settle.
+/// `start`: a shear begins with a state of a recorded run, or a packing begins with the grains of a
+/// file. Default: loose grains settle.
 struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< "" for that of the shear
+  std::string scale = {};    ///< "" for the scale of the shear
   std::string variant = {};  ///< swept values; "" if the experiment has one variant
-  /// The beginning of the run's id in `checkpoint`, instead of experiment, scale and variant.
+  /// Beginning of the run's id in `checkpoint`, which replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -168,24 +168,22 @@ struct Start {
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }
 };
 
-/// A scale: an entry of `scales` completed from the top level of the manifest, or this top level
-/// itself.
+/// An entry of `scales`, completed with the keys of the top level; or the top level itself.
 struct Scale {
-  std::string name = {};  ///< "" for the manifest itself
+  std::string name = {};  ///< "" for the top level
   Position at = {};
   Settings settings = {};
-  Settings settle = {};  ///< parameters of the packing that differ from those of the shear
+  Settings settle = {};  ///< parameters that differ while the packing settles
   Position settle_at = {};
   Start start = {};
   Sweep sweep = {};
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
-  /// Ids, or in older manifests statements, of the claims that the runs of this scale are made to
-  /// decide.
+  /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
   std::vector<std::string> primary = {};
-  std::vector<std::uint64_t> looks =
-      {};                          ///< ascending numbers of seeds; empty: one look at the end
+  /// Numbers of seeds at which claims get verdicts, ascending. Empty: one look, at the end.
+  std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
 };
 
@@ -213,33 +211,32 @@ inline std::vector<Scale> scales_of(const Manifest& manifest) {
 inline constexpr std::size_t kLongestName = 64;
 
 /// Whether the text can name an experiment, its folder and its figures: 1 to kLongestName letters,
-/// digits, '-' and '_', the first not a '-'.
+/// digits, '-' and '_', not beginning with '-'.
 bool is_name(std::string_view text);
 
 /// Whether the text can be the id of a claim: names (is_name()) joined by dots, at most
 /// kLongestName bytes.
 bool is_claim_id(std::string_view text);
 
-/// The bytes of a file, at most the first `limit` + 1. Throws ManifestError.
+/// The bytes of a file, at most `limit` + 1 of them. Throws ManifestError.
 std::string read_text(const std::filesystem::path& path, std::size_t limit);
 
-/// Reads a file. Throws ManifestError.
+/// Reads a file and checks every variant at every scale. Throws ManifestError.
 Manifest load_manifest(const std::filesystem::path& path);
 
-/// Reads a text and checks every variant of every scale; `file` is its name in messages. Throws
+/// Reads a text and checks every variant at every scale. `file`: the name for messages. Throws
 /// ManifestError.
 Manifest parse_manifest(std::string_view text, std::string_view file);
 
 /// The table of the keys at the top level in experiments/REFERENCE.md.
 std::string manifest_markdown();
 
-/// Reads a text and checks keys, types and ranges, not the variants. In a `shipped` manifest plots
-/// and claims may have the names of figures of the supplement. Throws ManifestError with all
-/// problems.
+/// Reads a text and checks keys, types and ranges, but not the variants. If `shipped`, plots and
+/// claims may have the names of figures of the supplement. Throws ManifestError with all problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
-/// Reads the text of a manifest in a store. If this version of the program cannot read the text,
-/// the result is an empty manifest, without even a name.
+/// Reads the text of a manifest in a store. Returns an empty manifest, without even a name, if this
+/// version of the program cannot read the text.
 Manifest recorded_manifest(std::string_view text);
 
 }  // namespace shearcell

@@ -28,20 +28,21 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can hold. kWall is 0 or the first type for a grain, and larger for a wall grain.
+/// What a column can contain. kWall tells wall grains from grains: 0 or the first type is a grain,
+/// a larger value is a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
 
-/// The meaning of a column's name. A quantity is read from the columns whose meaning has the lowest
-/// rank.
+/// The meaning of a column's name. If several columns can give a quantity, the columns whose
+/// meaning has the lowest rank are read.
 struct Meaning {
   string_view names;        ///< in lower case; if count is 1, name k is the quantity `first` + k
-  int first = kQuantities;  ///< first quantity of the column; kQuantities: not known
+  int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
   enum { listed, second_best, probable } rank = listed;
-  std::optional<LengthUnit> unit = {};  ///< that the name states
+  std::optional<LengthUnit> unit = {};  ///< unit in the name
 };
 constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"xu yu zu", kX, 1, 1, Meaning::second_best},
@@ -53,34 +54,33 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"id", kId},
                                  {"wall_side", kWall}};
 
-// What the reader of a format finds. Texts are constants or parts of the file; a message finds the
-// line of such a part.
+// The structs below hold what is found in a file. Their texts are constants or parts of the file,
+// so that a message can give the line of a part.
 
 struct Column {
-  string_view name;             ///< "" if it has none
-  int count = 1;                ///< of values
-  string_view count_text = {};  ///< of extended XYZ
+  string_view name;             ///< "" for a column without a name
+  int count = 1;                ///< number of values
+  string_view count_text = {};  ///< the count as written in extended XYZ
 };
 
 struct GrainTable {
   string_view header = {};  ///< the line that names the columns
-  const char* remedy = "";  ///< if columns are missing
+  const char* remedy = "";  ///< of the message about missing columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< what further values of a row are; null: there must be none
-  char separator = ' ';        ///< a blank: any number of blanks and tabs
-  double first_wall = 1;       ///< smallest value of kWall for a wall grain
+  const char* more = nullptr;  ///< name of further values in a row; null: none allowed
+  char separator = ' ';        ///< ' ' means any number of blanks and tabs
+  double first_wall = 1;       ///< smallest kWall of a wall grain
   std::vector<string_view> rows = {};
 };
 
 struct Box {
-  string_view line;            ///< the last one that states a part of it
+  string_view line;            ///< last line that states a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes that are not stated
-  double lean = 0;             ///< largest component of an edge off its axis
-  /// Axes along which LAMMPS shrinks the box to the grains; a dump has the box of an earlier step.
+  double lean = 0;             ///< largest component of an edge along another axis
+  /// Axes along which LAMMPS fits the box to the grains. In a dump this box is of an earlier step.
   std::array<bool, 3> follows{};
 };
 
-/// A field of each row that is read.
 struct Use {
   int quantity;
   std::size_t field;
@@ -101,16 +101,15 @@ string_view unquoted(string_view text) {
   return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
-/// The end of the first field of the text. Separators between quotes at its beginning do not count.
+/// The end of the first field. If the field begins with a quote, separators in quotes do not count.
 std::size_t field_end(string_view text, string_view separators) {
   std::size_t from = std::min(text.find_first_not_of(' '), text.size());
-  while (from < text.size() && text[from] == '"') {  // "" is a quote
+  while (from < text.size() && text[from] == '"') {  // "" in quotes is one quote
     from = std::min(text.find('"', from + 1), text.size() - 1) + 1;
   }
   return text.find_first_of(separators, from);
 }
 
-/// The trimmed fields of a line.
 std::vector<string_view> split(string_view text, char separator) {
   const bool blank = separator == ' ';
   std::vector<string_view> fields;
@@ -124,10 +123,10 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
-/// `units`: whether listed names may end in a unit, as x_m. A name that is not listed may mean a
-/// diameter, which is then compared with the diameter of the run, or a velocity, which is then
-/// refused. It must be refused: earlier versions ignored such velocities, and the id of a packing
-/// must keep its state.
+/// `units`: whether listed names may end in a unit, as in x_m. Other names may mean a diameter,
+/// which is then compared with the diameter of the run, or a velocity, which is then refused.
+/// Reading such velocities would change the state behind an existing id of a packing, since earlier
+/// versions ignored them.
 Meaning meaning_of(string_view column, bool units) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
@@ -140,7 +139,7 @@ Meaning meaning_of(string_view column, bool units) {
       "((v|mom|speed)[xyz0-9]?|p[xyz]|vel.*|[xyz](v|vel|dot)|.*(veloc|momenta|momentum).*)");
   const string name = lower(column);
   std::smatch found;
-  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // it uses the stack
+  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // regex uses the stack
   string stem = found[2];
   const auto unit = value_of<LengthUnit>(found.str(4));
   const bool may_be_listed = found.length(1) == 0 && (found.length(3) == 0 || (units && unit));
@@ -189,17 +188,17 @@ class PackingReader {
     } else if (file_.ends_with(".csv") || names_a_column(first)) {
       read_csv();
     } else {
-      refuse_file("is none of the formats that can be read", kFormats);
+      refuse_file("is not in a format that can be read", kFormats);
     }
     return packing();
   }
 
  private:
   static constexpr const char* kFormats =
-      "It takes extended XYZ (its first line is the number of grains), LAMMPS data (\"500 atoms\" "
-      "in its header), a LAMMPS dump, or CSV whose first line names the columns, as x_m,y_m,z_m.";
+      "Use extended XYZ (its first line is the number of grains), LAMMPS data (with \"500 atoms\" "
+      "in its header), a LAMMPS dump, or CSV whose first line names the columns, such as "
+      "x_m,y_m,z_m.";
 
-  /// The place of a part of the text.
   Position place(string_view part) const {
     const string_view before =
         text_.substr(0, static_cast<std::size_t>(part.data() - text_.data()));
@@ -211,7 +210,7 @@ class PackingReader {
   [[noreturn]] void refuse_file(const string& problem, const string& remedy) const {
     refuse(file_, {}, "", problem, "", remedy);
   }
-  /// Refuses the file because of the line that `in` belongs to.
+  /// Refuses the file because of the line that contains `in`.
   [[noreturn]] void refuse_line(string_view in, const string& problem, const string& remedy) const {
     refuse(file_, {place(in).line, 1}, "", problem, "", remedy);
   }
@@ -233,21 +232,21 @@ class PackingReader {
     if (!next_line()) refuse_line(line_, "the file ends after this line", "It lacks " + of + ".");
   }
 
-  /// A finite number; `name` is for the message.
   double number(string_view part, const char* name) const {
     const bool sign = part.size() > 1 && part.front() == '+' && part[1] != '-';
     const auto value = read_number<double>(part.substr(sign ? 1 : 0));
     if (value && std::fabs(*value) <= kLargest) return *value;
     if (value) {
-      refuse_part(part, name, "is not finite, or beyond 1e100",
-                  "Remove this grain, or correct its value.");
+      refuse_part(part, name, "is not finite, or larger than 1e100",
+                  "Remove this grain, or correct the value.");
     }
     if (part.find(',') != part.npos && part.find_first_not_of("+-0123456789,eE") == part.npos) {
       string point(part);
       std::ranges::replace(point, ',', '.');
-      refuse_part(part, name, "is not a number", "A number takes a decimal point: " + point + ".");
+      refuse_part(part, name, "is not a number", "Write a decimal point: " + point + ".");
     }
-    refuse_part(part, name, "is not a number", "Write it in decimal digits, as 1.5e-3.");
+    refuse_part(part, name, "is not a number",
+                "Write the number in decimal digits, such as 1.5e-3.");
   }
 
   Eigen::VectorXd numbers(std::span<const string_view> words, const char* name) const {
@@ -256,8 +255,8 @@ class PackingReader {
     return all;
   }
 
-  /// Reads the rest of the file, which holds the grains. `count` is their number if a line states
-  /// it.
+  /// Reads the rest of the file, one grain in each line. `count`: the number of grains, if the line
+  /// of `stated_in` states it.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -271,9 +270,10 @@ class PackingReader {
                               *count, at),
                   "Write the whole file, or correct the number.");
     }
-    refuse_line(grains_.rows[*count],
-                fmt::format("the file goes on after the {} grains that line {} states", *count, at),
-                "Keep one frame, or correct the number.");
+    refuse_line(
+        grains_.rows[*count],
+        fmt::format("the file continues after the {} grains that line {} states", *count, at),
+        "Keep one frame, or correct the number.");
   }
 
   Box& box() {
@@ -295,7 +295,7 @@ class PackingReader {
     return columns;
   }
 
-  /// Adds a name to not_read_, unless there are very many.
+  /// Adds a name to not_read_, which has at most 100 names.
   void leave(string_view name) {
     constexpr std::size_t most = 100;
     if (name.empty() || not_read_.size() == most) return;
@@ -331,7 +331,7 @@ class PackingReader {
     const string_view counted_in = line_;
     require_line("the comment and the grains");
     grains_ = {.header = line_,
-               .remedy = "Properties holds pos:R:3, and vel:R:3 if there are velocities.",
+               .remedy = "Properties must contain pos:R:3, and vel:R:3 if there are velocities.",
                .columns = columns_of("species x y z"),
                .more = "further columns"};
     static constexpr string_view keys[] = {"Lattice", "Origin", "Properties", "length_unit",
@@ -348,10 +348,10 @@ class PackingReader {
       }
       const bool blanks = value.data() != key.data() + key.size() + 1;
       if (std::ranges::count(keys, key) == 0 || (blanks && !key.ends_with("unit"))) {
-        refuse_part(key, "", "is not read as it is written",
-                    fmt::format("The keys are {}, without blanks around `=`: write one of these, "
-                                "or remove it.",
-                                fmt::join(keys, ", ")));
+        refuse_part(
+            key, "", "cannot be read in this form",
+            fmt::format("Use one of the keys {}, without blanks around `=`, or remove this key.",
+                        fmt::join(keys, ", ")));
       }
       const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
       if (!values.emplace(key, quoted ? value.substr(1, value.size() - 2) : value).second) {
@@ -387,7 +387,8 @@ class PackingReader {
     const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
       refuse_line(line_, "Lattice or Origin is not complete",
-                  "Lattice needs 9 numbers, the edges of the box; Origin needs 3, its corner.");
+                  "Lattice needs 9 numbers, the edges of the box. Origin needs 3 numbers, its "
+                  "lower corner.");
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
@@ -398,7 +399,7 @@ class PackingReader {
     box_->planes = {low, low + size};
   }
 
-  /// Whether one of the first lines is such as "500 atoms".
+  /// Whether one of the first lines states a number of atoms, as in "500 atoms".
   bool states_atoms() const {
     static const std::regex count("[0-9][ \\t]+atoms");
     return std::regex_search(string(rest_.substr(0, 2000)), count);
@@ -436,12 +437,12 @@ class PackingReader {
     }
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
-                  fmt::format("states {} atoms, and there are {}", count, grains_.rows.size()),
+                  fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
                   "Write the whole file, or correct the number.");
     }
   }
 
-  /// Reads the units from the title; in an export of this program also the planes of the cell.
+  /// Reads the units from the title and, in an export of this program, the planes of the cell.
   /// Returns whether the file is such an export.
   bool read_title() {
     static const std::regex unit(
@@ -462,7 +463,7 @@ class PackingReader {
 
   void read_bounds(const std::vector<string_view>& words) {
     if (words.back().ends_with("vec")) {
-      refuse_part(words.back(), "", "states an edge of the box, which is not read",
+      refuse_part(words.back(), "", "states the box by its edges, which cannot be read",
                   "Write the box as xlo xhi, ylo yhi and zlo zhi.");
     }
     if (words.size() == 6 && words[3] == "xy") {
@@ -474,25 +475,25 @@ class PackingReader {
     set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
-  /// Takes the columns from the style that LAMMPS writes after "Atoms #". If there is none, the
-  /// number of fields decides.
+  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file states no
+  /// style, the number of fields decides.
   void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
     if (style.empty()) style = five ? "atomic" : seven ? "sphere" : style;
-    if (style == "hybrid" && seven) style = "hybrid sphere";  // write_data names no substyles
+    if (style == "hybrid" && seven) style = "hybrid sphere";  // write_data omits substyles
     const char* columns = style == "atomic"                    ? "id type x y z"
                           : style == "sphere"                  ? "id type diameter density x y z"
                           : style.starts_with("hybrid sphere") ? "id type x y z diameter density"
                                                                : nullptr;
     if (columns == nullptr) {
       refuse_line(line_,
-                  style.empty() ? fmt::format("an atom of {} fields is not read", fields)
-                                : fmt::format("the atom style {} is not read", printable(style)),
+                  style.empty() ? fmt::format("atoms with {} fields cannot be read", fields)
+                                : fmt::format("the atom style {} cannot be read", printable(style)),
                   "Write the data file with atom_style sphere or atomic.");
     }
     grains_.columns = columns_of(columns);
     grains_.more = "image flags";
-    if (ours) grains_.columns[1].name = "wall_side";  // of a wall's grain more than 1
+    if (ours) grains_.columns[1].name = "wall_side";  // more than 1 for wall grains
     grains_.first_wall = 2;
   }
 
@@ -504,7 +505,7 @@ class PackingReader {
       if (item.starts_with("ITEM: ATOMS")) {
         if (!count) refuse_line(line_, "the number of atoms is missing", "Write the whole dump.");
         grains_ = {.header = line_,
-                   .remedy = "Write them: dump ... custom ... id x y z vx vy vz.",
+                   .remedy = "Write these columns: dump ... custom ... id x y z vx vy vz.",
                    .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
         return read_rows(count, stated_in);
       }
@@ -520,7 +521,7 @@ class PackingReader {
     refuse_line(line_, "the dump ends before its atoms", "Write the whole dump.");
   }
 
-  /// Reads the three lines of the box, of which the present line is the first.
+  /// Reads the three lines of the box; the first of them is in line_.
   void read_dump_box(string_view item) {
     const bool leans = item.find("xy") != item.npos;
     const std::vector<string_view> words_of_item = split(item, ' ');
@@ -544,7 +545,7 @@ class PackingReader {
     return at == header.npos ? ',' : header[at];
   }
 
-  /// The line without the # and blanks that numpy writes before it.
+  /// The line without the # and the blanks that numpy writes at the beginning.
   static string_view header_of(string_view line) {
     return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
   }
@@ -560,35 +561,35 @@ class PackingReader {
     next_line();
     const string_view header = header_of(line_);
     grains_ = {.header = line_,
-               .remedy = "The first line names the columns, as x_m,y_m,z_m.",
+               .remedy = "The first line must name the columns, such as x_m,y_m,z_m.",
                .columns = columns_of(header, separator_of(header)),
                .separator = separator_of(header)};
     units_in_names_ = true;
     read_rows();
   }
 
-  /// Takes the unit of lengths from the value of a key. The value "lj" leaves the unit open.
+  /// Sets the unit of lengths from the value of a key. The value "lj" leaves the unit open.
   void take_unit(const char* key, string_view text) {
     const string unit = lower(text);
     if (unit == "lj") return;
     if (unit != "m" && unit != "si" && unit != "d") {
-      refuse_part(text, key, "is not read",
+      refuse_part(text, key, "cannot be read",
                   key == string_view("units")
-                      ? "Lengths are in m (units si) or as the manifest states (units lj)."
-                      : "It takes m or d.");
+                      ? "Lengths must be in m (units si) or in the unit of the manifest (units lj)."
+                      : "Write m or d.");
     }
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// Sets the unit of lengths; `in` is a part of the line that states it.
+  /// Sets the unit of lengths. `in`: a part of the line that states the unit.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {
       refuse_line(
           in, fmt::format("states lengths in {}", name_of(unit)),
-          unit_ ? fmt::format("The file also gives lengths in {}: write all lengths in one unit.",
+          unit_ ? fmt::format("The file also has lengths in {}. Write all lengths in one unit.",
                               name_of(*other))
-                : fmt::format("The manifest says `unit: {}`: remove that key.", name_of(*other)));
+                : fmt::format("The manifest states `unit: {}`. Remove that key.", name_of(*other)));
     }
     unit_ = unit;
   }
@@ -598,31 +599,31 @@ class PackingReader {
     const auto missing = (box_->planes.max().array() < -kLargest).count();
     if (missing == 3 && box_->lean == 0) return box_.reset();
     if (missing > 0) {
-      refuse_line(box_->line, "the box is not complete", "It takes xlo xhi, ylo yhi and zlo zhi.");
+      refuse_line(box_->line, "the box is not complete", "Write xlo xhi, ylo yhi and zlo zhi.");
     }
     const Eigen::Vector3d size = box_->planes.sizes();
     if (box_->lean > 1e-9 * size.cwiseAbs().maxCoeff()) {
-      refuse_line(box_->line,
-                  fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
-                  "A start is upright. Of a sheared cell, write the state at the end of a cycle.");
+      refuse_line(
+          box_->line, fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
+          "The box must be upright. Write the state of a sheared cell at the end of a cycle.");
     }
     for (const int k : {0, 1, 2}) {
       if (size[k] > 0) continue;
       refuse_line(box_->line,
                   fmt::format("the box is {:.6g} long in {}", size[k], kNamesInMessages[k]),
-                  "Its edges are positive.");
+                  "The edges must be positive.");
     }
   }
 
-  /// Decides which columns are read. Other columns are named in not_read_.
+  /// Decides which columns are read. The names of other columns go to not_read_.
   std::vector<Use> interpret(const GrainTable& table) {
     constexpr std::size_t most = 1000;
     if (table.columns.size() > most) {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
-                  fmt::format("At most {} are read: leave out some.", most));
+                  fmt::format("At most {} columns can be read. Leave out some columns.", most));
     }
     std::vector<Use> uses;
-    std::optional<std::optional<LengthUnit>> unit;  // of the columns before
+    std::optional<std::optional<LengthUnit>> unit;  // of the earlier columns
     std::vector<bool> used(table.columns.size());
     for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
       std::size_t field = 0;
@@ -637,8 +638,8 @@ class PackingReader {
         use(meaning, column, at, uses);
         if (meaning.first > kDiameter) continue;  // not a length
         if (unit && meaning.unit != *unit) {
-          refuse_part(column.name, "", "is in another unit than the columns before",
-                      "Write all lengths in _m or all in _d.");
+          refuse_part(column.name, "", "is in another unit than the earlier columns",
+                      "Write all lengths in m (x_m) or all in d (x_d).");
         }
         unit = meaning.unit;
       }
@@ -653,24 +654,25 @@ class PackingReader {
 
   void use(const Meaning& meaning, const Column& column, std::size_t at, std::vector<Use>& uses) {
     if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
-      refuse_part(column.name, "", "is not read under this name",
-                  "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), "
-                  "velocities in the unit of the lengths per second, or remove this one.");
+      refuse_part(column.name, "", "cannot be read under this name",
+                  "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or "
+                  "remove this column. Velocities are in the unit of the lengths per second.");
     }
     if (meaning.count != column.count) {
-      refuse_part(column.count_text, "Properties",
-                  fmt::format("is not the number of columns of {}", printable(lower(column.name))),
-                  fmt::format("It takes {}.", meaning.count));
+      refuse_part(
+          column.count_text, "Properties",
+          fmt::format("is not the right number of columns for {}", printable(lower(column.name))),
+          fmt::format("Write {}.", meaning.count));
     }
     for (int k = 0; k < meaning.count; ++k) {
       if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
-        refuse_part(column.name, "", "names a column that occurs twice", "Keep one of them.");
+        refuse_part(column.name, "", "is a column that occurs twice", "Keep one of them.");
       }
       uses.push_back({meaning.first + k, at + static_cast<std::size_t>(k), meaning.factor});
     }
     if (meaning.rank != Meaning::probable) return;
     about_diameter_ =
-        fmt::format(" The column {} is read as {}: if it is not, rename or remove it.",
+        fmt::format(" The column {} is read as {}. If this is wrong, rename or remove the column.",
                     printable(column.name), meaning.factor > 1 ? "radii" : "diameters");
   }
 
@@ -683,7 +685,7 @@ class PackingReader {
     }
   }
 
-  /// The rows of a table, without wall grains.
+  /// Reads the rows of a table; wall grains are counted, not returned.
   std::vector<GrainRow> rows_of(const GrainTable& table, const std::vector<Use>& uses) {
     std::size_t columns = 0;
     for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
@@ -694,7 +696,7 @@ class PackingReader {
       if (fields.size() < columns || (more && table.more == nullptr)) {
         refuse_line(line, fmt::format("has {} fields instead of {}", fields.size(), columns),
                     table.separator == ',' && more
-                        ? "Numbers take a decimal point, not a comma."
+                        ? "Write numbers with a decimal point, not a comma."
                         : "Each grain is one line with a value for each column.");
       }
       if (more) leave(table.more);
@@ -716,13 +718,13 @@ class PackingReader {
     return rows;
   }
 
-  /// Gives each grain its velocity from the table of velocities, by id.
+  /// Sets the velocity of each grain to the velocity with the same id in the table of velocities.
   void join_velocities() {
     std::map<double, GrainRow*> waiting;
     for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
     for (const GrainRow& row : rows_of(moving_, interpret(moving_))) {
       const auto found = waiting.extract(row.value[kId]);
-      if (!found && wall_grains_ > 0) continue;  // of a wall grain
+      if (!found && wall_grains_ > 0) continue;  // a velocity of a wall grain
       if (!found) {
         refuse_line(row.line,
                     fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
@@ -733,7 +735,7 @@ class PackingReader {
     if (waiting.empty()) return;
     refuse_line(moving_.rows.back(),
                 fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
-                "Write a velocity for each atom, each once, or leave the section out.");
+                "Write one velocity for each atom, or leave out the section Velocities.");
   }
 
   void require_equal_diameters() const {
@@ -746,16 +748,17 @@ class PackingReader {
                   "It must be positive." + about_diameter_);
     }
     if (large <= small * (1 + kTolerance)) return;
-    refuse_line(most->line,
-                fmt::format("the grains have diameters from {:.6g} (line {}) to {:.6g}, {:.2g} % "
-                            "larger",
-                            small, line_of(*least), large, 100 * (large / small - 1)),
-                "All grains of this program are equal. Continue such a packing in LAMMPS "
-                "(`shearcell export --to lammps` writes a script for it)." +
-                    about_diameter_);
+    refuse_line(
+        most->line,
+        fmt::format(
+            "the grains have diameters from {:.6g} (line {}) to {:.6g}, which is {:.2g} % larger",
+            small, line_of(*least), large, 100 * (large / small - 1)),
+        "This program needs equal grains. Continue this packing in LAMMPS (`shearcell export --to "
+        "lammps` writes a script for LAMMPS)." +
+            about_diameter_);
   }
 
-  /// The factor from the unit of the file to diameters.
+  /// The factor that converts lengths of the file to grain diameters.
   double scale() {
     const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
     if (!unit) {
@@ -770,10 +773,10 @@ class PackingReader {
     if (fits || !holds(uses_, kDiameter)) return 1 / expected;
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
-            ? fmt::format("It would be right in {}: is the unit right?", in_m ? "d" : "m")
-        : in_m
-            ? fmt::format("The run's is {:.6g} m: set `diameter_m`, or scale the file.", expected)
-            : "Lengths in d are divided by the diameter, so it is 1.";
+            ? fmt::format("It would be right in {}. Is the unit right?", in_m ? "d" : "m")
+        : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
+                             expected)
+               : "Lengths in d are divided by the diameter, so the diameter must be 1.";
     refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),
                 remedy + about_diameter_);
   }
@@ -784,10 +787,9 @@ class PackingReader {
     const auto same =
         std::ranges::adjacent_find(rows_, {}, [](const GrainRow& row) { return row.value[kId]; });
     if (same == rows_.end()) return;
-    refuse_line(
-        std::next(same)->line,
-        fmt::format("the id {:.17g} is that of line {}, too", same->value[kId], line_of(*same)),
-        "Each grain has an id of its own.");
+    refuse_line(std::next(same)->line,
+                fmt::format("the id {:.17g} is also in line {}", same->value[kId], line_of(*same)),
+                "Give each grain a different id.");
   }
 
   Eigen::Matrix3Xd columns(Quantity first, double scale) const {
@@ -801,11 +803,11 @@ class PackingReader {
 
   PackingFile packing() {
     interpret_box();
-    std::vector<string> aside = std::exchange(not_read_, {});  // named after the columns
+    std::vector<string> aside = std::exchange(not_read_, {});  // listed after the columns
     uses_ = interpret(grains_);
     require_columns();
     rows_ = rows_of(grains_, uses_);
-    if (rows_.empty()) refuse_line(line_, "the file holds no grains", kFormats);
+    if (rows_.empty()) refuse_line(line_, "the file has no grains", kFormats);
     if (!moving_.rows.empty()) join_velocities();
     for (const string& name : aside) leave(name);
     if (wall_grains_ > 0) leave(counted(wall_grains_, "wall grain"));
@@ -831,22 +833,22 @@ class PackingReader {
     }
     const double longest = space.sizes().maxCoeff();
     if (longest > kLongestCell) {
-      refuse_file(fmt::format("the packing is {:.3g} d long", longest),
-                  fmt::format("At most {:g} d: is the unit of its lengths right?", kLongestCell));
+      refuse_file(
+          fmt::format("the packing is {:.3g} d long", longest),
+          fmt::format("At most {:g} d are allowed. Is the unit of lengths right?", kLongestCell));
     }
     if (box_) require_inside(space, packing.position);
     check_overlaps(space, packing.position);
     return packing;
   }
 
-  /// Refuses grains that are outside of the box in x or y. Wraps z, which is periodic, into the
-  /// box.
+  /// Refuses grains that are outside of the box in x or y. Wraps the periodic z into the box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
     if (depth < kShallowestCell) {
-      refuse_line(
-          box_->line, fmt::format("the box is {:.3g} d deep in z", depth),
-          fmt::format("At least {:g} d: is the unit of its lengths right?", kShallowestCell));
+      refuse_line(box_->line, fmt::format("the box is {:.3g} d deep in z", depth),
+                  fmt::format("At least {:g} d are needed. Is the unit of lengths right?",
+                              kShallowestCell));
     }
     for (Eigen::Index i = 0; i < position.cols(); ++i) {
       const auto& row = rows_[static_cast<std::size_t>(i)];
@@ -855,11 +857,11 @@ class PackingReader {
         if (at >= box.min()[k] - further && at <= box.max()[k] + further) continue;
         refuse_line(
             row.line,
-            fmt::format("the grain is outside of the box: {} = {:.6g} d is not from {:.6g} to "
-                        "{:.6g} d",
-                        kNamesInMessages[k], at, box.min()[k], box.max()[k]),
-            "Only z is periodic, x and y have walls: write a box that holds all grains (in "
-            "extended XYZ, Origin is its lower corner, without it 0 0 0).");
+            fmt::format(
+                "the grain is outside of the box: {} = {:.6g} d is not between {:.6g} and {:.6g} d",
+                kNamesInMessages[k], at, box.min()[k], box.max()[k]),
+            "Only z is periodic; x and y have walls. Write a box that contains all grains. In "
+            "extended XYZ, Origin is the lower corner of the box (default 0 0 0).");
       }
       double& z = position(2, i);
       if (z < box.min().z() || z >= box.max().z()) {
@@ -868,13 +870,14 @@ class PackingReader {
     }
   }
 
-  /// Refuses the first pair that overlaps too much, so that many grains at one place take no time.
+  /// Refuses the file at the first pair that overlaps too much, because a search for all such pairs
+  /// could be slow.
   void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
     const Eigen::Vector3d size = space.sizes();
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images without a box
+    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images if no box
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
@@ -885,36 +888,35 @@ class PackingReader {
                     if (first->line.data() > second->line.data()) std::swap(first, second);
                     refuse_line(
                         second->line,
-                        overlap == 1 ? fmt::format("the grain is at the place of that of line {}",
-                                                   line_of(*first))
-                                     : fmt::format("the grain overlaps that of line {} by {:.3g} d",
-                                                   line_of(*first), overlap),
-                        fmt::format("At most {:g} d (`max_overlap_diameters`): are the unit of "
-                                    "the lengths and the diameter right? If so, let the grains "
-                                    "relax in the program that made them.",
+                        overlap == 1
+                            ? fmt::format("the grain is at the position of the grain in line {}",
+                                          line_of(*first))
+                            : fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
+                                          line_of(*first), overlap),
+                        fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
+                                    "unit of the lengths and the diameter right? If so, let the "
+                                    "grains relax in the program that made the file.",
                                     facts_.largest_overlap));
                   });
   }
 
-  static constexpr double kLargest = 1e100;   // so that products of two are finite
+  static constexpr double kLargest = 1e100;   // products of two values are finite
   static constexpr double kTolerance = 1e-5;  // relative; files may have six digits
 
   string_view text_;
   string_view file_;
   PackingFacts facts_;
-  string_view rest_;  ///< after the present line
+  string_view rest_;  ///< the text after line_
   string_view line_;
 
-  // What the reader of the format found.
   std::optional<Box> box_;
   GrainTable grains_, moving_;
-  bool units_in_names_ = false;  ///< of columns
+  bool units_in_names_ = false;  ///< whether names of columns state units
   std::vector<string> not_read_;
 
-  // What is read of it.
   std::optional<LengthUnit> unit_;
   std::vector<Use> uses_;
-  string about_diameter_;  ///< for the end of a remedy
+  string about_diameter_;  ///< appended to remedies about diameters
   std::vector<GrainRow> rows_;
   std::size_t wall_grains_ = 0;
 };

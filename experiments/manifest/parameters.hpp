@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of one run in SI units: every key of a manifest's `base` with its type and
-// default. The schema (schema.hpp) states meanings and ranges.
+// The parameters of one run in SI units: every key of a manifest's `base`, with type and default.
+// Their meanings and ranges are in the schema (schema.hpp).
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 
 namespace shearcell {
 
-/// A link in a run's chain.
+/// The kind of a stage.
 enum class StageKind : std::uint8_t { prepare, shear, stiffen };
 
 template <>
 inline constexpr auto kNames<StageKind> = names_in_order<StageKind>("prepare", "shear", "stiffen");
 
-/// Treatment of the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
+/// What is done to the settled packing: shear without or with pauses (B.5), or stiffening (B.2).
 enum class ProtocolKind : std::uint8_t { continuous, paused, stiffen };
 template <>
 inline constexpr auto kNames<ProtocolKind> = names_in_order<ProtocolKind>("continuous", "paused",
                                                                           "stiffen");
 
-/// What computes a shear: this program, or LAMMPS.
+/// The program that computes a shear: this program, or LAMMPS.
 enum class EngineKind : std::uint8_t { shearcell, lammps };
 template <>
 inline constexpr auto kNames<EngineKind> = names_in_order<EngineKind>("shearcell", "lammps");
 
-/// The stage that a protocol adds to the settled packing.
+/// The kind of stage that follows the settling under this protocol.
 constexpr StageKind stage_after_settling(ProtocolKind protocol) {
   return protocol == ProtocolKind::stiffen ? StageKind::stiffen : StageKind::shear;
 }
@@ -63,7 +63,7 @@ struct Parameters {
   double settle_kinetic_tolerance = 1e-8;
   double settle_time_limit_s = 60;
 
-  /// A run whose largest overlap exceeds this stops as failed, in any stage.
+  /// In every stage, a run fails and stops if its largest overlap exceeds this value.
   double max_overlap_diameters = 0.25;
 
   // Shear.
@@ -75,7 +75,7 @@ struct Parameters {
   PauseWalls pause_walls = PauseWalls::held;
   EngineKind engine = EngineKind::shearcell;
 
-  // A shear that begins with a recorded state: which one, and the noise on its positions.
+  // Recorded state with which the shear begins (`start`), and the noise on its positions.
   std::uint64_t start_seed = 0;
   std::uint64_t start_cycle = 0;
   double start_noise_d = 0;
@@ -84,7 +84,7 @@ struct Parameters {
   std::uint64_t stiffness_steps_per_decade = 4;
   double minimize_force_tolerance = 1e-4;
 
-  // Lengths. A longer run is the same run, extended.
+  // Lengths, which do not enter the id of a run: a longer run extends a shorter run.
   std::uint64_t cycles = 200;
   std::uint64_t stiffness_decades = 2;
 

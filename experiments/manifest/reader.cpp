@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a manifest. fields() describes the keys of each struct once: Reader reads and checks the
-// keys, and keys_markdown() documents them.
+// Reads a manifest. fields() lists the keys of each struct. With this list, Reader reads and checks
+// the keys, and keys_markdown() documents them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -57,7 +57,6 @@ Names joined(Names names, const More&... more) {
   return names;
 }
 
-// The parameters whose values distinguish runs.
 Names parameters() {
   return names_of(schema() | std::views::filter([](const Field& field) {
                     return field.identity.distinguishes_runs();
@@ -80,7 +79,6 @@ void fields(Checkpoints& checkpoints, const auto& visit) {
         {.name = "phases", .range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
 }
 
-// A measure as a key of `until`.
 Field field_of_until(const Measure& one) {
   const bool counts = one.kind == MeasureKind::count;
   Field field{.name = one.name, .unit = one.unit, .whole = counts};
@@ -103,13 +101,13 @@ void fields(Sweep& sweep, const auto& visit) {
 }
 
 void fields(Start& start, const auto& visit) {
-  visit(start.experiment, {.name = "experiment", .doc = "whose recorded run it is"});
+  visit(start.experiment, {.name = "experiment", .doc = "experiment of the recorded run"});
   visit(start.scale,
-        {.name = "scale", .doc = "of that experiment; default: the scale of the shear"});
+        {.name = "scale", .doc = "scale of the recorded run; default: the scale of this run"});
   visit(start.variant,
         {.name = "variant",
-         .doc = "swept values that single out a variant of that experiment; default: this "
-                "variant's values of the keys that both sweep",
+         .doc = "swept values that select a variant of the recorded experiment; default: the "
+                "values of this run for the keys that both experiments sweep",
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
   visit(start.run, {.name = "checkpoint",
@@ -122,9 +120,8 @@ void fields(Start& start, const auto& visit) {
   visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
   visit(start.file,
         {.name = "file",
-         .doc = "instead of a recorded run: a file of grains; its path is relative to "
-                "the manifest. The grains settle further if `settle` is stated, even as "
-                "`{}`",
+         .doc = "instead of a recorded run: a file of grains. The path is relative to the folder "
+                "of the manifest. The grains settle further if `settle` is stated, even as `{}`",
          .example = "packing.extxyz",
          .longest = kLongestPath});
   visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file states none"});
@@ -133,51 +130,49 @@ void fields(Start& start, const auto& visit) {
 void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
-         .doc = "parameters that vary, with lists or ranges of values: `grid` takes every "
-                "combination, keys of `zip` advance together",
+         .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
+                "of its keys; values of the keys of `zip` advance together",
          .example = "{grid: {fluid: [still, cell]}}"});
-  visit(scale.settle,
-        {.name = "settle",
-         .doc = "parameters of the packing that differ from those of the shear: what acts on the "
-                "grains and on the moving wall. Variants of the shear alone then share a packing",
-         .example = "{drag_kg_per_s: 1.28e-3}"});
+  visit(scale.settle, {.name = "settle",
+                       .doc = "parameters that have other values while the packing settles. They "
+                              "must act on the grains or on the moving wall. Variants that differ "
+                              "only in the shear then share a packing",
+                       .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "instead of loose grains that settle: the state of a recorded run, with other "
+         .doc = "instead of loose grains that settle: the state of a recorded run, with different "
                 "noise for each seed, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
-  visit(scale.seeds,
-        {.name = "seeds",
-         .doc = "6 stands for the seeds 1 to 6, `2001-2040` and `[1-6, 9]` for other seeds; "
-                "default 1",
-         .example = "6"});
+  visit(
+      scale.seeds,
+      {.name = "seeds",
+       .doc = "`6` means the seeds 1 to 6. `2001-2040` and `[1-6, 9]` state other seeds. Default 1",
+       .example = "6"});
   visit(scale.checkpoints,
         {.name = "checkpoints",
-         .doc = "cycles between checkpoints, default 1, and always one after the last cycle; "
-                "`phases` adds fractions of each cycle that follows one, pause included, default "
-                "none",
+         .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
+                "always has a checkpoint. `phases`: fractions of the cycle after each checkpoint, "
+                "pause included, for further checkpoints; default none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
          .wanted = "a map of settings"});
-  visit(scale.until,
-        {.name = "until",
-         .doc = "ends a run `extra_cycles` after the measure reaches the value at the end of a "
-                "cycle; default: at `cycles`",
-         .besides = ", or `none`",
-         .example = "{crystalline_percent: 10, extra_cycles: 15}",
-         .wanted = "a measure with its value"});
+  visit(scale.until, {.name = "until",
+                      .doc = "ends a run `extra_cycles` after the measure reaches the value at the "
+                             "end of a cycle; default: the run ends at `cycles`",
+                      .besides = ", or `none`",
+                      .example = "{crystalline_percent: 10, extra_cycles: 15}",
+                      .wanted = "a measure with its value"});
   visit(scale.looks,
         {.name = "looks",
          .range = {least_runs, ManifestLimits::runs},
-         .doc = "numbers of seeds at which claims get their verdicts, planned before the runs; the "
-                "intervals are widened for their number. Default: one look, at all seeds",
+         .doc = "numbers of seeds at which claims get verdicts, planned before the runs. The "
+                "intervals are widened for the number of looks. Default: one look, at all seeds",
          .example = "[12, 36, 60]"});
-  visit(scale.primary,
-        {.name = "primary",
-         .doc = "ids of the claims that these runs are made to decide; all others are "
-                "exploratory",
-         .example = "[S5a.onset@amplitude_rad=0.05]",
-         .longest = 300});
+  visit(scale.primary, {.name = "primary",
+                        .doc = "ids of the claims that these runs are meant to decide; all other "
+                               "claims are exploratory",
+                        .example = "[S5a.onset@amplitude_rad=0.05]",
+                        .longest = 300});
 }
 
 void fields(SeriesSpec& series, const auto& visit) {
@@ -210,74 +205,76 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                      can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
   static const Names can_be_y = joined(scalars, measures(MeasureKind::curve), runs);
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
-  visit(plot.name, {.name = "name", .doc = "required; the name of its files", .required = true});
+  visit(plot.name,
+        {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
   visit(plot.also,
         {.name = "y",
          .doc = "required; a [measure](#measures), a number of each run such as `onset_size_phi`, "
                 "or an expression of measures and parameters: `stress_xy_Pa/contact_pressure_Pa`. "
                 "Runs that end before their onset are counted in the caption. A list draws several "
-                "columns, a map also names them: `{phi_u: phi_uncorrected, phi: phi}`",
+                "columns; a map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
          .names = can_be_y,
          .terms = terms,
          .required = true});
-  visit(plot.x,
-        {.name = "x",
-         .doc = "`cycle` (default), a measure, a parameter, or an expression: `1/period_s`. A "
-                "number of the run takes `y` at `at_cycle`. One that is measured, such as "
-                "`core_time_s`, gives a point for each variant, at its mean over the runs",
-         .names = can_be_x,
-         .terms = terms});
+  visit(
+      plot.x,
+      {.name = "x",
+       .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
+              "If `x` is a number of the run, `y` is the value at `at_cycle`. A measured number, "
+              "such as `core_time_s`, gives one point for each variant, at the mean over its runs",
+       .names = can_be_x,
+       .terms = terms});
   visit(plot.where,
         {.name = "where",
          .doc = "selects runs by swept values, lists of values, or ranges `{min: 5200}`",
          .example = "{fluid: [still, cell]}"});
-  visit(plot.minus,
-        {.name = "minus",
-         .doc = "swept values that single out a variant. Its `y`, for the same packing and cycle, "
-                "is subtracted. The caption counts runs without such a partner",
-         .example = "{steps_per_cycle: 45600}"});
-  visit(plot.by, {.name = "by",
-                  .doc = "one curve for each value of this parameter; averaging over another swept "
-                         "parameter is refused. Default: one for each variant or, with a parameter "
-                         "as `x`, for each combination of the other swept values",
-                  .names = can_be_by});
+  visit(
+      plot.minus,
+      {.name = "minus",
+       .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
+              "and cycle, is subtracted. The caption counts runs without a partner in this variant",
+       .example = "{steps_per_cycle: 45600}"});
+  visit(plot.by,
+        {.name = "by",
+         .doc = "one curve for each value of this parameter. A plot that averages over another "
+                "swept parameter is refused. Default: one curve for each variant or, if `x` is a "
+                "parameter, for each combination of the other swept values",
+         .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "plots and claims with the same `figure` are its panels (a), (b), ... and its "
-                "claims, with one caption; default: a figure of its own"});
+         .doc =
+             "name of a figure: plots with equal `figure` are its panels (a), (b), ..., and claims "
+             "with equal `figure` are its claims, with one caption. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel, NAME_1, NAME_2, ..., for each value of this parameter, "
-                            "with equal ranges",
+                            "with equal axis ranges",
                      .names = can_be_by});
-  visit(plot.show, {.name = "show",
-                    .doc = "the mean (default) or root mean square with its standard error, every "
-                           "run as a line, or every value as a point. The CSV of a curve measure "
-                           "or against a number "
-                           "of the run has the means"});
+  visit(plot.show,
+        {.name = "show",
+         .doc = "`mean` (default) or `rms`: mean or root mean square with its standard error; "
+                "`traces`: every run as a line; `scatter`: every value as a point. If `y` is a "
+                "curve measure or `x` a number of the run, the CSV file has the means"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
-  visit(
-      plot.xlabel,
-      {.name = "xlabel",
-       .doc = "label of the axis, formulas between `$`: `drag $b$ [kg/s]`. For another unit, take "
-              "an expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
-       .longest = kLongestLabel});
+  visit(plot.xlabel,
+        {.name = "xlabel",
+         .doc = "label of the axis, with formulas between `$`: `drag $b$ [kg/s]`. For another "
+                "unit, use an expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
+         .longest = kLongestLabel});
   visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
-  visit(
-      plot.series,
-      {.name = "series",
-       .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or `\"#rrggbb\"`) "
-              "and marker of curves: by the value of `by`, by `\"KEY=VALUE\"` as in `labels`, or "
-              "by the "
-              "name of one of several `y`. Curves come in this order",
-       .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
+  visit(plot.series,
+        {.name = "series",
+         .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or "
+                "`\"#rrggbb\"`) and marker of curves. The key is a value of `by`, `\"KEY=VALUE\"` "
+                "as in `labels`, or the name of one of several `y`. Curves come in this order",
+         .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
          .doc = "published numbers that the plot shows: a `value` with an `error`, or `points` [x, "
                 "y] or [x, y, error], each with its `source`",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
-                    .doc = "further columns in the CSV of a plot of means; as a map, with names: "
-                           "`{phi_u: phi_uncorrected}`",
+                    .doc = "further columns in the CSV file of a plot of means; a map also gives "
+                           "them names: `{phi_u: phi_uncorrected}`",
                     .names = can_be_y,
                     .terms = terms,
                     .example = "[phi_uncorrected]"});
@@ -287,13 +284,13 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.cycle,
         {.name = "at_cycle",
          .range = kCycles,
-         .doc = "the cycle of a curve measure, or of `y` against a number of the run; default: the "
-                "last one that all runs have, named in the CSV and the caption"});
+         .doc = "the cycle of a curve measure, or of `y` if `x` is a number of the run. Default: "
+                "the last cycle that all runs have, which the CSV file and the caption state"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
-         .doc = "with `show: traces` or `scatter`: only these cycles, first to last, with the "
-                "checkpoints at `phases`; other plots are of whole cycles",
+         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw, with the "
+                "checkpoints at `phases`. Other plots show only whole cycles",
          .example = "[20, 21]"});
 }
 
@@ -305,84 +302,83 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   static const Names terms = joined({"cycle"}, can_be_compared, numbers());
   visit(claim.id,
         {.name = "id",
-         .doc = "required: letters, digits, -, _ and dots; `primary` and verdicts name the "
-                "claim by it. What stands before the first dot is its figure",
+         .doc = "required; letters, digits, -, _ and dots. `primary` and verdicts refer to the "
+                "claim by this id. The part before the first dot is the figure of the claim",
          .example = "S2.phi",
          .longest = kLongestName});
-  visit(claim.id, {.name = "name", .doc = "the older name of `id`"});
-  visit(claim.figure, {.name = "figure", .doc = "see `figure` of a plot; default: from `id`"});
+  visit(claim.id, {.name = "name", .doc = "older name of the key `id`"});
+  visit(claim.figure,
+        {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; see `y` of a plot, but no curve",
+                        .doc = "required; like `y` of a plot, but not a curve",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
   visit(claim.estimator, {.name = "estimator",
                           .doc = "what is estimated; by default the other keys imply it",
                           .names = estimators});
-  visit(
-      claim.against,
-      {.name = "against",
-       .doc =
-           "for `estimator: slope`: the column on the other axis, at each run's first checkpoint; "
-           "for `spread_ratio`: the other number",
-       .names = can_be_compared,
-       .terms = terms});
+  visit(claim.against,
+        {.name = "against",
+         .doc = "for `estimator: slope`: the column on the other axis, at the first checkpoint of "
+                "each run; for `spread_ratio`: the number whose spread is the denominator",
+         .names = can_be_compared,
+         .terms = terms});
   visit(claim.where,
         {.name = "where",
          .doc = "selects runs of all sides: values, lists of values, or ranges `{min: 5200}`",
          .example = "{amplitude_rad: [0.04, 0.05]}"});
-  visit(claim.for_each,
-        {.name = "for_each",
-         .doc = "a parameter: one claim for each of its values, `ID@KEY=VALUE`. `{KEY}` in "
-                "`statement` is the value",
-         .names = can_be_by});
-  visit(claim.between,
-        {.name = "between",
-         .doc = "swept values that single out a variant, for the first and for the second. The "
-                "difference is the first less the second",
-         .example = "[{fluid: still}, {fluid: cell}]"});
+  visit(claim.for_each, {.name = "for_each",
+                         .doc = "a parameter: one claim, with the id `ID@KEY=VALUE`, for each of "
+                                "its values. `{KEY}` in `statement` is replaced by the value",
+                         .names = can_be_by});
+  visit(claim.between, {.name = "between",
+                        .doc = "two selections of swept values, one for each side. The difference "
+                               "is the first side minus the second side",
+                        .example = "[{fluid: still}, {fluid: cell}]"});
   visit(claim.published,
         {.name = "published",
-         .doc = "instead of `between`: the mean over the runs less this number; "
-                "with `is: lower` or `higher` and no margin, the number is a bound. The verdict "
-                "does not use `error`, so state a margin that includes it",
+         .doc = "instead of `between`: a published number, which is subtracted from the mean over "
+                "the runs. With `is: lower` or `higher` and no margin, the number is a bound. The "
+                "verdict does not use `error`, so state a margin that includes the error",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
-                           .doc = "with `published`: swept values that single out the variant",
+                           .doc = "with `published`: swept values that select the variant",
                            .example = "{fluid: still}"});
-  visit(
-      claim.margin,
-      {.name = "margin",
-       .range = {0, kInfinity, true},
-       .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches` it limits log2 of "
-              "the ratio of both waiting times: 1 is a factor of 2 (log-rank test, which counts "
-              "runs that end before)"});
   visit(claim.margin,
-        {.name = "relative_margin",
+        {.name = "margin",
          .range = {0, kInfinity, true},
-         .doc = "instead of `margin`: limit of the relative difference, 0.03 for 3 %, "
-                "from the means of logarithms"});
+         .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
+                "applies to log2 of the ratio of the two waiting times, so 1 means a factor of 2 "
+                "(log-rank test, which includes runs that end before the event)"});
+  visit(claim.margin, {.name = "relative_margin",
+                       .range = {0, kInfinity, true},
+                       .doc = "instead of `margin`: limit of the relative difference (0.03 means 3 "
+                              "%), which is computed from the means of logarithms"});
   visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
-  visit(claim.cycles, {.name = "cycles",
-                       .range = kCycles,
-                       .doc = "or first and last of the cycles whose mean is compared",
-                       .example = "[1, 15]"});
+  visit(claim.cycles,
+        {.name = "cycles",
+         .range = kCycles,
+         .doc = "instead of `at_cycle`: first and last of the cycles whose mean value is compared",
+         .example = "[1, 15]"});
   visit(claim.phi, {.name = "phi",
                     .range = {0, 1},
-                    .doc = "or a window of phi over which the mean is compared",
+                    .doc = "instead of `at_cycle`: range of phi over which the mean is compared",
                     .example = "[0.646, 0.67]"});
-  visit(claim.reaches, {.name = "reaches",
-                        .range = {-1e15, 1e15},
-                        .doc = "or the value whose first cycle is compared"});
+  visit(claim.reaches,
+        {.name = "reaches",
+         .range = {-1e15, 1e15},
+         .doc =
+             "instead of `at_cycle`: a value; the first cycle that reaches the value is compared"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first side is higher or lower by more than the margin"});
-  visit(claim.statement, {.name = "statement",
-                          .doc = "what the claim says, for people; default: from its keys",
-                          .longest = 300,
-                          .folds = true});
+  visit(claim.statement,
+        {.name = "statement",
+         .doc = "what the claim says, for people; default: made from the other keys",
+         .longest = 300,
+         .folds = true});
   visit(claim.optional, {.name = "optional",
-                         .doc = "`true`: no verdict where a scale lacks one of the variants",
+                         .doc = "`true`: no verdict at scales that lack one of the variants",
                          .example = "true"});
   visit(claim.cannot_be_decided,
         {.name = "cannot_be_decided",
@@ -397,14 +393,14 @@ void fields(Manifest& manifest, const auto& visit) {
                               .doc = "required; its name: letters, digits, - and _",
                               .example = "drag"});
   visit(manifest.question, {.name = "question",
-                            .doc = "what the experiment is to find out, for people",
+                            .doc = "the question that the experiment answers, for people",
                             .example = "Does the fluid matter?",
                             .longest = 2'000,
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "instead of all keys that state runs: the experiments of the store whose runs "
-                "the plots and claims use. In selections, `experiment` is a key",
+         .doc = "experiments in the store whose runs the plots and claims use, instead of the keys "
+                "that state runs. Selections may use the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -414,19 +410,20 @@ void fields(Manifest& manifest, const auto& visit) {
          .example = "{\"fluid=still\": fluid at rest}",
          .wanted = "a map of names"});
   visit(manifest.plots, {.name = "plots",
-                         .doc = "figures of your own",
+                         .doc = "your own figures",
                          .example = "[{name: compaction, y: phi, x: cycle}]"});
   visit(manifest.claims,
         {.name = "claims",
-         .doc = "claims of your own, decided like those of the supplement",
+         .doc = "your own claims, decided like the claims of the supplement",
          .example = "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
                     "cell}], margin: 0.001}]"});
-  visit(manifest.base.settings, {.name = "base",
-                                 .doc = "parameters of every run; others have their default",
-                                 .example = "{grains: 7900}"});
+  visit(manifest.base.settings,
+        {.name = "base",
+         .doc = "parameters of every run; other parameters have their default",
+         .example = "{grains: 7900}"});
   fields(manifest.base, visit);
   visit(manifest.scales, {.name = "scales",
-                          .doc = "named sizes, which override the keys above; default `desk`",
+                          .doc = "named sets of keys that override the keys above; default `desk`",
                           .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
 }
 
@@ -445,7 +442,6 @@ std::vector<Field> keys_of() {
   return keys;
 }
 
-// Values of a swept parameter from one to another.
 struct ValueRange {
   double from = 0, to = 0;
   std::uint64_t count = 0;
@@ -459,16 +455,16 @@ void fields(ValueRange& range, const auto& visit) {
   visit(range.to, {.name = "to", .range = any, .doc = "the last value", .required = true});
   visit(range.count, {.name = "count",
                       .range = {2, ManifestLimits::values_per_list},
-                      .doc = "how many values, both ends included",
+                      .doc = "number of values, both ends included",
                       .required = true});
   visit(range.spacing,
         {.name = "spacing",
          .doc =
-             "equal steps (`linear`, the default) or equal ratios (`log`). Values between the "
-             "ends are rounded to 12 significant digits, those of whole numbers to whole numbers"});
+             "equal steps (`linear`, the default) or equal ratios (`log`). Values between the ends "
+             "are rounded to 12 significant digits, or to whole numbers if the key needs them"});
 }
 
-// The node as messages quote it.
+// The text that messages show for the value of the node.
 string shown(const Node& node) {
   switch (node.kind) {
     case Node::Kind::null:
@@ -483,13 +479,13 @@ string shown(const Node& node) {
   return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
 }
 
-// "It takes `[1, 15]`." with the example of the key; without one, the values that the key takes.
+// "It takes `[1, 15]`." with the example of the key or, if there is none, with the allowed values.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
-// The remedy for a value that is not a map. For `start`, it is the map that a text probably means.
+// The remedy for a value that is not a map. For `start`, the map that the text probably means.
 string remedy_for(const Node& in, const Field& about) {
   if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
   const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
@@ -497,20 +493,17 @@ string remedy_for(const Node& in, const Field& about) {
   return fmt::format("Write `{{{}: {}}}`.", key, printable(in.text));
 }
 
-// Whether the node is a colour such as "#0072b2".
 bool is_rgb(const Node& in) {
   const string& text = in.text;
   return in.is_scalar() && text.starts_with('#') && text.size() == 7 &&
          text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos;
 }
 
-// Whether the node is the word `auto` and the parameter takes it.
 bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// A valid expression that a text of another notation probably means, such as phi^2 for phi**2; ""
-// if there is none.
+// The valid expression for a text in another notation, such as phi^2 for phi**2. "" if none fits.
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
@@ -536,13 +529,13 @@ struct Reader {
   const Scale& base;                             // the keys that are stated for all scales
   std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
 
-  // Reports keys that do not go with `of`.
+  // Reports keys that a manifest with `of` must not have.
   void check_of(const Node& document) {
     if (document.find("of") == nullptr) return;
     for (const char* key :
          {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "looks", "scales"}) {
       if (const Node* own = document.find(key)) {
-        reject_key(*own, "does not go with of", "A manifest with `of` has no runs of its own.");
+        reject_key(*own, "cannot be used with `of`", "A manifest with `of` has no runs.");
       }
     }
   }
@@ -555,14 +548,14 @@ struct Reader {
   void reject_type(const Node& in, string_view wanted, const string& remedy) {
     reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
-  // Reports a problem at the value, or at the key, without quoting it.
+  // Reports a problem at the value, or at the key, without quoting the value.
   void reject(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.at, in.path, problem, "", remedy);
   }
   void reject_key(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.key_at, in.path, problem, "", remedy);
   }
-  // Reports a problem of `in`, if it is stated and `wrong` is true.
+  // Reports a problem of `in`, if `in` is not null and `wrong` is true.
   void reject_if(bool wrong, const Node* in, const string& problem, const string& remedy) {
     if (wrong && in != nullptr) reject(*in, problem, remedy);
   }
@@ -573,7 +566,8 @@ struct Reader {
   // Reports a key that is not one of the `allowed` keys of its map, and says what to write.
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
-    if (in.key == "<<") return reject_key(in, "merge keys are not read", "Write it out.");
+    if (in.key == "<<")
+      return reject_key(in, "merge keys are not supported", "Write the values out.");
     if (read_number<double>(in.key)) {
       return reject_key(in, "is a number where a key belongs", kDecimalPoint);
     }
@@ -599,7 +593,7 @@ struct Reader {
                              : "`shearcell manual` lists the keys.");
   }
 
-  // Reads a number or a choice. Returns nothing after a problem with its type or range.
+  // Reads a number or a choice. Returns nothing if the type or range is wrong.
   std::optional<json> read_scalar(const Node& in, const Field& about) {
     if (!in.is_scalar()) {
       const bool varies = about.get != nullptr && in.kind != Node::Kind::null;  // a parameter
@@ -618,8 +612,8 @@ struct Reader {
     return std::get<json>(std::move(read));
   }
 
-  // The items of a list. Reports any other value, an empty list and a list that is too long, and
-  // then returns no items.
+  // The items of a list. If the value is not a list, or the list is empty or too long, reports a
+  // problem and returns no items.
   std::span<const Node> items_of(const Node& in, string_view example) {
     constexpr std::size_t most = ManifestLimits::values_per_list;
     const std::size_t count = in.parts.size();
@@ -661,7 +655,7 @@ struct Reader {
     }
     if (of_run && of_checkpoint) {
       reject_value(in, "combines a number of the whole run with one of its checkpoints",
-                   "Take measures of one kind.");
+                   "Use measures of one kind.");
     }
     return !(of_run && of_checkpoint);
   }
@@ -676,7 +670,7 @@ struct Reader {
       where[in.key] = any;
       return;
     }
-    static const Field cycle = {.name = "cycle", .range = kCycles};  // of a plot
+    static const Field cycle = {.name = "cycle", .range = kCycles};  // a key for plots
     const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
     if (field == nullptr) return reject_unknown(in, parameters());
     if (field != &cycle && !field->identity.distinguishes_runs()) {
@@ -693,7 +687,7 @@ struct Reader {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (field->is_choice() || (end.key != "min" && end.key != "max")) {
-          reject_key(end, "is no end of a range", "It takes `{min: 1, max: 2}` of a number.");
+          reject_key(end, "is not an end of a range", "It takes `{min: 1, max: 2}` of a number.");
         } else if (auto read = read_scalar(end, *field)) {
           range[end.key] = std::move(*read);
         }
@@ -704,7 +698,7 @@ struct Reader {
     }
   }
 
-  // Reads parameters and values from the key, as in "fluid=still,amplitude_rad=0.05"; with `text`,
+  // Reads a selection such as "fluid=still,amplitude_rad=0.05" from the key or, if `text` is true,
   // from the value.
   json read_selector(const Node& in, bool text = false) {
     json where = json::object();
@@ -715,7 +709,7 @@ struct Reader {
       if (equal == part.npos) {
         problems.add(in.key_at, in.path, "does not select variants",
                      fmt::format("\"{}\"", printable(in.key)),
-                     "It takes `\"fluid=still\"`, or several joined by commas.");
+                     "Write `\"fluid=still\"`, or several values joined by commas.");
         break;
       }
       const string key(part.substr(0, equal));
@@ -769,7 +763,7 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // Reads a text. By `about`, it is one of some names or an expression, a free text, or a name.
+  // Reads one of several names, an expression, a free text, or a name, as `about` decides.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
     const bool takes_expressions = in.is_scalar() && !about.terms.empty();
@@ -787,7 +781,7 @@ struct Reader {
                                        about.folds ? "text" : "line", about.longest));
       }
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
-                      "has a $ without its partner", "A formula stands between two $.");
+                      "has an odd number of $", "Write a formula between two $.");
     } else if (in.is_scalar() && is_name(text)) {
       value = text;
     } else {
@@ -798,8 +792,8 @@ struct Reader {
     }
   }
 
-  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. The
-  // value of a key without an example is both.
+  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. If the
+  // key has no example, it has one value, which is used for both.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -856,7 +850,7 @@ struct Reader {
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. A key without `=` is a value of `by`; name_series() completes it.
+  // Reads the styles of curves. name_series() completes keys without `=`.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -914,7 +908,7 @@ struct Reader {
     }
   }
 
-  // Reads different names: of figures, experiments or claims.
+  // Reads a list of different figures, experiments or claims.
   void read(const Node& in, const Field& about, std::vector<string>& names) {
     for (const Node& item : items_of(in, about.example)) {
       string name;
@@ -956,7 +950,7 @@ struct Reader {
     return true;
   }
 
-  // Reads the parameters of `base` or `settle`; for a key of `start`, the parameter start_KEY.
+  // Reads the parameters of `base` or `settle`. A key of `start` is the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
       const string key = "start_" + in.key;
@@ -1012,7 +1006,7 @@ struct Reader {
     }
   }
 
-  // The values of a range as a manifest would list them; none after a problem.
+  // The values of a range as a manifest would list them; empty if the range has a problem.
   std::vector<Node> written_out(const Node& in, const Field& field) {
     ValueRange range;
     const std::size_t problems_before = problems.size();
@@ -1030,7 +1024,6 @@ struct Reader {
     return values;
   }
 
-  // Reads the axes of `grid` or `zip`.
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
     if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
     for (const Node& part : in.parts) {
@@ -1043,7 +1036,7 @@ struct Reader {
       }
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
-        reject_key(part, "cannot be swept, since another value does not make another run",
+        reject_key(part, "cannot be swept, since runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
                    : length ? "Set it in `base` or in a scale, or zip it with a key that does."
                             : "Set it in `base` or in a scale.");
@@ -1057,7 +1050,7 @@ struct Reader {
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
         if (is_auto(*field, item)) {
           reject(item, "cannot be swept as `auto`",
-                 "Set it in `base` or in a scale; it then follows the variant.");
+                 "Set it in `base` or in a scale. The value then depends on the variant.");
         } else if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
@@ -1105,7 +1098,7 @@ struct Reader {
   void check_zip(std::span<const SweepAxis> zip, const string& path) {
     const SweepAxis& first = zip.front();
     if (zip.size() == 1 && is_length(first.key)) {
-      return problems.add(first.at, path + "." + first.key, "advances with no other key", "",
+      return problems.add(first.at, path + "." + first.key, "is the only key of the zip", "",
                           "Set it in `base` or in a scale.");
     }
     const std::size_t rows = first.values.size();
@@ -1114,7 +1107,7 @@ struct Reader {
       return problems.add(axis.at, path + "." + axis.key,
                           fmt::format("differs in length from {}, which has {}", first.key, rows),
                           counted(axis.values.size(), "value"),
-                          "The lists of a zip advance together; make them equally long.");
+                          "The lists of a zip advance together. Make them equally long.");
     }
     check_rows(zip, path, "row of values");
   }
@@ -1146,7 +1139,7 @@ struct Reader {
         read(end, {.range = {1, kLargestSeed}, .whole = true}, ends[last ? 1 : 0]);
       }
       const auto [first, last] = ends;
-      if (first == 0 || last == 0) continue;  // reported
+      if (first == 0 || last == 0) continue;  // already reported
       if (last < first || last - first >= ManifestLimits::runs - seeds.values.size()) {
         reject_value(item, "is not a range from a lower to a higher seed",
                      fmt::format("A scale has at most {} seeds.", ManifestLimits::runs));
@@ -1220,7 +1213,7 @@ struct Reader {
     for (const Node& part : in.parts) {
       if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
       if (find_named(known, part.key) == nullptr) continue;  // reported already
-      reject_key(part, fmt::format("does not go with {}", sources.front()),
+      reject_key(part, fmt::format("cannot be used with {}", sources.front()),
                  part.key == "noise_d" ? "Run a manifest with the file first, and begin with its "
                                          "state: `{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
                                        : "Leave it out.");
@@ -1248,7 +1241,7 @@ struct Reader {
     reject_if(range.from == range.to, &in, "begins and ends with the same value",
               "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
-              "has equal ratios, and an end that is not above 0", "Use `spacing: linear`.");
+              "has equal ratios, so both ends must be above 0", "Use `spacing: linear`.");
   }
 
   void check(const Node&, const Field&, const auto&) {}
@@ -1263,35 +1256,35 @@ struct Reader {
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
-    const string not_with_curve = "does not go with " + plot.y;
+    const string not_with_curve = "cannot be used with " + plot.y;
     reject_value_if(is_curve, x, not_with_curve,
-                    fmt::format("Leave it out: {} is drawn against {}.", plot.y,
+                    fmt::format("Leave it out. {} is drawn against {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
               fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
-      reject_key(*minus, not_with_curve, "Take a number as y: curves are not subtracted.");
+      reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
     }
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
-                    in.find("show"), fmt::format("does not go with {} as x", plot.x),
-                    "Take `cycle` or a number of the run as x.");
+                    in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
+                    "Use `cycle` or a number of the run as x.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
-    reject_if(!of_runs || of_run, cycles, "draws each run along its cycles",
-              "It takes `show: traces`, and `cycle` or a measure as x.");
-    reject_if(!plot.figure.empty(), cycles, "does not go with figure",
-              "Give the plot a figure of its own.");
+    reject_if(!of_runs || of_run, cycles, "can only be used if each run is drawn along its cycles",
+              "Use `show: traces`, and `cycle` or a measure as x.");
+    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure",
+              "Give the plot a separate figure.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
-      reject(*also, "goes with means", "Leave it out.");
+      reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
-             "Give one another name: `also: {NAME: measure}`.");
+             "Give one of them another name: `also: {NAME: measure}`.");
     }
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;
       if (field->unit != "1") plot.x_unit = field->unit;
       reject_value_if(field->is_choice(), x, "is not a number",
-                      "Take `by` for a curve of each of its values.");
+                      "Use `by` to draw a curve for each value.");
     }
     if (const Node* series = in.find("series")) name_series(*series, plot);
     if (const Node* published = in.find("published")) {
@@ -1332,7 +1325,8 @@ struct Reader {
   }
 
   void check_published(const Node& in, const PublishedSpec& published) {
-    reject_if(published.label.empty(), &in, "lacks label", "Name it for the key of the plot.");
+    reject_if(published.label.empty(), &in, "lacks label",
+              "State the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
               "does not have either a value or points", "State one of them.");
   }
@@ -1340,14 +1334,15 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // Reports a claim that states none of the keys (if `lacking` names them) or several of them.
+    // Reports a claim that has several of the keys, or none of them if `lacking` is not null.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
                                  const string& remedy = "") {
       const Node* first = nullptr;
       for (const char* key : keys) {
         const Node* one = in.find(key);
         if (one != nullptr && first != nullptr) {
-          return reject(*one, fmt::format("does not go with {}", first->key), "State one of them.");
+          return reject(*one, fmt::format("cannot be used with {}", first->key),
+                        "State one of them.");
         }
         if (one != nullptr) first = one;
       }
@@ -1365,12 +1360,12 @@ struct Reader {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
-                fmt::format("`estimator: {}` takes it.", named->name));
+                fmt::format("`estimator: {}` needs this key.", named->name));
       const bool any = claim.compare.empty() || !named->of_run;
       reject_value_if(!any && is_of_run(claim.compare) != *named->of_run, in.find("estimator"),
-                      fmt::format("does not go with {}", claim.compare),
-                      *named->of_run ? "Compare a number of the whole run, as onset_size_phi."
-                                     : "Compare a number of checkpoints, as phi.");
+                      fmt::format("cannot be used with {}", claim.compare),
+                      *named->of_run ? "Compare a number of the whole run, such as onset_size_phi."
+                                     : "Compare a number of checkpoints, such as phi.");
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
@@ -1378,8 +1373,8 @@ struct Reader {
               "State the published number.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "State `at_cycle` or `cycles`.");
-    reject_if(published == nullptr && !of_all, in.find("of"), "goes with published",
-              "Take `between` for two variants.");
+    reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
+              "Use `between` for two variants.");
     claim.relative = relative != nullptr;
     if (claim.compare.empty()) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
@@ -1393,13 +1388,13 @@ struct Reader {
       reject(*in.find(*stated), fmt::format("{} is one number of a run", claim.compare),
              "Leave it out.");
     }
-    reject_if(in.find("between") == nullptr, reaches, "goes with between",
-              "A waiting time is compared with another one.");
+    reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
+              "A waiting time can only be compared with another waiting time.");
     reject_if(compares_waits(claim), relative,
-              fmt::format("does not go with {}", reaches != nullptr ? "reaches" : claim.compare),
-              "Take `margin`.");
+              fmt::format("cannot be used with {}", reaches != nullptr ? "reaches" : claim.compare),
+              "Use `margin`.");
     reject_if(claim.published && claim.published->value == 0.0, relative,
-              "does not go with a published 0", "Take `margin`.");
+              "cannot be used with a published value of 0", "Use `margin`.");
   }
 
   // Reports ids in `primary` that no claim of this manifest or of its figures has.
@@ -1417,11 +1412,11 @@ struct Reader {
     for (const Node* list : lists) {
       for (const Node& item : values_of(list)) {
         const string id = item.text.substr(0, item.text.find('@'));
-        const bool statement = item.text.find(' ') != string::npos;  // of an older manifest
+        const bool statement = item.text.find(' ') != string::npos;  // in an older manifest
         if (statement || std::ranges::count(known, id) > 0) continue;
-        reject_value(item,
-                     with_nearest("is the id of no claim", id, Names(known.begin(), known.end())),
-                     "State the `id` of a claim of this manifest or of its figures.");
+        reject_value(
+            item, with_nearest("is not the id of a claim", id, Names(known.begin(), known.end())),
+            "State the `id` of a claim of this manifest or of its figures.");
       }
     }
   }
@@ -1431,11 +1426,11 @@ struct Reader {
   }
 
   // Reports names of plots, claims, figures or panels that occur twice, and names of figures or
-  // panels of the supplement. A manifest may state parts of a supplement's figure, unless its
-  // `figures` (`listed`) name that figure.
+  // panels of the supplement. A manifest may state parts of a figure of the supplement, unless the
+  // manifest also lists this figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
-    std::vector<std::pair<const Node*, string>> names, figures;  // each with its figure
+    std::vector<std::pair<const Node*, string>> names, figures;  // each name with its figure
     Names panels;
     for (const char* list : {"plots", "claims"}) {
       for (const Node& item : values_of(document.find(list))) {
@@ -1528,7 +1523,6 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
 
 namespace {
 
-// The values that a key takes, for a table.
 string takes_markdown(const Field& key) {
   if (key.is_choice() && key.names.size() <= 12)
     return fmt::format("{}", fmt::join(key.names, ", "));
@@ -1548,11 +1542,11 @@ string keys_markdown(string_view head) {
 
 string manifest_markdown() {
   return keys_markdown<Manifest>("example") +
-         "\nOf a range of swept values, as `grid: {pressure_Pa: " + string(kRangeExample) +
-         "}`:\n\n" + keys_markdown<ValueRange>("takes") + "\nOf a start:\n\n" +
-         keys_markdown<Start>("takes") + "\nOf a plot:\n\n" +
-         keys_markdown<Placed<PlotSpec>>("takes") + "\nOf a claim:\n\n" +
-         keys_markdown<Placed<ClaimSpec>>("takes");
+         "\nKeys of a range of swept values, as in `grid: {pressure_Pa: " + string(kRangeExample) +
+         "}`:\n\n" + keys_markdown<ValueRange>("values") + "\nKeys of `start`:\n\n" +
+         keys_markdown<Start>("values") + "\nKeys of a plot:\n\n" +
+         keys_markdown<Placed<PlotSpec>>("values") + "\nKeys of a claim:\n\n" +
+         keys_markdown<Placed<ClaimSpec>>("values");
 }
 
 }  // namespace shearcell

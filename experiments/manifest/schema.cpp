@@ -31,7 +31,8 @@ constexpr Identity kShear = {.stage = StageKind::shear};
 constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
 
-// Lower limit of parameters whose quotients are values in units of d, m and s: keeps these finite.
+// Smallest value of parameters that are divisors in the conversion to d, m and s, so that no result
+// is infinite.
 constexpr double kSmallest = 1e-30;
 
 constexpr Range above(double min, double max) {
@@ -54,13 +55,13 @@ Field row(string_view name, string_view symbol, string_view unit, const Range& r
     if constexpr (std::is_enum_v<T>) {
       p.*Member = value_of<T>(value.get_ref<const std::string&>()).value();
     } else {
-      p.*Member = value.get<T>() + T{};  // -0 and 0 are one value
+      p.*Member = value.get<T>() + T{};  // turns -0 into 0
     }
   };
   return field;
 }
 
-// The number that the text is, infinite if it is too large or too small for a double; else nothing.
+// The number in a text; infinity if no double can hold it; nothing if the text is not a number.
 std::optional<double> parse_real(string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
@@ -71,7 +72,7 @@ std::optional<double> parse_real(string_view text) {
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-// Whether the text is like .inf, -.Inf, .nan, inf or NaN.
+// Whether the text means infinity or not-a-number: .inf, -.Inf, .nan, inf or NaN.
 bool names_no_number(string_view text) {
   std::string word = lower(text);
   std::erase_if(word, [](char c) { return c == '.' || c == '+' || c == '-'; });
@@ -84,8 +85,8 @@ std::string takes(const Field& field) {
                                     : fmt::format("It takes {}.", expected_values(field));
 }
 
-// What to write instead of a text that looks like a number and is none: one with a decimal comma,
-// with separators of thousands, with a power of ten, with a unit, or one to be calculated.
+// What to write instead of a text that looks like a number but is not valid: with a decimal comma,
+// thousands separators, a power of ten or a unit, or with a calculation.
 std::string number_remedy(const Field& field, const std::string& text) {
   static const std::pair<std::regex, const char*> habits[] = {
       {std::regex("[ _']|\xc2\xa0|\xe2\x80[\x89\xaf]"), ""},  // spaces, also narrow ones
@@ -98,7 +99,7 @@ std::string number_remedy(const Field& field, const std::string& text) {
   plain = field.whole ? std::regex_replace(plain, thousands, "")
                       : std::regex_replace(plain, comma, ".");
   if (parse_real(plain)) {
-    return fmt::format("Write {}: a number has a decimal point and no separators.", plain);
+    return fmt::format("Write {}. A number has a decimal point and no separators.", plain);
   }
   if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
     const double value = evaluator_of(text)({});
@@ -143,26 +144,25 @@ std::span<const Field> schema() {
                                  "spring constant of a contact (Table I)"),
       row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", {0, 1e9}, kPrepare,
                              "Stokes drag constant (Table I)"),
-      row<&P::fluid>(
-          "fluid", "", "", {}, kShear,
-          "velocity of the fluid in the drag under shear: at rest, or that of the walls at the "
-          "same height (B.3, Eq. S5)"),
+      row<&P::fluid>("fluid", "", "", {}, kShear,
+                     "velocity of the fluid in the drag under shear: `still` is at rest, `cell` "
+                     "has the velocity of the walls at the same height (B.3, Eq. S5)"),
       row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kPrepare,
                                 "gravitational acceleration (Table I); 0 turns it off (D)"),
       row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kPrepare,
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
           "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
-          "wall on which the pressure is P: `moving_wall`, whose load is then P A_w, or `top`, for "
-          "which a moving bottom wall is loaded with P A_w plus the grains' weight; both are the "
-          "same without gravity or with a moving top wall"),
+          "wall on which the pressure is P. With `moving_wall`, the load of the moving wall is P "
+          "A_w. With `top`, the load of a moving bottom wall is P A_w plus the grains' weight. "
+          "Both are equal without gravity or with a moving top wall"),
       // The cell.
       row<&P::walls>("walls", "", "", {}, kPrepare,
                      "texture of the walls; rough walls carry fixed wall grains"),
       row<&P::moving_wall>("moving_wall", "", "", {}, kPrepare,
                            "the wall that moves vertically under the pressure (B.6)"),
       row<&P::height_over_width>("height_over_width", "", "1", {0.1, 100}, kPrepare,
-                                 "nominal height of the cell over its width L (E)"),
+                                 "nominal height of the cell divided by its width L (E)"),
       row<&P::nominal_packing_fraction>(
           "nominal_packing_fraction", "", "1", {1e-9, 0.74}, kPrepare,
           "volume fraction at which N grains fill the nominal cell; fixes L"),
@@ -172,40 +172,38 @@ std::span<const Field> schema() {
           "at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
-          "wall grain centres lie up to this far behind the wall plane; measures assume 0.25 for "
-          "the "
-          "walls' surface"),
+          "largest distance of wall grain centres behind the wall plane; measures assume 0.25 for "
+          "the surface of the walls"),
       row<&P::wall_grain_draw>(
           "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
-          "other values give other random places of the wall grains for the same seed"),
+          "each value gives other random positions of the wall grains for the same seed"),
       row<&P::wall_mass_grains_per_d2>("wall_mass_grains_per_d2", "", "m/d^2", above(0, 1e6),
                                        kPrepare, "mass of the moving wall per area"),
       row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", {0, 1e9},
                                          kPrepare, "drag constant of the moving wall per area"),
       // Preparation.
-      row<&P::fill_packing_fraction>(
-          "fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
-          "volume fraction of the random sequential addition that settling starts from; it jams "
-          "at 0.384"),
-      row<&P::settle_time_step_s>(
-          "settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
-          "time step while settling; not tied to that of the shear, so that variants of the latter "
-          "share their packing; `auto` keeps Table I's fraction of the stability limit"),
+      row<&P::fill_packing_fraction>("fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
+                                     "volume fraction of the random sequential addition from which "
+                                     "settling starts; random sequential addition jams at 0.384"),
+      row<&P::settle_time_step_s>("settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
+                                  "time step while settling; independent of the time step of the "
+                                  "shear, so that variants of the shear share their packing; "
+                                  "`auto` keeps Table I's fraction of the stability limit"),
       row<&P::settle_force_tolerance>(
           "settle_force_tolerance", "", "1", above(0, 1), kPrepare,
-          "settling ends when the moving wall's force imbalance and drag force over P A_w are "
-          "below this"),
-      row<&P::settle_kinetic_tolerance>(
-          "settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
-          "settling also needs a kinetic energy per grain over P d^3 below this"),
+          "settling ends when the force imbalance and the drag force of the moving wall, both "
+          "divided by P A_w, are below this value"),
+      row<&P::settle_kinetic_tolerance>("settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
+                                        "settling ends only if the kinetic energy per grain, "
+                                        "divided by P d^3, is also below this value"),
       row<&P::settle_time_limit_s>(
           "settle_time_limit_s", "", "s", above(0, 1e6), kPrepare,
-          "simulated time after which a packing that has not settled is a failure"),
-      row<&P::max_overlap_diameters>(
-          "max_overlap_diameters", "", "d", above(0, kLargestOverlapLimit),
-          {.stage = StageKind::prepare, .recorded_as = "0.1"},
-          "a stage whose largest overlap exceeds this stops as failed; with a larger value it "
-          "continues"),
+          "simulated time after which a run fails if its packing has not settled"),
+      row<&P::max_overlap_diameters>("max_overlap_diameters", "", "d",
+                                     above(0, kLargestOverlapLimit),
+                                     {.stage = StageKind::prepare, .recorded_as = "0.1"},
+                                     "a stage fails and stops if its largest overlap exceeds this "
+                                     "value; raise the value to continue it"),
       // Shear.
       row<&P::protocol>(
           "protocol", "", "", {}, kShear,
@@ -213,50 +211,48 @@ std::span<const Field> schema() {
           "(B.2)"),
       row<&P::amplitude_rad>("amplitude_rad", "A", "rad", {0, 0.5}, kShear,
                              "amplitude of the tilt theta = A sin(omega t)"),
-      // With the most steps in a cycle, a time step is as long as the shortest of settling.
+      // The shortest period and the most steps give the shortest time step of settling, 1e-15 s.
       row<&P::period_s>("period_s", "T", "s", {1e-6, 1e6}, kShear,
                         "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row<&P::steps_per_cycle>(
           "steps_per_cycle", "", "1", {4, 1e9}, kShear,
           "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
           "limit, 0.355"),
-      row<&P::pause_s>(
-          "pause_s", "", "s", above(0, 1e6),
-          {.stage = StageKind::shear, .under = ProtocolKind::paused},
-          "rest between fixed walls after each cycle, under protocol paused (B.5); rounded to "
-          "whole time steps"),
+      row<&P::pause_s>("pause_s", "", "s", above(0, 1e6),
+                       {.stage = StageKind::shear, .under = ProtocolKind::paused},
+                       "under protocol paused: rest with fixed walls after each cycle (B.5); "
+                       "rounded to whole time steps"),
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
-          "the moving wall during a pause: held at its height, or moving under its load"),
+          "whether the moving wall is held at its height during a pause or moves under its load"),
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
-                      "cycles to shear for; a larger value extends a run"),
-      row<&P::engine>(
-          "engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
-          "what computes the shear: this program, or LAMMPS (another run, equal up to rounding; "
-          "settling is always ours)"),
+                      "number of shear cycles; a larger value extends a run"),
+      row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
+                      "program that computes the shear. LAMMPS gives another run, equal up to "
+                      "rounding. This program always computes the settling"),
       // A shear that begins with a recorded state.
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},
                           "with `start`: the seed of the recorded run"),
-      row<&P::start_cycle>("start_cycle", "", "1", {0, 1e6},
-                           {.stage = StageKind::shear, .omitted_at = "0"},
-                           "with `start`: the whole cycle of the recorded run whose state is cycle "
-                           "0 of this one"),
-      row<&P::start_noise_d>(
-          "start_noise_d", "", "d", {0, 0.1}, {.stage = StageKind::shear, .omitted_at = "0"},
-          "with `start`: standard deviation of normal noise on the positions, drawn by the seed"),
+      row<&P::start_cycle>(
+          "start_cycle", "", "1", {0, 1e6}, {.stage = StageKind::shear, .omitted_at = "0"},
+          "with `start`: the cycle of the recorded run whose state is cycle 0 of this run"),
+      row<&P::start_noise_d>("start_noise_d", "", "d", {0, 0.1},
+                             {.stage = StageKind::shear, .omitted_at = "0"},
+                             "with `start`: standard deviation of normal noise on the positions; "
+                             "the seed decides the noise"),
       // Stiffening.
-      row<&P::stiffness_decades>(
-          "stiffness_decades", "", "1", {0, 6}, kNoKey,
-          "under protocol stiffen: the spring constant is raised by 10 to this power (B.2); a "
-          "larger value extends a run"),
+      row<&P::stiffness_decades>("stiffness_decades", "", "1", {0, 6}, kNoKey,
+                                 "under protocol stiffen: the spring constant is multiplied by 10 "
+                                 "to this power (B.2); a larger value extends a run"),
       row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
-                                          "number of equal factors for each power of ten (B.2)"),
+                                          "number of equal steps for each power of ten (B.2)"),
       row<&P::minimize_force_tolerance>(
           "minimize_force_tolerance", "", "1", above(0, 1), kStiffen,
-          "after each factor the enthalpy is minimized until the largest net force on a grain over "
-          "P d^2, and that on the moving wall over P A_w, are below this"),
+          "after each step the enthalpy is minimized until the largest net force on a grain, "
+          "divided by P d^2, and the net force on the moving wall, divided by P A_w, are below "
+          "this value"),
   };
   return fields;
 }
@@ -310,7 +306,7 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
     }
     if (real && !field.whole && text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
       return ValueProblem{"begins with a zero",
-                          fmt::format("{} Else write {}.", kDecimalPoint, *real)};
+                          fmt::format("{} Otherwise write {}.", kDecimalPoint, *real)};
     }
     if (!real || (field.whole && *real != std::floor(*real))) {
       return ValueProblem{field.whole ? "is not a whole number" : "is not a number",

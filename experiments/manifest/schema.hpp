@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values and meanings of a manifest's keys, and the table of parameters with their part in a
-// run's identity. Reading, suggestions, identity and experiments/REFERENCE.md use this table.
+// Field describes a key of a manifest: its allowed values and its meaning. schema() lists all
+// parameters and how each enters the id of a run. Reading, suggestions, ids and
+// experiments/REFERENCE.md use this list.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,22 +20,21 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  std::optional<StageKind> stage = {};     ///< first stage that it affects; nothing: not in an id
-  std::optional<ProtocolKind> under = {};  ///< only under this protocol
+  std::optional<StageKind> stage = {};     ///< first affected stage; empty: not in an id
+  std::optional<ProtocolKind> under = {};  ///< enters only if the run has this protocol
   /// The record omits the parameter if it has this value, written as in a manifest. All runs that
-  /// are older than the parameter have this value. It may differ from the default.
+  /// are older than the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};
-  /// Every record holds this value, whatever the parameter is. For a parameter that is no longer
-  /// part of the identity; the records of older runs may hold other values.
+  /// Every new record holds this value, whatever the value of the parameter. For a parameter that
+  /// is no longer part of the identity; records of older runs may hold other values.
   std::string_view recorded_as = {};
   /// No record holds the parameter: it selects the parent stage, whose id is in the record.
   bool selects_parent = false;
 
-  /// Whether another value makes another run.
+  /// Whether runs with different values of the parameter have different ids.
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }
 };
 
-/// The numbers that are allowed.
 struct Range {
   double min = 0;
   double max = 0;
@@ -45,36 +45,36 @@ struct Range {
   }
 };
 
-/// A key of a manifest: the values that it takes, and what it means.
+/// A key of a manifest: its allowed values and its meaning.
 struct Field {
   std::string_view name = {};
-  std::string_view symbol = {};  ///< as the supplement writes it; empty when it has none
-  std::string_view unit = {};    ///< of a number, "1" for a pure one
+  std::string_view symbol = {};  ///< in the supplement; empty if it has none there
+  std::string_view unit = {};    ///< of a number; "1" if it is dimensionless
   Range range = {};              ///< of a number
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
-  std::span<const std::string_view> names = {};  ///< of a choice: the values
-  std::string_view besides = {};                 ///< other values, for messages: ", or `none`"
-  bool whole = false;                            ///< takes whole numbers alone
-  std::span<const std::string_view> terms = {};  ///< names for expressions, if it takes expressions
+  std::span<const std::string_view> names = {};  ///< the values of a choice
+  std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
+  bool whole = false;                            ///< only whole numbers are allowed
+  std::span<const std::string_view> terms = {};  ///< for expressions; empty: not an expression
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
   std::size_t longest = 0;  ///< of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// A parameter as JSON, and back from a value that has passed check_value; null for other keys.
+  /// Convert a parameter to JSON, and back if check_value() accepts the JSON. Null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 
   bool is_choice() const { return !names.empty(); }
 };
 
-/// Whether the key takes numbers with a unit.
+/// Whether the values of the key are numbers with a unit.
 inline bool has_unit(const Field& field) {
   return !field.unit.empty() && field.unit != "1";
 }
 
-/// The field, completed with the kind of values of a member of type T.
+/// Completes the field for a member of type T: names of an enumeration, or whole numbers.
 template <class T>
 constexpr Field with_type(Field field) {
   if constexpr (std::is_enum_v<T>) field.names = kNames<T>;
@@ -85,7 +85,7 @@ constexpr Field with_type(Field field) {
 /// Every parameter, in the order in which the reference lists them.
 std::span<const Field> schema();
 
-/// The parameter of that name, or nullptr.
+/// The parameter with this name, or nullptr.
 const Field* find_field(std::string_view name);
 
 /// Whether the key is the length of a run or the number of seeds. These do not distinguish runs,
@@ -100,19 +100,19 @@ struct ValueProblem {
   std::string remedy;
 };
 
-/// Reads and checks a value from its text in a manifest. A real number becomes a JSON float, an
-/// integer an unsigned one, so that 1 and 1.0 are the same value.
+/// Reads a value from its text in a manifest and checks it. The JSON of a real number is always a
+/// float, so that 1 and 1.0 are equal; the JSON of an integer is unsigned.
 std::variant<nlohmann::json, ValueProblem> read_value(const Field& field, std::string_view text,
                                                       bool quoted);
 
-/// Checks the type and range of a value. Returns nothing if it may be used.
+/// Checks the type and range of a value. Returns nothing if the value is valid.
 std::optional<ValueProblem> check_value(const Field& field, const nlohmann::json& value);
 
-/// Whether the record of a stage holds the parameter when it has that value.
+/// Whether the record of a stage contains a parameter with this identity and this value.
 bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKind> protocol,
             const nlohmann::json& value);
 
-/// "a number > 0 and <= 1e+06", "one of still, cell".
+/// The allowed values: "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);
 
 /// The table of parameters in experiments/REFERENCE.md.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figures of the supplement. analysis/figures/ computes some of them; shipped manifests, whose
+// The figures of the supplement. analysis/figures/ computes some of them. Shipped manifests, whose
 // texts are part of the program, state the others. So `figures: [S2]` in any manifest means the
 // plots and claims of drag.yaml.
 #pragma once
@@ -16,13 +16,13 @@ namespace shearcell {
 /// The manifests that state figures of the supplement, as read_manifest() gives them.
 std::span<const Manifest> shipped_manifests();
 
-/// Every figure of the supplement: the computed ones, then the stated ones.
+/// All figures of the supplement: first the computed figures, then the stated figures.
 std::span<const Figure> all_figures();
 
-/// The figure with that name ("S2"), or null.
+/// The figure with this name ("S2"), or null.
 const Figure* find_figure(std::string_view name);
 
-/// The figures of the manifest's own plots and claims, in the order of its text.
+/// The figures that the manifest's own plots and claims state, in the order of the text.
 std::vector<Figure> stated_figures(const Manifest& manifest);
 
 }  // namespace shearcell

@@ -21,7 +21,7 @@
 namespace shearcell {
 namespace {
 
-/// Whether the keys that both sweep have equal values.
+/// Whether `swept` and `others` have equal values for each key that both contain.
 bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   return std::ranges::all_of(swept.items(), [&](const auto& entry) {
     const auto other = others.find(entry.key());
@@ -29,8 +29,7 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   });
 }
 
-/// The parameters of the packing that the cell, its grains and their units depend on are those of
-/// the recorded run.
+/// Throws ManifestError unless cell, grains and units are those of the recorded run.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
   Parameters had;
@@ -50,37 +49,38 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
     if (mine == its) continue;
     refuse(manifest.file, scale.start.at, std::string(field.name),
-           fmt::format("differs from that of run {:.8}, whose state this one begins with",
+           fmt::format("differs from the value of run {:.8}, whose state this run begins with",
                        recorded.id),
            value_text(mine), fmt::format("State {}.", value_text(its)));
   }
 }
 
-/// The nominal packing fraction at which the cell is so wide; nothing if there is none.
+/// The nominal packing fraction with which the cell has this width; nothing if it is out of range.
+/// A cell with a higher fraction is narrower.
 std::optional<double> fraction_for_width(Geometry shape, double width) {
   const Range& range = find_field("nominal_packing_fraction")->range;
   const auto excess = [&](double fraction) {
     shape.nominal_packing_fraction = fraction;
     return cell_width(shape) - width;
   };
-  if (excess(range.min) < 0 || excess(range.max) > 0) return std::nullopt;  // denser is narrower
+  if (excess(range.min) < 0 || excess(range.max) > 0) return std::nullopt;
   const auto [low, high] = boost::math::tools::bisect(excess, range.min, range.max,
                                                       boost::math::tools::eps_tolerance<double>());
   return 0.5 * (low + high);
 }
 
-/// Puts the grains between the planes of the cell, into which they may be pressed by `limit`.
-/// Throws ManifestError.
+/// Places the grains between the wall planes of the cell. A grain may overlap a plane by `limit`
+/// [d]. Throws ManifestError.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p, double limit) {
-  constexpr double tolerance = 1e-6;  // of the width
+  constexpr double tolerance = 1e-6;  // relative to the width
   const Eigen::AlignedBox3d box =
       grains.box.value_or(Eigen::AlignedBox3d(grains.position.rowwise().minCoeff().array() - 0.5,
                                               grains.position.rowwise().maxCoeff().array() + 0.5));
   const Eigen::Vector3d low = box.min(), high = box.max(), size = box.sizes();
   for (const int axis : {0, 2}) {
     const double room = axis == 0 ? cell.width : cell.depth;
-    // Without a box, grains may be pressed into the planes, and z is periodic.
+    // Without a box, grains may overlap the planes, and may cross the periodic boundary in z.
     const double over = size[axis] - room - (grains.box ? 0 : axis == 0 ? 2 * limit : 1);
     const bool fits = grains.box ? std::fabs(over) <= tolerance * room : over <= tolerance * room;
     if (fits) continue;
@@ -91,19 +91,19 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     const bool fits_better =
         std::fabs(std::log(in_other / room)) < 0.5 * std::fabs(std::log(size[axis] / room));
     refuse(path, {}, "",
-           fmt::format("its {} are {:.9g} d {}, and the cell of the manifest is {:.9g} d",
+           fmt::format("the {} are {:.9g} d {}, but the cell of the manifest is {:.9g} d",
                        grains.box ? "box and grains" : "grains", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
-           fits_better
-               ? fmt::format("Is the unit of its lengths right? Read in {} they are {:.4g} d.",
-                             in_m ? "d" : "m", in_other)
-           : fraction ? fmt::format("State `nominal_packing_fraction: {:.10g}`, which with this "
-                                    "height_over_width makes the cell as wide and deep as that.",
-                                    *fraction)
-                      : "Use a file with a cell of another size.");
+           fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
+                                     "size would be {:.4g} d.",
+                                     in_m ? "d" : "m", in_other)
+           : fraction  ? fmt::format("State `nominal_packing_fraction: {:.10g}`. With this "
+                                      "height_over_width, it gives the cell this width and depth.",
+                                     *fraction)
+                       : "Use a file with a box of another size.");
   }
-  const bool from_below = cell.moving == MovingWall::top;  // which plane stays
+  const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),
                                  from_below ? cell.bottom - low.y() : cell.top - high.y(),
                                  -low.z()};
@@ -122,8 +122,8 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   const Start& start = scale.start;
   const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
   if (start.experiment == manifest.experiment && scale_name(at_scale) == scale_name(scale.name)) {
-    refuse(manifest.file, start.at, "start", "names the experiment and the scale of these runs", "",
-           "Give the manifest another `experiment`.");
+    refuse(manifest.file, start.at, "start", "names the experiment and the scale of this manifest",
+           "", "Give the manifest another `experiment`.");
   }
   const auto is_it = [&](const Membership& m) {
     return m.newest && m.place.experiment == start.experiment &&
@@ -155,19 +155,19 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {
     refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute it first, or name the store that has it with --store.");
+           "Compute this run first, or name the store that contains it with --store.");
   }
   if (found.size() > 1) {
-    refuse(manifest.file, start.at, "start", fmt::format("the store has more than one {}", what),
-           "",
-           start.run.empty() ? "Single one out: `variant: \"KEY=VALUE\"`, several joined by commas."
-                             : "State more digits of the id.");
+    refuse(
+        manifest.file, start.at, "start", fmt::format("the store has more than one {}", what), "",
+        start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
+                          : "State more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);
   if (found.front()->cycle < cycle) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
-           fmt::format("cycle {}", found.front()->cycle), "Extend it first.");
+           fmt::format("cycle {}", found.front()->cycle), "Extend the run first.");
   }
   const auto records_it = [&](const Ask& ask) {
     return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
@@ -176,9 +176,9 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   const std::vector<Ask> asks = asks_of(found.front()->memberships);
   if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
     refuse(manifest.file, start.at, "start",
-           fmt::format("run {:.8} has no checkpoint of cycle {}", found.front()->id, cycle), "",
-           fmt::format("It has those of every {} cycles and of cycle {}; name one of these, or run "
-                       "its manifest again with `checkpoints: {{every_cycles: 1}}`.",
+           fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
+           fmt::format("It has checkpoints every {} cycles and at cycle {}. Name one of these "
+                       "cycles, or run its manifest again with `checkpoints: {{every_cycles: 1}}`.",
                        std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
                        found.front()->cycle));
   }
@@ -204,7 +204,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, and the manifest {}", counted(count, "grain"), p.grains), "",
+           fmt::format("has {}, but the manifest states {}", counted(count, "grain"), p.grains), "",
            fmt::format("State `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
@@ -218,8 +218,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
     refuse(packing.path, {}, "",
            fmt::format("a grain overlaps a wall by {:.3g} d, more than {:g} d", deepest, limit), "",
            fmt::format(
-               "Rough walls have grains, at other places for each seed: take the seed of "
-               "the packing, leave them room, or state `walls: smooth`{}.",
+               "Rough walls have wall grains, whose positions depend on the seed. Use the seed of "
+               "the packing, leave room for wall grains, or state `walls: smooth`{}.",
                packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
   }
   return made;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts other than loose grains that settle: the recorded state of another run, or the grains of a
-// file.
+// The key `start`: a run begins with the recorded state of another run, or with the grains of a
+// file, instead of loose grains that settle.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@
 
 namespace shearcell {
 
-/// The recorded run among `known` with whose state the variant begins. If `start` names no variant
-/// and the other experiment has several, it is the variant with the same values of all keys that
-/// both experiments sweep. Throws ManifestError if there is not exactly one such run, if the run
-/// has not reached the cycle, or if its cell or grains differ.
+/// The run in `known` with whose state the variant begins. If `start` names no variant and the
+/// other experiment has several, the variant with equal values of all keys that both experiments
+/// sweep. Throws ManifestError if not exactly one run fits, if the run has no checkpoint at the
+/// cycle, or if the cell or grains of the run differ.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 
 /// The text of a file of grains, and the facts about it that enter the id of its packing.
 struct PackingText {
-  std::string path;  ///< as messages name it
+  std::string path;  ///< as messages show it
   std::string text;
   StartFile file;
 };
@@ -37,12 +37,13 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
 struct PlacedGrains {
   Cell cell;
   State state;       ///< at step 0; the moving wall is at rest
-  std::string read;  ///< describe() of the file
+  std::string read;  ///< what was read, from describe()
 };
 
 /// Places the grains of the text in the cell of the parameters, with the wall grains of the seed.
-/// The box of the file must be as wide and deep as the cell; without a box the walls touch the
-/// outermost grains. Throws ManifestError with the reason and the remedy if they do not fit.
+/// The box of the file must be as wide and deep as the cell. Without a box, the grains must fit
+/// into the cell, and the bottom and top walls touch the outermost grains. Throws ManifestError
+/// with the reason and the remedy.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 

@@ -20,7 +20,6 @@ using std::string_view;
 
 constexpr std::size_t kLongestGuess = 300;
 
-// The entries of tried_names.txt.
 const std::vector<Tried>& all_tried() {
   static const std::vector<Tried> all = [] {
     std::vector<Tried> entries;
@@ -38,7 +37,7 @@ const std::vector<Tried>& all_tried() {
   return all;
 }
 
-// The name in small letters, with `_` around and between its words.
+// The name in lower case, with `_` around and between its words.
 std::string as_words(string_view name) {
   std::string words = fmt::format("_{}_", lower(name));
   std::ranges::replace_if(
@@ -46,7 +45,7 @@ std::string as_words(string_view name) {
   return words;
 }
 
-// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+// Least number of insertions, deletions, substitutions and swaps of neighbours from `a` to `b`.
 std::size_t edit_distance(string_view a, string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -100,8 +99,8 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
     if (field != nullptr && field->symbol == unknown) return std::string(candidate);
     if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
   }
-  // `stiffness` begins several names, but only stiffness_N_per_m ends in a unit. `settle` begins
-  // several with a unit, so none is suggested.
+  // Several names begin with `stiffness`, but only stiffness_N_per_m ends in a unit. Several names
+  // with a unit begin with `settle`, so that none of them is suggested.
   if (with_unit.size() > 1) {
     std::erase_if(with_unit, [](string_view name) {
       const Field* field = find_field(name);
@@ -119,7 +118,7 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
   std::string best;
   for (const string_view candidate : candidates) {
     const std::size_t distance = edit_distance(written, lower(candidate));
-    // A name with every letter wrong is not meant.
+    // A name that differs in every letter is not suggested.
     if (distance < nearest && distance < candidate.size()) {
       nearest = distance;
       best = candidate;

@@ -36,7 +36,7 @@ std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   return keys;
 }
 
-/// The keys whose different values still differ when rounded to four digits.
+/// The keys whose values do not become equal when they are rounded to four digits.
 std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
                                     const std::vector<json>& variants) {
   std::set<std::string> found;
@@ -56,7 +56,7 @@ std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
 
 /// "A=0.05 rad", "fluid=cell"; "" for a key that the variant does not have.
 std::string setting_text(const std::string& key, const json& variant, bool brief) {
-  if (!variant.contains(key)) {  // --engine adds it to some runs
+  if (!variant.contains(key)) {  // --engine adds `engine` to some runs
     return key == "engine" ? "engine=shearcell" : "";
   }
   const Field* field = find_field(key);
@@ -89,8 +89,8 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
   return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Normalizes "key=value": no spaces, numbers as this program writes them ("1.28e-2" gives
-/// "0.0128"), and the symbols and units of variant_names() replaced ("P=954 Pa" gives
+/// Normalizes "key=value": removes spaces, writes numbers as this program does ("1.28e-2" gives
+/// "0.0128"), and replaces the symbols and units of variant_names() ("P=954 Pa" gives
 /// "pressure_Pa=954").
 std::string same_spelling(std::string_view part) {
   const std::size_t equal = part.find('=');
@@ -202,7 +202,7 @@ std::vector<Variant> variants_of(const Scale& scale) {
           fmt::format("{}{}={}", made.swept.empty() ? "" : ",", axis.key, value_text(value));
       made.swept[axis.key] = value;
     };
-    // Number of grid points that have equal values on the axes before this one.
+    // Number of grid points with equal values on all axes before `axis`.
     std::uint64_t block = variants.size() / rows;
     for (const SweepAxis& axis : scale.sweep.grid) {
       const std::uint64_t place = index / rows % block;
@@ -242,8 +242,8 @@ std::map<json, std::string> variant_names(const std::vector<json>& variants,
   const auto some = std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
-  // Of keys that vary together only the first is kept. Keys that all variants have come first,
-  // since a variant without the kept key would get no name.
+  // Of several keys that vary together, only the first is kept. Keys that all variants have come
+  // first, since a variant without the kept key would get no name.
   std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some});
   for (const std::string& key : keys_telling_apart(variants, all)) {
     if (std::find(some, all.end(), key) != all.end()) keys.push_back(key);

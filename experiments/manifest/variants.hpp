@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The variants of an experiment at one scale: base, scale and sweep combined, and their names.
+// The variants of an experiment at one scale (`base`, scale and sweep combined), and their names.
 #pragma once
 
 #include <cstdint>
@@ -20,33 +20,33 @@ namespace shearcell {
 /// The value of a parameter that the scale does not sweep, or "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
-/// A combination of swept values.
+/// A combination of swept values, with the parameters that result from it.
 struct Variant {
-  std::string name = {};                            ///< "fluid=cell", "base" if nothing is swept
+  std::string name = {};                            ///< "fluid=cell"; "base" if nothing is swept
   nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
-  Parameters packing = {};  ///< `parameters` while the packing settles, with the values of `settle`
-  /// The variant has this many of the scale's seeds, the first ones; default: all.
+  Parameters packing = {};  ///< `parameters`, overridden by the values of `settle`
+  /// Number of seeds: the variant has only the first seeds of the scale. Default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Selects variants, experiments or seeds by texts of the command line. A variant such as
-/// "fluid=cell,amplitude_rad=0.1" has the parts "fluid=cell" and "amplitude_rad=0.1". It fits a
-/// text if it has all parts of the text, in any order; numbers may be written in any way, and with
-/// a unit.
+/// Selects variants, experiments or seeds by texts from the command line. A variant such as
+/// "fluid=cell,amplitude_rad=0.1" has the parts "fluid=cell" and "amplitude_rad=0.1". The variant
+/// fits a text if it has all parts of the text, in any order. Numbers may be written in any
+/// notation, with or without a unit.
 class Filter {
  public:
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether to select the value, by its own parts or those of its display name. Texts with the
-  /// same keys are alternatives; a value must fit one text for each set of keys. True if no texts
-  /// were given.
+  /// Whether to select the value. The parts of its display name `name` count as parts of the value.
+  /// Texts with equal keys are alternatives; a value must fit one text for each set of keys. True
+  /// if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
-  /// The first text that fitted no value so far, or null.
+  /// The first text that no value has fitted so far, or null.
   const std::string* unfound() const;
-  /// The values that passes() was asked about, each once, in order; after each value its name, if
-  /// the name has other parts.
+  /// The values that were given to passes(), each once, in order. A value is followed by its
+  /// display name, if the name has other parts.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
@@ -66,21 +66,21 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 /// Variant::swept of each variant.
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 
-/// Returns display names of variants, which are objects of swept keys and values and may be
-/// repeated. (Ids and CSV files use Variant::name.) A label replaces the keys that it states;
-/// labels with more keys come first. The keys that still distinguish the variants follow: "fluid at
-/// rest, A=0.05 rad". The name is "base" if nothing is swept.
+/// Returns the display names of variants, which are objects of swept keys and values and may be
+/// repeated. Labels come first, those with most keys before others, and replace the keys that they
+/// state. Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". The name
+/// is "base" if nothing is swept. (Ids and CSV files use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 
-/// The swept axis of this key, or nullptr.
+/// The swept axis with this key, or nullptr.
 const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 
 /// The number of variants, or ManifestLimits::runs + 1 if there are more.
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
-/// zip fastest. The scale must be complete and have at most ManifestLimits::runs variants.
+/// zip fastest. The scale must be completed and have at most ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell

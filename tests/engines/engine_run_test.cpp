@@ -302,7 +302,7 @@ TEST_F(EngineRun, ReportsTheErrorOfLammps) {
 TEST_F(EngineRun, RejectsWhatLammpsCannotDo) {
   const std::string stiffen = write("s.yaml", tiny_manifest("  protocol: stiffen\n"));
   expect(2, {"plan", stiffen, "--engine", "lammps"},
-         {"engine: LAMMPS cannot do the protocol stiffen"});
+         {"engine: LAMMPS cannot compute protocol stiffen"});
   const std::string both =
       write("b.yaml", tiny_manifest("  protocol: stiffen\n  engine: lammps\n"));
   expect(2, {"plan", both}, {"b.yaml:11:11: engine: LAMMPS"});

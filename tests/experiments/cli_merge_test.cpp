@@ -136,7 +136,8 @@ TEST_F(Split, PlanAndSubmitHaveTheSeedsOfRun) {
     }
   }
   expect_refused({"run", "m.yaml", "--seed", "6,7"},
-                 {"m.yaml: seed: the manifest has no such seed (got 7). It has 1, 2, 3, 4, 5, 6"});
+                 {"m.yaml: seed: the manifest does not have this seed (got 7). The manifest has 1, "
+                  "2, 3, 4, 5, 6"});
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(BadFile, IsRejected) {
     const char* says;
   };
   for (const auto& [path, says] :
-       {Case{folder, ": is a directory. Name a file in it."},
+       {Case{folder, ": is a directory. Name a file in this directory."},
         Case{at("none"), ": there is no such file"}, Case{at("file/none"), ": "},
         Case{at("pipe"), ": is not a regular file"}, Case{at("empty"), "the manifest is empty"},
         Case{at("large"), "is larger than 1048576 bytes"},
@@ -163,8 +163,8 @@ TEST(BadText, AnyKeyWithAnyKindOfValueIsReadOrRefused) {
   std::istringstream tables(manifest_markdown());
   std::string before, after;  // in the top level, a plot, a claim
   for (std::string line; std::getline(tables, line);) {
-    if (line == "Of a plot:") before = "plots: [{name: p, y: phi, by: fluid, ", after = "}]";
-    if (line == "Of a claim:") before = "claims: [{name: c, compare: phi, at_cycle: 1, ";
+    if (line == "Keys of a plot:") before = "plots: [{name: p, y: phi, by: fluid, ", after = "}]";
+    if (line == "Keys of a claim:") before = "claims: [{name: c, compare: phi, at_cycle: 1, ";
     if (!line.starts_with("| `")) continue;
     const std::string key = line.substr(3, line.find('`', 3) - 3);
     texts.push_back(before + key + ": {}" + after);

@@ -216,10 +216,10 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(plan.runs[0].place.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
-  EXPECT_EQ(
-      message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-      "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more seeds than the scale has (got 3). "
-      "State `seeds: 3`, or list as many.");
+  EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
+            "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more than the number of seeds of the "
+            "scale (got 3). "
+            "State `seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {
@@ -236,8 +236,8 @@ TEST(Expand, TakesOnlyTheRequestedVariants) {
                 manifest, {.variants = {"amplitude_rad=0.05", "amplitude_rad=0.1", "fluid=cell"}})),
             (Strings{"amplitude_rad=0.05,fluid=cell", "amplitude_rad=0.1,fluid=cell"}));
   EXPECT_EQ(message(manifest, {.variants = {"fluid=cell", "amplitude_rad=0.2"}}),
-            "test.yaml: variant: no variant has these values (got amplitude_rad=0.2). It has "
-            "amplitude_rad=0.05,fluid=still; amplitude_rad=0.05,fluid=cell; "
+            "test.yaml: variant: no variant has these values (got amplitude_rad=0.2). The variants "
+            "are amplitude_rad=0.05,fluid=still; amplitude_rad=0.05,fluid=cell; "
             "amplitude_rad=0.1,fluid=still; amplitude_rad=0.1,fluid=cell.");
 }
 
@@ -245,13 +245,15 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
   const Manifest manifest =
       parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
   EXPECT_EQ(message(manifest, {}),
-            "test.yaml: scale: there is no scale desk, the default. Name one with --scale. It has "
-            "smoke, paper.");
+            "test.yaml: scale: there is no scale desk, which is the default. Name a scale with "
+            "--scale. The manifest has smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
-            "test.yaml: scale: is unknown, the nearest is smoke (got smok). It has smoke, paper.");
-  EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
-            "test.yaml: seeds: the manifest lists 1 seeds only (got 2). List more, or state a "
-            "count.");
+            "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
+            "smoke, paper.");
+  EXPECT_EQ(
+      message(manifest, {.scale = "smoke", .seeds = 2}),
+      "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or state a "
+      "count.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");
@@ -325,13 +327,14 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
   EXPECT_TRUE(claim(sides, 3).empty());
   ASSERT_EQ(claim(sides, 4).size(), 1U);
-  EXPECT_TRUE(has(claim(sides, 4)[0], "claim same: it asks for cycle 4, and the runs have 3"));
+  EXPECT_TRUE(
+      has(claim(sides, 4)[0], "claim same: it needs cycle 4, but the last cycle of the runs is 3"));
   ASSERT_EQ(claim("{fluid: still}, {fluid: cell, walls: rough}", 3).size(), 1U);
   EXPECT_TRUE(has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
                   "2 variants have fluid=still"));
   for (const auto& [plot, problem] :
        {std::pair("y: phi, by: fluid", "average over the values of walls"),
-        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it asks for cycle 50"),
+        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it needs cycle 50"),
         std::pair("y: stress_xy_Pa, x: shear_strain, cycles: [1, 2], show: traces",
                   "shear_strain is 0 at whole cycles"),
         std::pair("y: phi, minus: {fluid: still}",
@@ -364,7 +367,7 @@ TEST(Expand, WarnsOfClaimsThatTooFewSeedsCannotDecide) {
   };
   EXPECT_TRUE(warnings(3).empty());
   ASSERT_EQ(warnings(2).size(), 1U);
-  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict takes at least 3 seeds, not 2"));
+  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict needs at least 3 seeds, but there are 2"));
 }
 
 // A small scale is for trying; it is only said if no scale decides the claim.
@@ -409,7 +412,7 @@ TEST(Manifest, AliasesOfLongTextsCountAsWrittenOut) {
       "experiment: long\nquestion: &q \"" + std::string(100'000, 'a') + "\"\nseeds: [";
   for (int k = 0; k < 20; ++k) text += "*q, ";
   EXPECT_TRUE(has(message_of<ManifestError>([&] { parse_manifest(text + "1]\n", "long.yaml"); }),
-                  "is larger than 1048576 bytes with its aliases written out"));
+                  "is larger than 1048576 bytes when aliases are written out"));
 }
 
 TEST(Expand, AnAliasIsACopyOfItsAnchor) {
@@ -452,7 +455,7 @@ TEST(Expand, WarnsOfFiguresThatWouldAverageOverTheSweep) {
 TEST(Expand, WarnsOfCellsWithoutInteriorGrains) {
   const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   ASSERT_EQ(warnings("grains: 60").size(), 1U);
-  EXPECT_TRUE(has(warnings("grains: 60")[0], "too small for interior grains"));
+  EXPECT_TRUE(has(warnings("grains: 60")[0], "too small to have interior grains"));
   EXPECT_TRUE(warnings("grains: 300").empty());
 }
 

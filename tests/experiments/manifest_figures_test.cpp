@@ -50,7 +50,8 @@ TEST(FigureWarnings, OfCyclesWithoutACheckpoint) {
         {plot("y: phi, show: traces, cycles: [3, 3]"), "no run has a checkpoint in cycles 3 to 3"},
         {claim("compare: phi, at_cycle: 3"), "claim own: it needs a checkpoint at cycle 3, which"},
         {claim("compare: phi, cycles: [2, 4]"), "it needs a checkpoint at cycle 3"},
-        {claim("compare: phi, at_cycle: 5"), "it asks for cycle 5, and the runs have 4"}}) {
+        {claim("compare: phi, at_cycle: 5"),
+         "it needs cycle 5, but the last cycle of the runs is 4"}}) {
     const Strings found = warnings(4, bad);
     ASSERT_EQ(found.size(), 1U) << bad;
     EXPECT_TRUE(has(found[0], says)) << found[0];
@@ -60,12 +61,14 @@ TEST(FigureWarnings, OfCyclesWithoutACheckpoint) {
 
 TEST(FigureWarnings, OfMeasuresThatNeedAnEarlierCheckpoint) {
   for (const auto& [bad, says] :
-       {std::pair{plot("y: msd_1_cycle_d2"),
-                  "no run has a checkpoint with another one 1 cycle before it, so msd_1_cycle_d2"},
+       {std::pair{
+            plot("y: msd_1_cycle_d2"),
+            "no run has a checkpoint and another checkpoint 1 cycle earlier, so msd_1_cycle_d2"},
         {plot("y: phi, x: reversible_percent"), "so reversible_percent has no value"},
-        {plot("y: msd_10_cycles_d2"), "with another one 10 cycles before it"},
-        {plot("y: work_of_walls_per_cycle_J, x: drag_kg_per_s"), "a checkpoint at cycle 4 with"},
-        {claim("compare: d2min_1_cycle_d2, at_cycle: 4"), "at cycle 4 with another one 1 cycle"}}) {
+        {plot("y: msd_10_cycles_d2"), "and another checkpoint 10 cycles earlier"},
+        {plot("y: work_of_walls_per_cycle_J, x: drag_kg_per_s"), "a checkpoint at cycle 4 and"},
+        {claim("compare: d2min_1_cycle_d2, at_cycle: 4"),
+         "at cycle 4 and another checkpoint 1 cycle"}}) {
     const Strings found = warnings(4, bad);
     ASSERT_EQ(found.size(), 1U) << bad;
     EXPECT_TRUE(has(found[0], says)) << found[0];
@@ -82,7 +85,7 @@ TEST(FigureWarnings, OfAClaimBeyondTheEndOfOneSide) {
                       claim("compare: phi, at_cycle: 8"))
           .warnings;
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_TRUE(has(found[0], "it asks for cycle 8, and the runs have 4"));
+  EXPECT_TRUE(has(found[0], "it needs cycle 8, but the last cycle of the runs is 4"));
 }
 
 // `run --cycles 2` after `run --cycles 5` leaves the runs with 5 cycles.
@@ -133,7 +136,8 @@ TEST(FigureWarnings, OfASeriesThatFitsSeveralCurves) {
   const std::string series = ", series: {\"fluid=still\": {colour: black}}";
   const Strings several = found("y: phi" + series);
   ASSERT_EQ(several.size(), 1U);
-  EXPECT_TRUE(has(several[0], "plot own: the style of fluid=still fits 2 curves")) << several[0];
+  EXPECT_TRUE(has(several[0], "plot own: the style for fluid=still matches 2 curves"))
+      << several[0];
   EXPECT_EQ(found("y: phi, x: amplitude_rad" + series), Strings{});
   EXPECT_EQ(found("y: phi, x: 2*amplitude_rad" + series), Strings{});
   EXPECT_EQ(found("y: phi, panel: amplitude_rad" + series), Strings{});
@@ -151,7 +155,8 @@ TEST(FigureWarnings, OfASeriesThatFitsNoCurve) {
   EXPECT_EQ(found("{0.05: {colour: black}}"), Strings{});
   const Strings none = found("{0.06: {colour: black}}");
   ASSERT_EQ(none.size(), 1U);
-  EXPECT_TRUE(has(none[0], "plot own: the style of amplitude_rad=0.06 fits no curve")) << none[0];
+  EXPECT_TRUE(has(none[0], "plot own: the style for amplitude_rad=0.06 matches no curve"))
+      << none[0];
   // It may be of another scale.
   const std::string scales =
       "scales: {a: {sweep: {grid: {fluid: [still, cell]}}}, desk: {sweep: {grid: {fluid: "
@@ -170,7 +175,7 @@ TEST(FigureWarnings, OfListedFigures) {
   const Strings short_runs = found("cycles: 4", kThreeSeeds);
   ASSERT_FALSE(short_runs.empty());
   EXPECT_TRUE(std::ranges::any_of(short_runs, [](const std::string& one) {
-    return has(one, "figure S2: claim") && has(one, "and the runs have 4.");
+    return has(one, "figure S2: claim") && has(one, "but the last cycle of the runs is 4.");
   })) << fmt::format("{}", fmt::join(short_runs, "\n"));
 }
 
@@ -187,11 +192,11 @@ TEST(FigureWarnings, OfPrimaryClaimsThatAreStatements) {
        {std::pair{says, std::string()},
         {std::string("own: phi at cycle 4 is the same for water and fluid=cell"), label}}) {
     EXPECT_EQ(found(statement, with), Strings{"test.yaml: primary: '" + statement +
-                                              "' is a statement; write the claim's id, own."});
+                                              "' is a statement. Write the claim's id, own."});
   }
   EXPECT_EQ(found(says, label), Strings{"test.yaml: primary: no claim has the statement '" + says +
-                                        "'; write the id of a claim: own."});
-  EXPECT_TRUE(has(found("C: the size", "figures: [C]\n").back(), "write the id of a claim: own."));
+                                        "'. Write one of the ids: own."});
+  EXPECT_TRUE(has(found("C: the size", "figures: [C]\n").back(), "Write one of the ids: own."));
 }
 
 TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {

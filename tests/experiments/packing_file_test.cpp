@@ -51,11 +51,11 @@ void PrintTo(const BadPacking& bad, std::ostream* out) {
 }
 
 const std::string kFormats =
-    "It takes extended XYZ (its first line is the number of grains), LAMMPS data (\"500 atoms\" in "
-    "its header), a LAMMPS dump, or CSV whose first line names the columns, as x_m,y_m,z_m.";
+    "Use extended XYZ (its first line is the number of grains), LAMMPS data (with \"500 atoms\" in "
+    "its header), a LAMMPS dump, or CSV whose first line names the columns, such as x_m,y_m,z_m.";
 const std::string kDeep =
-    "At most 0.25 d (`max_overlap_diameters`): are the unit of the lengths and the diameter right? "
-    "If so, let the grains relax in the program that made them.";
+    "At most 0.25 d are allowed (`max_overlap_diameters`). Are the unit of the lengths and the "
+    "diameter right? If so, let the grains relax in the program that made the file.";
 
 const std::vector<BadPacking> kBad = {
     {"Empty", "a.xyz", "", "a.xyz: is empty. " + kFormats},
@@ -67,134 +67,145 @@ const std::vector<BadPacking> kBad = {
      "LAMMPS data or CSV."},
     {"Latin1", "a.csv", "x,y,z\n1,2,\xe9\n",
      "a.csv:2:5: is not valid UTF-8. Save the file as UTF-8 text."},
-    {"Prose", "a.txt", "Dear reader\n",
-     "a.txt: is none of the formats that can be read. " + kFormats},
+    {"Prose", "a.txt", "Dear reader\n", "a.txt: is not in a format that can be read. " + kFormats},
     {"UnitUnstated", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz: does not state the unit of its lengths. Write `unit: m` or `unit: d` (grain "
      "diameters) "
      "beside `file` in the manifest.",
      kUnstated},
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
-     "a.csv:1:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+     "a.csv:1:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:13: length_unit: is not read (got nm). It takes m or d."},
+     "a.xyz:2:13: length_unit: cannot be read (got nm). Write m or d."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
-     "a.csv:1:9: is in another unit than the columns before (got z_d). Write all lengths in _m or "
-     "all in _d.",
+     "a.csv:1:9: is in another unit than the earlier columns (got z_d). Write all lengths in m "
+     "(x_m) or all in d (x_d).",
      kUnstated},
     {"NotANumber", "a.xyz", xyz("", "A 1 1 1\nA 3 three 3\n"),
-     "a.xyz:4:5: y: is not a number (got three). Write it in decimal digits, as 1.5e-3."},
+     "a.xyz:4:5: y: is not a number (got three). Write the number in decimal digits, such as "
+     "1.5e-3."},
     {"NaN", "a.xyz", xyz("", "A 1 1 nan\nA 3 3 3\n"),
-     "a.xyz:3:7: z: is not finite, or beyond 1e100 (got nan). Remove this grain, or correct its "
-     "value."},
+     "a.xyz:3:7: z: is not finite, or larger than 1e100 (got nan). Remove this grain, or correct "
+     "the value."},
     {"Infinite", "a.csv", "x,y,z\n1,2,-inf\n",
-     "a.csv:2:5: z: is not finite, or beyond 1e100 (got -inf). Remove this grain, or correct its "
-     "value."},
+     "a.csv:2:5: z: is not finite, or larger than 1e100 (got -inf). Remove this grain, or correct "
+     "the value."},
     {"BeyondDouble", "a.csv", "x,y,z\n1,2,1e999\n",
-     "a.csv:2:5: z: is not a number (got 1e999). Write it in decimal digits, as 1.5e-3."},
+     "a.csv:2:5: z: is not a number (got 1e999). Write the number in decimal digits, such as "
+     "1.5e-3."},
     {"DecimalComma", "a.csv", "x;y;z\n1,5;2;3\n",
-     "a.csv:2:1: x: is not a number (got 1,5). A number takes a decimal point: 1.5."},
+     "a.csv:2:1: x: is not a number (got 1,5). Write a decimal point: 1.5."},
     {"DecimalCommasAmongCommas", "a.csv", "x,y,z\n1,5,2,5,3,5\n",
-     "a.csv:2:1: has 6 fields instead of 3. Numbers take a decimal point, not a comma."},
+     "a.csv:2:1: has 6 fields instead of 3. Write numbers with a decimal point, not a comma."},
     {"FieldMissing", "a.csv", "x,y,z\n1,2,3\n4,5\n",
      "a.csv:3:1: has 2 fields instead of 3. Each grain is one line with a value for each column."},
     {"ColumnMissing", "a.csv", "x,y,radius\n1,2,0.5\n",
-     "a.csv:1:1: the column z is missing. The first line names the columns, as x_m,y_m,z_m."},
+     "a.csv:1:1: the column z is missing. The first line must name the columns, such as "
+     "x_m,y_m,z_m."},
     {"VelocityIncomplete", "a.csv", "x,y,z,vx\n1,2,3,0\n",
-     "a.csv:1:1: the column vy is missing. The first line names the columns, as x_m,y_m,z_m."},
+     "a.csv:1:1: the column vy is missing. The first line must name the columns, such as "
+     "x_m,y_m,z_m."},
     {"ColumnTwice", "a.csv", "x,y,z,x\n1,2,3,4\n",
-     "a.csv:1:7: names a column that occurs twice (got x). Keep one of them."},
-    {"HeaderAlone", "a.csv", "x,y,z\n", "a.csv:1:1: the file holds no grains. " + kFormats},
+     "a.csv:1:7: is a column that occurs twice (got x). Keep one of them."},
+    {"HeaderAlone", "a.csv", "x,y,z\n", "a.csv:1:1: the file has no grains. " + kFormats},
     {"HeaderMissing", "a.csv", "1,2,3\n",
-     "a.csv:1:1: the column x is missing. The first line names the columns, as x_m,y_m,z_m."},
+     "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
+     "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
      "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Write the whole file, "
      "or "
      "correct the number."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file goes on after the 2 grains that line 1 states. Keep one frame, or "
+     "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
      "correct "
      "the number."},
-    {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file holds no grains. " + kFormats},
+    {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
     {"CountAlone", "a.xyz", "5",
      "a.xyz:1:1: the file ends after this line. It lacks the comment and the grains."},
     {"PropertiesWithoutPositions", "a.xyz", xyz("Properties=species:S:1:radius:R:1", "A 1\nA 1\n"),
-     "a.xyz:2:1: the column x is missing. Properties holds pos:R:3, and vel:R:3 if there are "
+     "a.xyz:2:1: the column x is missing. Properties must contain pos:R:3, and vel:R:3 if there "
+     "are "
      "velocities."},
     {"PropertiesCut", "a.xyz", xyz("Properties=species:S:1:pos:R", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:24: Properties: is not a column (got pos). A column is NAME:TYPE:COUNT, as in "
      "species:S:1:pos:R:3."},
     {"PropertiesFlat", "a.xyz", xyz("Properties=pos:R:2", "1 1\n3 3\n"),
-     "a.xyz:2:18: Properties: is not the number of columns of pos (got 2). It takes 3."},
+     "a.xyz:2:18: Properties: is not the right number of columns for pos (got 2). Write 3."},
     {"KeyTwice", "a.xyz", xyz(kLattice + kLattice, "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:29: is a key that occurs twice (got Lattice). Keep one of them."},
     {"BoxLeans", "a.xyz", xyz("Lattice=\"9 0 0 0.5 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. A start is upright. Of a sheared "
-     "cell, write the state at the end of a cycle."},
+     "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. The box must be upright. Write "
+     "the state of a sheared cell at the end of a cycle."},
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: the box is -9 long in y. Its edges are positive."},
+     "a.xyz:2:1: the box is -9 long in y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the "
-     "box; Origin needs 3, its corner."},
+     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the box. "
+     "Origin needs 3 numbers, its lower corner."},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
-     "a.xyz:2:1: the box is 2 d deep in z. At least 3 d: is the unit of its lengths right?"},
+     "a.xyz:2:1: the box is 2 d deep in z. At least 3 d are needed. Is the unit of lengths right?"},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
-     "a.xyz:4:1: the grain is outside of the box: y = -3 d is not from 0 to 9 d. Only z is "
-     "periodic, x and y have walls: write a box that holds all grains (in extended XYZ, Origin is "
-     "its lower corner, without it 0 0 0)."},
+     "a.xyz:4:1: the grain is outside of the box: y = -3 d is not between 0 and 9 d. Only z is "
+     "periodic; x and y have walls. Write a box that contains all grains. In extended XYZ, Origin "
+     "is the lower corner of the box (default 0 0 0)."},
     {"TooLong", "a.xyz", xyz("", "A 1 1 1\nA 3e9 3 3\n"),
-     "a.xyz: the packing is 3e+09 d long. At most 100000 d: is the unit of its lengths right?"},
+     "a.xyz: the packing is 3e+09 d long. At most 100000 d are allowed. Is the unit of lengths "
+     "right?"},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
-     "a.xyz:4:1: the grain is at the place of that of line 3. " + kDeep},
+     "a.xyz:4:1: the grain is at the position of the grain in line 3. " + kDeep},
     {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
-     "a.xyz:4:1: the grain overlaps that of line 3 by 0.5 d. " + kDeep},
+     "a.xyz:4:1: the grain overlaps the grain in line 3 by 0.5 d. " + kDeep},
     {"OverlappingAcrossTheBoundary", "a.xyz", xyz(kLattice, "A 1 1 0.25\nA 1 1 8.75\n"),
-     "a.xyz:4:1: the grain overlaps that of line 3 by 0.5 d. " + kDeep},
+     "a.xyz:4:1: the grain overlaps the grain in line 3 by 0.5 d. " + kDeep},
     {"RadiiUnequal", "a.xyz",
      xyz("Properties=species:S:1:pos:R:3:radius:R:1", "A 1 1 1 0.5\nA 3 3 3 0.6\n"),
-     "a.xyz:4:1: the grains have diameters from 1 (line 3) to 1.2, 20 % larger. All grains of this "
-     "program are equal. Continue such a packing in LAMMPS (`shearcell export --to lammps` writes "
-     "a "
-     "script for it)."},
+     "a.xyz:4:1: the grains have diameters from 1 (line 3) to 1.2, which is 20 % larger. This "
+     "program needs equal grains. Continue this packing in LAMMPS (`shearcell export --to lammps` "
+     "writes a script for LAMMPS)."},
     {"RadiusOfZero", "a.csv", "x,y,z,radius\n1,2,3,0\n",
      "a.csv:2:1: the diameter is 0. It must be positive."},
     {"DiameterOfAnotherRun", "a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,0.002\n",
-     "a.csv:2:1: the diameter is 0.002 m. The run's is 0.003 m: set `diameter_m`, or scale the "
+     "a.csv:2:1: the diameter is 0.002 m. The manifest has 0.003 m. Set `diameter_m`, or scale the "
      "file.",
      kUnstated},
     {"DiameterNotOne", "a.csv", "x,y,z,radius\n1,2,3,1\n",
-     "a.csv:2:1: the diameter is 2 d. Lengths in d are divided by the diameter, so it is 1."},
+     "a.csv:2:1: the diameter is 2 d. Lengths in d are divided by the diameter, so the diameter "
+     "must be 1."},
     {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
-     "a.csv:3:1: the id 7 is that of line 2, too. Each grain has an id of its own."},
+     "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
-     "a.data:3:1: states 2 atoms, and there are 1. Write the whole file, or correct the number."},
+     "a.data:3:1: states 2 atoms, but the file has 1. Write the whole file, or correct the "
+     "number."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
-     "a.data:3:1: states 2 atoms, and there are 0. Write the whole file, or correct the number."},
+     "a.data:3:1: states 2 atoms, but the file has 0. Write the whole file, or correct the "
+     "number."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
-     "a.data:11:1: the atom style full is not read. Write the data file with atom_style sphere or "
+     "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "
+     "or "
      "atomic."},
     {"DataOfNoStyle", "a.data", data(kBounds, "Atoms\n\n1 1 0 1 1 1\n"),
-     "a.data:11:1: an atom of 6 fields is not read. Write the data file with atom_style sphere or "
+     "a.data:11:1: atoms with 6 fields cannot be read. Write the data file with atom_style sphere "
+     "or "
      "atomic."},
     {"DataTilted", "a.data", data(kBounds + "1 0 0 xy xz yz\n", kAtoms),
-     "a.data:8:1: the box is not orthogonal: an edge leans by 1. A start is upright. Of a sheared "
-     "cell, write the state at the end of a cycle."},
+     "a.data:8:1: the box is not orthogonal: an edge leans by 1. The box must be upright. Write "
+     "the state of a sheared cell at the end of a cycle."},
     {"DataReversed", "a.data", data("9 0 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n", kAtoms),
-     "a.data:7:1: the box is -9 long in x. Its edges are positive."},
+     "a.data:7:1: the box is -9 long in x. The edges must be positive."},
     {"DataVelocityMissing", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n"),
-     "a.data:16:1: atom 2 has no velocity. Write a velocity for each atom, each once, or leave the "
-     "section out."},
+     "a.data:16:1: atom 2 has no velocity. Write one velocity for each atom, or leave out the "
+     "section Velocities."},
     {"DataVelocityOfNone", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n"),
      "a.data:17:1: atom 3 has two velocities, or no position. Write the whole file."},
     {"DataNotANumber", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3,5\n"),
-     "a.data:12:9: z: is not a number (got 3,5). A number takes a decimal point: 3.5."},
+     "a.data:12:9: z: is not a number (got 3,5). Write a decimal point: 3.5."},
     {"DumpScaled", "a.dump", dump("id type xs ys zs", "1 1 0.1 0.1 0.1\n2 1 0.3 0.3 0.3\n"),
-     "a.dump:9:1: the column x is missing. Write them: dump ... custom ... id x y z vx vy vz."},
+     "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
+     "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
      "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
      "or correct the number."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file goes on after the 2 grains that line 4 states. Keep one frame, or "
+     "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
      "correct the number."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
@@ -246,16 +257,16 @@ TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
 }
 
 const std::string kKeys =
-    "The keys are Lattice, Origin, Properties, length_unit, velocity_unit, without blanks around "
-    "`=`: write one of these, or remove it.";
+    "Use one of the keys Lattice, Origin, Properties, length_unit, velocity_unit, without blanks "
+    "around `=`, or remove this key.";
 const std::string kLammpsUnits =
-    " Lengths are in m (units si) or as the manifest states (units lj).";
+    " Lengths must be in m (units si) or in the unit of the manifest (units lj).";
 const std::string kVelocities =
-    "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), velocities in the "
-    "unit of the lengths per second, or remove this one.";
-const std::string kOneUnit = "Write all lengths in _m or all in _d.";
+    "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or remove this "
+    "column. Velocities are in the unit of the lengths per second.";
+const std::string kOneUnit = "Write all lengths in m (x_m) or all in d (x_d).";
 const std::string kUpright =
-    "A start is upright. Of a sheared cell, write the state at the end of a cycle.";
+    "The box must be upright. Write the state of a sheared cell at the end of a cycle.";
 
 /// A frame of extended XYZ with the columns species, position and these.
 std::string with_columns(const std::string& properties, const std::string& values) {
@@ -288,25 +299,25 @@ const std::string kTwo = "2 grains, no box, no velocities", kBoxed = "2 grains, 
 const std::vector<Parts> kParts = {
     // Keys of extended XYZ.
     {"a.xyz", xyz("Lattice = \"9 0 0 2 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: is not read as it is written (got Lattice). " + kKeys},
+     ":2:1: cannot be read in this form (got Lattice). " + kKeys},
     {"a.xyz", xyz("Lattice= \"9 0 0 0 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: is not read as it is written (got Lattice). " + kKeys},
+     ":2:1: cannot be read in this form (got Lattice). " + kKeys},
     {"a.xyz", xyz("pbc=\"F F T\" Origin\t=\t\"0 0 0\"", "A 1 1 1\nA 3 3 3\n"),
-     ":2:13: is not read as it is written (got Origin). " + kKeys},
+     ":2:13: cannot be read in this form (got Origin). " + kKeys},
     {"a.xyz", xyz("Properties = species:S:1:pos:R:3:radius:R:1", "A 1 1 1 .5\nA 3 3 3 .5\n"),
-     ":2:1: is not read as it is written (got Properties). " + kKeys},
+     ":2:1: cannot be read in this form (got Properties). " + kKeys},
     {"a.xyz", xyz("lattice=\"9 0 0 0 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: is not read as it is written (got lattice). " + kKeys},
+     ":2:1: cannot be read in this form (got lattice). " + kKeys},
     {"a.xyz", xyz("Cell=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: is not read as it is written (got Cell). " + kKeys},
+     ":2:1: cannot be read in this form (got Cell). " + kKeys},
     {"a.xyz", xyz("units=angstrom", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: is not read as it is written (got units). " + kKeys},
+     ":2:1: cannot be read in this form (got units). " + kKeys},
     {"a.xyz", xyz("length_unit = m", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+     ":2:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
     {"a.xyz", xyz("length_unit = 'd' Lattice='9 0 0 0 9 0 0 0 9'", "A 1 1 1\nA 3 3 3\n"),
      kStill + "; not read: species"},
     {"a.xyz", xyz("velocity_unit=mm/s", "A 1 1 1\nA 3 3 3\n"),
-     ":2:15: velocity_unit: is not read (got mm). It takes m or d."},
+     ":2:15: velocity_unit: cannot be read (got mm). Write m or d."},
     {"a.xyz", xyz("energy= Lattice=\"9 0 0 1 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      ":2:1: the box is not orthogonal: an edge leans by 1. " + kUpright},
     {"a.xyz", xyz(kLattice + "pbc=\"T T T\" energy=-1.0 note=\"a = b\"", "A 1 1 1\nA 3 3 3\n"),
@@ -324,40 +335,42 @@ const std::vector<Parts> kParts = {
     {"a.xyz", xyz("Properties=species:S:1:forces:R:3:pos:R:3", "A 7 7 7 1 1 1\nA 8 8 8 3 3 3\n"),
      kTwo + "; not read: species, forces"},
     {"a.xyz", with_columns("momenta:R:3", "1.00800000 0.00000000 0.00000000"),
-     ":2:60: is not read under this name (got momenta). " + kVelocities},
+     ":2:60: cannot be read under this name (got momenta). " + kVelocities},
     {"a.xyz", with_columns("velo:R:3:momenta:R:3", "1 0 0 1 0 0"),
      kBoxed + "velocities; not read: species, momenta"},
     {"a.xyz", with_columns("V:R:3", "1 0 0"),
-     ":2:60: is not read under this name (got V). " + kVelocities},
+     ":2:60: cannot be read under this name (got V). " + kVelocities},
     {"a.xyz", with_columns("angular_velocity:R:3:Omega:R:3", "1 0 0 1 0 0"),
      kStill + "; not read: species, angular_velocity, Omega"},
     {"a.xyz", with_columns("Radius:R:1:magmoms:R:1", ".5 1"),
      kStill + "; not read: species, magmoms"},
     {"a.xyz", with_columns("radii:R:3", "1 1 1"),
-     ":2:68: Properties: is not the number of columns of radii (got 3). It takes 1."},
+     ":2:68: Properties: is not the right number of columns for radii (got 3). Write 1."},
     {"a.xyz", with_columns("R:R:1", "0.7"),
-     ":3:1: the diameter is 1.4 d. Lengths in d are divided by the diameter, so it is 1. The "
-     "column R is read as radii: if it is not, rename or remove it."},
+     ":3:1: the diameter is 1.4 d. Lengths in d are divided by the diameter, so the diameter must "
+     "be 1. The "
+     "column R is read as radii. If this is wrong, rename or remove the column."},
     {"a.xyz", with_columns("radius:R:1", "0.0015"),
-     ":3:1: the diameter is 0.003 d. It would be right in m: is the unit right?"},
+     ":3:1: the diameter is 0.003 d. It would be right in m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
-     ":5:7: states an edge of the box, which is not read (got avec). Write the box as xlo xhi, ylo "
+     ":5:7: states the box by its edges, which cannot be read (got avec). Write the box as xlo "
+     "xhi, ylo "
      "yhi and zlo zhi."},
     {"a.data", data("0 9 xlo xhi\n0 9 ylo yhi\n", kAtoms),
-     ":6:1: the box is not complete. It takes xlo xhi, ylo yhi and zlo zhi."},
+     ":6:1: the box is not complete. Write xlo xhi, ylo yhi and zlo zhi."},
     {"a.data", data("2 0 0 xy xz yz\n", kAtoms),
-     ":5:1: the box is not complete. It takes xlo xhi, ylo yhi and zlo zhi."},
+     ":5:1: the box is not complete. Write xlo xhi, ylo yhi and zlo zhi."},
     {"a.data", data("2 0 0 xy xz yz\n" + kBounds, kAtoms),
      ":8:1: the box is not orthogonal: an edge leans by 2. " + kUpright},
     {"a.data", titled("LAMMPS data file via write_data, version 4 Feb 2025, units = cgs"),
-     ":1:62: units: is not read (got cgs)." + kLammpsUnits},
+     ":1:62: units: cannot be read (got cgs)." + kLammpsUnits},
     {"a.data", titled("soft spheres (units real)"),
-     ":1:21: units: is not read (got real)." + kLammpsUnits},
+     ":1:21: units: cannot be read (got real)." + kLammpsUnits},
     {"a.data", titled("LAMMPS data file via write_data, timestep = 0, units = lj"),
      kStill + "; not read: type"},
     {"a.data", titled("units: si"),
-     ":1:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+     ":1:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
     {"a.data", titled("units unknown to me"), kStill + "; not read: type"},
     {"a.data", data(kBounds, "Atoms\n\n1 1 1 1 1 # C\n2 1 3 3 3#C\n"), kStill + "; not read: type"},
     {"a.data",
@@ -371,26 +384,26 @@ const std::vector<Parts> kParts = {
           "0\n2 0 1 0 0 0 0\n"),
      kBoxed + "velocities; not read: type, density, angular velocities"},
     // LAMMPS dumps.
-    {"a.dump", in_units("cgs"), ":2:1: units: is not read (got cgs)." + kLammpsUnits},
-    {"a.dump", in_units("nano"), ":2:1: units: is not read (got nano)." + kLammpsUnits},
+    {"a.dump", in_units("cgs"), ":2:1: units: cannot be read (got cgs)." + kLammpsUnits},
+    {"a.dump", in_units("nano"), ":2:1: units: cannot be read (got nano)." + kLammpsUnits},
     {"a.dump", in_units("si"),
-     ":2:1: states lengths in m. The manifest says `unit: d`: remove that key."},
+     ":2:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
     {"a.dump", in_units("lj"), kStill},
     {"a.dump", dump("id x y z xu yu zu", "1 1 1 1 1 1 10\n2 3 3 3 3 3 3\n"),
      kStill + "; not read: xu, yu, zu"},
     {"a.dump", dump("id type x y zu xs ix", "1 1 1 1 1 0.1 0\n2 1 3 3 12 0.3 0\n"),
      kStill + "; not read: type, xs, ix"},
     {"a.dump", dump("id x y z c_rad", "1 1 1 1 0.5\n2 3 3 3 0.7\n"),
-     ":11:1: the grains have diameters from 1 (line 10) to 1.4, 40 % larger. All grains of this "
-     "program are equal. Continue such a packing in LAMMPS (`shearcell export --to lammps` writes "
-     "a "
-     "script for it). The column c_rad is read as radii: if it is not, rename or remove it."},
+     ":11:1: the grains have diameters from 1 (line 10) to 1.4, which is 40 % larger. This program "
+     "needs equal grains. Continue this packing in LAMMPS (`shearcell export --to lammps` writes a "
+     "script for LAMMPS). The column c_rad is read as radii. If this is wrong, rename or remove "
+     "the column."},
     {"a.dump", dump("id x y z v_x", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: is not read under this name (got v_x). " + kVelocities},
+     ":9:22: cannot be read under this name (got v_x). " + kVelocities},
     {"a.dump", dump("id x y z f_vel[1]", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: is not read under this name (got f_vel[1]). " + kVelocities},
+     ":9:22: cannot be read under this name (got f_vel[1]). " + kVelocities},
     {"a.dump", dump("id x y z vel", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: is not read under this name (got vel). " + kVelocities},
+     ":9:22: cannot be read under this name (got vel). " + kVelocities},
     {"a.dump", dump("id x y z radius diameter d_radius", "1 1 1 1 .5 1 7\n2 3 3 3 .5 1 7\n"),
      kStill + "; not read: d_radius"},
     {"a.dump", dump("id x y z radius diameter", "1 1 1 1 .5 1\n2 3 3 3 .5 2\n"),
@@ -403,28 +416,30 @@ const std::vector<Parts> kParts = {
      kStill + "; not read: boundary pp pp pp"},
     // CSV.
     {"a.csv", csv("vx_mm_per_s", "1"),
-     ":1:7: is not read under this name (got vx_mm_per_s). " + kVelocities},
+     ":1:7: cannot be read under this name (got vx_mm_per_s). " + kVelocities},
     {"a.csv", csv("Vx (mm/s)", "1"),
-     ":1:7: is not read under this name (got Vx (mm/s)). " + kVelocities},
+     ":1:7: cannot be read under this name (got Vx (mm/s)). " + kVelocities},
     {"a.csv", csv("velocity:0", "1"),
-     ":1:7: is not read under this name (got velocity:0). " + kVelocities},
+     ":1:7: cannot be read under this name (got velocity:0). " + kVelocities},
     {"a.csv", csv("momentum_x", "1"),
-     ":1:7: is not read under this name (got momentum_x). " + kVelocities},
+     ":1:7: cannot be read under this name (got momentum_x). " + kVelocities},
     {"a.csv", csv("Velocity.X", "1"),
-     ":1:7: is not read under this name (got Velocity.X). " + kVelocities},
+     ":1:7: cannot be read under this name (got Velocity.X). " + kVelocities},
     {"a.csv", csv("r", "0.5"), kTwo},
     {"a.csv", csv("D", "1"), kTwo},
     {"a.csv", csv("Particle Radius", "0.5"), kTwo},
     {"a.csv", csv("sigma", "1"), kTwo},
     {"a.csv", csv("diameter_mm", "3"),
-     ":2:1: the diameter is 3 d. Lengths in d are divided by the diameter, so it is 1. The column "
-     "diameter_mm is read as diameters: if it is not, rename or remove it."},
+     ":2:1: the diameter is 3 d. Lengths in d are divided by the diameter, so the diameter must be "
+     "1. The column "
+     "diameter_mm is read as diameters. If this is wrong, rename or remove the column."},
     {"a.csv", csv("grain diam", "1.1"),
-     ":2:1: the diameter is 1.1 d. Lengths in d are divided by the diameter, so it is 1. The "
+     ":2:1: the diameter is 1.1 d. Lengths in d are divided by the diameter, so the diameter must "
+     "be 1. The "
      "column "
-     "grain diam is read as diameters: if it is not, rename or remove it."},
+     "grain diam is read as diameters. If this is wrong, rename or remove the column."},
     {"a.csv", "x_d,y_d,z_d,radii_m\n1,1,1,.5\n3,3,3,.5\n",
-     ":1:13: is in another unit than the columns before (got radii_m). " + kOneUnit},
+     ":1:13: is in another unit than the earlier columns (got radii_m). " + kOneUnit},
     {"a.csv", csv("element", "C"), kTwo + "; not read: element"},
     {"a.csv", csv("theta_rad", "3"), kTwo + "; not read: theta_rad"},
     {"a.csv", csv("is diamond", "1"), kTwo + "; not read: is diamond"},
@@ -463,8 +478,9 @@ TEST(PackingFile, OfManyColumnsTheFirstAreNamed) {
       "1 grain, no box, no velocities; not read: c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, "
       "c11 and 8 more");
   for (int k = 20; k < 1000; ++k) names += fmt::format(",c{}", k);
-  EXPECT_EQ(message_of<ManifestError>([&] { read_packing(names + "\n", "a.csv", kInD); }),
-            "a.csv:1:1: has 1003 columns. At most 1000 are read: leave out some.");
+  EXPECT_EQ(
+      message_of<ManifestError>([&] { read_packing(names + "\n", "a.csv", kInD); }),
+      "a.csv:1:1: has 1003 columns. At most 1000 columns can be read. Leave out some columns.");
 }
 
 /// The numbers of truth.csv.

@@ -229,8 +229,8 @@ TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
   const std::string sparse = tiny_manifest("  cycles: 3\n", "checkpoints: {every_cycles: 2}\n");
   known.clear();
   add_as_computed(expand(parse_manifest(sparse, "tiny.yaml")), known);
-  EXPECT_NE(refused("").find("has no checkpoint of cycle 1. It has those of every 2 cycles and of "
-                             "cycle 3; name one of these"),
+  EXPECT_NE(refused("").find("has no checkpoint at cycle 1. It has checkpoints every 2 cycles and "
+                             "at cycle 3. Name one of these cycles"),
             std::string::npos);
   EXPECT_EQ(second("", "sweep: {grid: {start_cycle: [0, 2, 3]}}\n").size(), 3U);
 }
@@ -323,29 +323,29 @@ TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
 
 TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   const std::string none = refusal(clones(""));
-  EXPECT_NE(none.find("start: the store has no run of tiny at scale base with seed 1. Compute it "
-                      "first, or name the store that has it with --store."),
+  EXPECT_NE(none.find("start: the store has no run of tiny at scale base with seed 1. Compute this "
+                      "run first, or name the store that contains it with --store."),
             std::string::npos)
       << none;
   compute_here(tiny_manifest("", kBothFluids));
   EXPECT_NE(refusal(clones(""))
-                .find("more than one run of tiny at scale base with seed 1. Single "
-                      "one out: `variant: \"KEY=VALUE\"`, several joined by commas."),
+                .find("more than one run of tiny at scale base with seed 1. Select one: `variant: "
+                      "\"KEY=VALUE\"`. Join several values by commas."),
             std::string::npos);
   EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");
   EXPECT_NE(refusal(clones(", variant: \"fluid=none\"")).find("has no run of tiny"),
             std::string::npos);
   const std::string late = ", variant: \"fluid=cell\"";
   EXPECT_NE(refusal(clones(late, "", "sweep: {grid: {start_cycle: [1, 3]}}\n"))
-                .find("has no cycle 3 yet (got cycle 2). Extend it first."),
+                .find("has no cycle 3 yet (got cycle 2). Extend the run first."),
             std::string::npos);
   EXPECT_NE(refusal(clones(late, "  height_over_width: 1.5\n"))
-                .find("height_over_width: differs from that of run "),
+                .find("height_over_width: differs from the value of run "),
             std::string::npos);
   EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
       << "what acts on the grains may change";
   EXPECT_NE(refusal(tiny_manifest("", "start: {experiment: tiny, seed: 1, cycle: 1}\n"))
-                .find("start: names the experiment and the scale of these runs."),
+                .find("start: names the experiment and the scale of this manifest."),
             std::string::npos);
 }
 
@@ -474,7 +474,8 @@ TEST_F(FromAFile, TheIdHoldsTextUnitAndWhetherItSettles) {
 
 TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
-  EXPECT_NE(refusal_of(manifest("")).find("has 2 grains, and the manifest 300. State `grains: 2`."),
+  EXPECT_NE(refusal_of(manifest(""))
+                .find("has 2 grains, but the manifest states 300. State `grains: 2`."),
             std::string::npos);
   const std::string two =
       "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
@@ -482,7 +483,7 @@ TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   EXPECT_EQ(refusal_of(manifest("", two)), "");
   write_grains("x_d,y_d,z_d\n1,1,1\n9,1,1\n");
   const std::string wide = refusal_of(manifest("", two));
-  EXPECT_NE(wide.find("grains.csv: its grains are 9 d wide (x), and the cell of the manifest is "),
+  EXPECT_NE(wide.find("grains.csv: the grains are 9 d wide (x), but the cell of the manifest is "),
             std::string::npos)
       << wide;
   const std::size_t at = wide.find("`nominal_packing_fraction: ");
@@ -510,8 +511,9 @@ TEST_F(FromAFile, AWrongUnitIsAskedAbout) {
   EXPECT_EQ(refusal_of(manifest("", two)), "");
   write_grains("x_m,y_m,z_m\n1,1,1\n3,1,1\n");
   const std::string wide = refusal_of(manifest("", two));
-  EXPECT_NE(wide.find(" d. Is the unit of its lengths right? Read in d they are 3 d."),
-            std::string::npos)
+  EXPECT_NE(
+      wide.find(" d. Is the unit of the lengths right? With lengths in d, the size would be 3 d."),
+      std::string::npos)
       << wide;
   EXPECT_EQ(wide.find("nominal_packing_fraction"), std::string::npos) << wide;
 }
@@ -527,7 +529,7 @@ TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
     const std::vector<std::string> warnings = expand(manifest(rest, two)).warnings;
     EXPECT_EQ(std::ranges::count_if(warnings,
                                     [](const std::string& one) {
-                                      return one.find("grains.csv: it is 90000 d high, ") !=
+                                      return one.find("grains.csv: the grains are 90000 d high.") !=
                                              one.npos;
                                     }),
               warned ? 1 : 0)
