@@ -22,7 +22,7 @@ inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", 
 /// A sphere of diameter d fixed to a rough wall.
 struct WallGrain {
   WallSide side;
-  /// Centre [d] in the untilted cell with the planes at Cell::bottom and Cell::top.
+  /// Centre [d] while the cell is untilted and the planes are at Cell::bottom and Cell::top.
   Eigen::Vector3d position;
 };
 
@@ -65,7 +65,7 @@ inline WallSide moving_side(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? WallSide::bottom : WallSide::top;
 }
 
-/// 1 if y increases from the moving wall into the cell (bottom wall), -1 if y decreases (top wall).
+/// Direction from the moving wall into the cell: 1 (up) for the bottom wall, -1 for the top wall.
 inline double inwards(const Cell& cell) {
   return cell.moving == MovingWall::bottom ? 1 : -1;
 }

@@ -6,17 +6,17 @@
 
 namespace shearcell {
 
-// The kernel visits the sites row by row. Most neighbours of a site lie in three rows of cells: the
-// row below, the row of the site, and the row above. Strips shorten the rows, so that all three
-// rows stay in the cache.
+// The kernel visits the sites row by row. Most neighbours of a site lie in its own row of cells and
+// in the rows below and above. Narrow strips make the rows short, so that three rows stay in the
+// cache.
 void CellOrder::choose_strip(std::size_t sites) {
   Grid& cells = grid_.cells;
   constexpr double kSitesPerRow = 1200;
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // Prefetch distance: one row, one more line of cells on each side, and 20 % more because some
-  // rows hold more sites than the average. A small cell fits in the cache and needs no prefetch.
+  // Prefetch distance: one row and two lines of cells, plus 20 % because some rows hold more sites
+  // than the average. A small cell fits in the cache and needs no prefetch.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// A grain or a wall grain, with row offset (kernel.hpp) and permanent id.
+/// A grain or a wall grain: the offset of its row (kernel.hpp) and its permanent id.
 struct Site {
   std::int32_t offset, id;
 };

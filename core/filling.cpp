@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// Volume per wall area that a rough wall takes from the cell [d]: 0.66 grains per d^2, which fill
-// 0.17 d^3 of the cell each (mean for recesses of 0 to d/4), and the gaps between these grains.
+// Volume that a rough wall takes from the cell, per wall area [d]: 0.66 wall grains per d^2, each
+// with 0.17 d^3 inside the cell (mean for recesses of 0 to d/4), and the gaps between them.
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
-// Random stream of a wall side for a Geometry::wall_grain_draw. Draw 0 uses the streams 0 to 3,
-// draw 1 the streams 5 to 8, draw 2 the streams 10 to 13, and so on.
+// Random stream of a wall side. The draw number (Geometry::wall_grain_draw) 0 uses the streams 0 to
+// 3, number 1 the streams 5 to 8, number 2 the streams 10 to 13, and so on.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }
@@ -44,15 +44,15 @@ void poll_sometimes(const Poll& poll, std::uint64_t attempt) {
   if (poll && attempt % 1024 == 1023) poll();
 }
 
-// Places discs of diameter d on a wall of `length` by `depth` by random sequential addition. The
-// wall is periodic along the depth. Calls place(along, z, recess) for each disc.
+// Places discs of diameter d by random sequential addition on a wall with the sides `length` and
+// `depth`. The wall is periodic along `depth`. Calls place(along, z, recess) for each disc.
 template <class Place>
 void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,
                      double depth, const Poll& poll, Place&& place) {
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
-  // The number of attempts diverges near jamming (0.547). A wall with fewer grains is still rough.
+  // The necessary attempts diverge near jamming (0.547). A wall with fewer grains is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);

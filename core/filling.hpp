@@ -31,8 +31,8 @@ struct Geometry {
 };
 
 /// Width L [d] of a cell that holds the grains at nominal_packing_fraction. The depth is also L,
-/// and the height is height_over_width * L. Each rough wall takes a layer of 0.175 d from the
-/// volume.
+/// and the height is height_over_width * L. Each rough wall reduces the free width or height by
+/// 0.175 d.
 double cell_width(const Geometry& geometry);
 
 /// Callback, called about once per millisecond while grains are placed. It may throw to stop.
@@ -49,8 +49,8 @@ double wall_grain_count(const Geometry& geometry);
 /// outwards), or if there are more than 10^4 + 1000 N wall grains (each may need 6000 attempts).
 bool too_large(const Geometry& geometry);
 
-/// Makes a cell of height fill_height() with wall grains from random sequential addition. Throws
-/// GeometryError.
+/// Makes a cell of height fill_height(). The wall grains of rough walls are placed by random
+/// sequential addition. Throws GeometryError.
 Cell make_cell(const Geometry& geometry, std::uint64_t seed, const Poll& poll = {});
 
 /// Places grains at rest at random positions where they touch no other grain and no wall. Throws

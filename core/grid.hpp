@@ -12,13 +12,13 @@
 
 namespace shearcell {
 
-/// The grid cells with the numbers begin to end - 1.
+/// The grid cells with numbers from `begin` to `end` - 1.
 struct CellRange {
   std::size_t begin, end;
 };
 
-/// A grid in the untilted frame of a pose, periodic in z. Points up to one grid cell outside the
-/// walls are found, because they belong to the border cells. The layers in z are grouped into
+/// A grid in the untilted frame of a pose, periodic in z. Points outside the walls belong to the
+/// border cells; searches find them up to one grid cell outside. The layers in z are grouped into
 /// strips. Within a strip, the cell number increases fastest along x, then along z, then along y.
 struct Grid {
   std::int32_t columns = 1, layers = 1, rows = 1;  ///< number of cells in x, z and y
@@ -28,8 +28,8 @@ struct Grid {
   std::array<double, 3> per_cell{};  ///< number of grid cells per d along x, y and z
 
   Grid() = default;
-  /// Divides the cell into as many grid cells of at least these sizes [d] as fit, in one strip. The
-  /// number of grid cells is limited to about four per point, so that a sparse grid costs little.
+  /// Divides the cell into one strip of grid cells, as small as possible but not below `sizes` [d].
+  /// At most about four cells per point are made, so that a sparse grid costs little.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
   std::size_t size() const {

@@ -14,7 +14,6 @@
 // One array holds the rows in this order: the grains, padded; one padding row, which touches
 // nothing; the grains of the moving wall; the other wall grains. The margin [d] is the distance
 // that a grain may move in the frame of the shear before its neighbour list must be rebuilt.
-// shear before its neighbour list must be rebuilt.
 #pragma once
 
 #include <array>
@@ -42,15 +41,16 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
 
-/// Flags of a block of grains. kNearSeam: the nearest image of some neighbour lies across the
-/// periodic boundary in z. The kernel skips the code for walls and boundary if no grain needs it.
+/// Flags of a block of grains. kNearSeam: the nearest image of some neighbour is across the
+/// periodic boundary in z. The kernel skips the code for walls or boundary if no grain needs it.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
-/// Neighbour lists as row offsets (4 * index, in doubles). A block is one vector of grains, and a
-/// slot is one neighbour of each of them. Slot k of lane l of block b is
-/// list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The first
-/// moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold padding_offset().
+/// Neighbour lists as row offsets (4 * index, in doubles). A block is a group of as many grains as
+/// a vector has lanes. A slot holds one neighbour of each grain of a block. Slot k of lane l of
+/// block b is list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The
+/// first moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold
+/// padding_offset().
 struct NeighbourRows {
   const std::int32_t* list = nullptr;
   const std::uint32_t* begin = nullptr;  ///< one entry per block, as in the arrays below
@@ -60,8 +60,8 @@ struct NeighbourRows {
 };
 
 /// One time step of the leapfrog, followed by a check of the margins. The new velocity is
-/// velocity_factor * v + contact_kick * (contact sum) + gravity_step +
-/// fluid_step * (y - fluid_rest_height). D stands for 1 + b dt / 2m.
+/// velocity_factor * v + contact_kick * (contact sum) + gravity_step + fluid_step * (y -
+/// fluid_rest_height). In the comments on the members, D = 1 + b dt / 2m.
 struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
@@ -72,7 +72,7 @@ struct StepTask {
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
   /// Position of each grain when the list was built, in the frame that moves with the shear [d].
-  /// The rounding to single precision is part of `margin_loss`.
+  /// The rounding error of single precision is included in `margin_loss`.
   const float* reference[3] = {};
   double frame_height = 0;  ///< height at which the moving frame is at rest [d]
   double tan_theta = 0;     ///< tan(theta) at the end of the step

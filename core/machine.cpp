@@ -15,9 +15,9 @@
 namespace shearcell {
 namespace {
 
-/// Returns the smallest limit among the cgroups (version 2) of this process: for example the cgroup
-/// of a batch job and all its parents. In a container, the root is the container's cgroup.
-/// read(file) returns a limit, or NaN if the file contains no number.
+/// Returns the smallest limit of this process's cgroup (version 2), for example that of a batch
+/// job, and of all its parents. The search ends at the root, which in a container is the
+/// container's cgroup. read(file) returns a limit, or NaN if the file contains no number.
 template <class Read>
 double smallest_limit(const char* name, const Read& read) {
   std::filesystem::path group = "/";

@@ -29,8 +29,8 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
   return std::max(std::sqrt(largest), wall) / force_unit(scene);
 }
 
-// Power, squared velocity and squared force. The terms of the wall are weighted by the wall's mass.
-// Plain loops in the order of the ids fix the order of the additions, and so the bits.
+// Sums over the grains and the moving wall; the terms of the wall are weighted by its mass. Plain
+// loops in the order of the ids add in a fixed order, so the bits are the same on every machine.
 struct Sums {
   double power, velocity, force;
 };

@@ -8,7 +8,7 @@
 namespace shearcell {
 namespace {
 
-// Number of time steps for which the margin of a fast grain should be wide enough.
+// Number of time steps for which a margin should suffice at the present speed of the grain.
 constexpr double kOuterHorizon = 500, kInnerHorizon = 80;
 
 // Speed of a grain in the frame that moves with the shear [d/s].
@@ -64,18 +64,18 @@ double Reference::moved(const double* rows, std::size_t grain, const WallPose& p
 }
 
 double Reference::wall_moved(const WallPose& pose) const {
-  // Side walls follow the shear about the top wall. Grains of the bottom wall move in x with the
-  // bottom plane. A grain up to d behind the plane deviates from the shear by at most d times the
-  // change of tan(theta).
+  // The side walls follow the shear, which is zero at the top wall. Grains of the bottom wall move
+  // in x with the bottom plane, whatever their height. A grain up to d behind the plane therefore
+  // deviates from the shear by at most d times the change of tan(theta).
   const double travel =
       std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
 }
 
 double Reference::margin_loss(double tan_theta) const {
-  // The smallest singular value of a simple shear by e is sqrt(1 + e^2/4) - e/2 > 1 - e/2. A
-  // distance of 1 plus two margins shrinks by at most this factor. Each of the two grains accounts
-  // for half of the loss.
+  // A simple shear by e multiplies a distance by at least its smallest singular value, which is
+  // sqrt(1 + e^2/4) - e/2 > 1 - e/2. So a distance of 1 plus two margins loses at most the fraction
+  // e/2 of its length, and the margin of each of the two grains loses half of this.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// When many grains are fast, for example while a wall presses loose grains together, wide margins
-// cost less than a new search every few dozen steps.
+// Widens the margins if the lists are rebuilt every few dozen steps. This happens when many grains
+// are fast, for example while a wall presses loose grains together.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;

@@ -20,9 +20,9 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Number of neighbours of a lane whose factors are computed side by side, because each operation of
-// a series waits for the previous operation. Four neighbours fit in 32 registers if coefficients
-// are loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
+// Number of neighbours of a lane for which the series are computed together. In one series, each
+// operation waits for the previous one. Four neighbours fit in 32 registers if coefficients are
+// loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // Computes contact_factor(s) of kCount numbers s <= kSeriesEnd.
@@ -58,7 +58,7 @@ HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows
   return separation<kSeam>(own, other, depth, per_depth);
 }
 
-// Adds (1/r - 1) dr of kCount neighbours of each lane, in this order, if the neighbour touches.
+// Adds (1/r - 1) dr of each neighbour that touches: kCount per lane, in the order of the list.
 template <std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   V s[kCount], factor[kCount];
@@ -166,8 +166,8 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
   return sum;
 }
 
-// Loads the positions and margins of a block. Only neighbours in the next row of cells are not in
-// the cache yet. These neighbours lie about `ahead` rows further in memory and are prefetched.
+// Loads the positions and margins of a block. Prefetches the neighbours in the next row of cells,
+// about `ahead` grains further in memory. The other neighbours are already in the cache.
 HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {
@@ -200,7 +200,7 @@ HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vec
   return raise_excess(excess, t, g, next, margin);
 }
 
-// Sums the contacts of block n + 1 before it advances block n, so that the sum of n is complete.
+// The contacts of block n + 1 are summed before block n is advanced. So no block waits for its sum.
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   if (first == last) return -1;
   const V depth = hn::Set(kD, t.depth);

@@ -36,9 +36,9 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Writes the offsets of the ids to `outer` in ascending id. The rank of an id is the number of
-// smaller ids. Two vectors hold nearly every list. Both vectors are always compared, so that the
-// branches are predicted. `ids` must have room for two vectors after its end.
+// Writes the row offsets of the ids to `outer`, in ascending id. The rank of an id is the number of
+// smaller ids. Nearly every list fits in two vectors. Both are always compared, because a branch on
+// the length would be mispredicted. `ids` must have room for two vectors after its last entry.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -94,7 +94,7 @@ class Surroundings {
                       hn::Set(kD, t.grid.position[1][place]),
                       hn::Set(kD, t.grid.position[2][place])};
     const V own_margin = hn::Set(kD, t.grid.margin[place]);
-    // Ids are compared as doubles, which are exact for all ids and have masks of the right size.
+    // Doubles hold all ids exactly. The comparison then gives a mask for vectors of doubles.
     const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
     std::size_t count = 0;
     for (std::size_t k = 0; k < size_; k += kLanes) {

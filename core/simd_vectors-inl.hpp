@@ -112,7 +112,7 @@ HWY_INLINE void store_rows(const Vectors& v, V margin, double* HWY_RESTRICT rows
 template <bool kSeam = true>
 HWY_INLINE Vectors separation(const Vectors& own, const Vectors& other, V depth, V per_depth) {
   V dz = hn::Sub(own.z, other.z);
-  // Without kSeam, no nearest image is across the boundary, and subtracting 0 would change no bit.
+  // Without kSeam, no pair lies across the boundary: the image term would be 0 and change no bit.
   if constexpr (kSeam) dz = hn::NegMulAdd(hn::Round(hn::Mul(dz, per_depth)), depth, dz);
   return {hn::Sub(own.x, other.x), hn::Sub(own.y, other.y), dz};
 }

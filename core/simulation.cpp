@@ -47,8 +47,8 @@ void Simulation::load(const State& state) {
   std::iota(id_.begin(), id_.end(), 0);
   for (auto& axis : velocity_) axis.assign(room, 0.0);
   moving_wall_force_y_.assign(room, 0.0);
-  // The spare lanes lie far to the right and the padding row lies far to the left, so they touch
-  // nothing and not each other. NaN would not be safe, since 0 * NaN is NaN.
+  // Rows of spare lanes are placed far to the right and the padding row far to the left, so that
+  // they touch nothing, not even each other. NaN would not be safe, since 0 * NaN is NaN.
   for (auto& rows : rows_) {
     rows.assign(4 * (room + 1 + walls_.size()), 0.0);
     for (std::size_t g = grains; g < room; ++g) rows[4 * g] = 1e30;
@@ -122,7 +122,7 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Prepares a kernel call at the present positions. The kernel checks the margins at `tan_theta`.
+// Prepares a kernel call for the present positions. Margins are checked against `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();

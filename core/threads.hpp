@@ -9,7 +9,7 @@
 
 namespace shearcell {
 
-/// Starts workers - 1 threads. Thread k = 1, 2, ... calls work(k). The caller must do part 0. If
+/// Starts workers - 1 threads. Thread k = 1, 2, ... calls work(k); the caller must call work(0). If
 /// the system reaches a limit, fewer threads are started, so no result may depend on the number of
 /// threads. `work` must not throw. The destructor of the returned vector joins the threads.
 template <class Work>

@@ -49,7 +49,7 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w of contacts in the bounds of the frequency (watchdog.hpp).
+// Weights w of contacts in the bounds of omega^2 (watchdog.hpp): 5 in the bound of the moving wall.
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
 // Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether
@@ -80,8 +80,8 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Updates `fastest` if the bound of grain g exceeds `least` and the bound in `fastest`. For nearly
-// all grains, a cheaper estimate shows that it does not.
+// Updates `fastest` if the bound of grain g exceeds `least` and the bound in `fastest`. Cheaper
+// estimates exclude nearly all grains before the eigenvalues are computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
   const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +

@@ -21,23 +21,23 @@ struct SettleParameters {
       WatchdogLimits{}.overlap;  ///< overlap limit after the wall has pressed the grains [d]
 };
 
-/// Estimated time [s] in which the moving wall presses loose grains into a dense packing, plus half
-/// a second. The wall is assumed to move at the speed at which the drag on the wall and on all
-/// grains balances the pressure. The loose grains fill a height of `height` [d], with `per_area`
-/// grains per d^2 of wall.
+/// Estimated time [s] that the moving wall needs to press loose grains into a dense packing, plus
+/// half a second. At the estimated speed, the drag on the wall and on all grains balances the
+/// pressure. The loose grains fill a height of `height` [d], with `per_area` grains per d^2 of
+/// wall.
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has pressed the grains together. With gravity
-/// from the start, the grains would form a heap. A heap of nearly the weight P A_w (0.95 P A_w at
-/// N = 18200) jams between rough side walls before it reaches the top.
+/// from the start, the grains would form a heap. If the heap weighs nearly as much as the load P
+/// A_w (0.95 P A_w at N = 18200), it jams between rough side walls before it reaches the top.
 ///
 /// Under gravity, the packing is checked every 0.1 s. It has settled when three numbers are below
 /// their tolerances: the force imbalance of the moving wall, the drag force B_w y' on this wall
 /// (both divided by P A_w), and the kinetic energy per grain. The drag force is checked so that a
 /// slowly creeping wall does not count as balanced.
 ///
-/// While the wall presses, overlaps up to half a diameter are allowed. The grains of the moving
-/// wall and of a side wall may catch a grain between them and push it out with the whole load.
+/// While the wall presses, overlaps up to half a diameter are allowed: a grain may be caught
+/// between grains of the moving wall and of a side wall, and then carries the whole load.
 class Settle {
  public:
   /// `scene` is the scene after gravity is switched on.

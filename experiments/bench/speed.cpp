@@ -22,8 +22,8 @@ struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
   double step = 0, search = 0, prune = 0;
-  // Every 16th step is computed three more times, and the results are written into `elsewhere`: the
-  // whole step, the step without walls, and the step without neighbours.
+  // Every 16th step is computed three more times, with its results in `elsewhere`: the whole step,
+  // the step without walls, and the step without walls and neighbours.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
   double blocks = 0, slots = 0;  // numbers of blocks and slots in the repeated steps
   std::vector<double> elsewhere;
@@ -98,15 +98,15 @@ Packing repeated(const Packing& one, std::size_t copies) {
   return made;
 }
 
-// With more than 18,200 grains the cell becomes deeper, not higher. It consists of the smallest
-// number of equal parts along the depth that hold at least `grains` grains together.
+// Up to 18,200 grains are made as one packing. For more grains, a packing is repeated along the
+// depth: the smallest number of equal parts that together hold at least `grains` grains.
 Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;
   parameters.grains = (grains + parts - 1) / parts;
   Packing made = pressed_packing(parameters, 1);
   Simulation simulation = simulate(made);
-  simulation.advance({}, 2000);  // advances the packing under gravity
+  simulation.advance({}, 2000);  // without shear, under gravity
   made.state = simulation.state();
   made.state.step = 0;
   return parts == 1 ? made : repeated(made, parts);
@@ -169,7 +169,6 @@ void measure_rate(const Packing& made, const SimulationSettings& settings,
   result.fastest_rate = rates.back();
 }
 
-// Appends the results of one size.
 void measure_size(std::size_t grains, const SpeedOptions& options,
                   std::vector<SpeedResult>& results) {
   const auto say = [&](const std::string& what) {

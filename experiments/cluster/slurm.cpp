@@ -37,7 +37,7 @@ const std::vector<std::string> kRemoved = {
     "SBATCH_WAIT",        "SLURM_ARRAY_*",       "SLURM_MEM_PER_*",
     "SLURM_NTASKS_PER_*", "SLURM_RESTART_COUNT", "SLURM_TRES_PER_TASK"};
 
-// Slurm's programs wait 10 s for an answer of the controller.
+// Slurm's programs wait 10 s for an answer of Slurm's controller. This program waits longer.
 constexpr double kAnswerSeconds = 15;
 
 // std::regex recurses for each character, so a long text would overflow the stack.
@@ -64,8 +64,8 @@ std::string unfit_path(const fs::path& path) {
   const bool fit =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
   if (text.size() > kLongest) {
-    return fmt::format("'{:.40}...' has {} bytes; name a folder with at most {}", text, text.size(),
-                       kLongest);
+    return fmt::format("'{:.40}...' has {} bytes; name a folder whose path has at most {}", text,
+                       text.size(), kLongest);
   }
   if (fit) return "";
   return fmt::format(
@@ -102,7 +102,8 @@ fs::path scratch_here(const std::string& text) {
     const char* value = std::getenv(name.c_str());
     if (value == nullptr || *value == '\0') {
       throw UsageError(fmt::format(
-          "--scratch {}: the variable {} is not set on this node; `submit` with another --scratch",
+          "--scratch {}: the variable {} is not set on this node; call `submit` again with another "
+          "--scratch",
           text, name));
     }
     folder.append(rest, (*found)[0].first).append(value);
@@ -119,8 +120,8 @@ std::optional<double> slurm_seconds(const std::string& time) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
   if (time.size() > kLongest || !std::regex_match(time, found, form)) return std::nullopt;
-  // One number is minutes; two numbers are minutes and seconds. Three numbers, and all numbers
-  // after days, begin with hours.
+  // With days or with three numbers, the first number after the days is hours. Otherwise the first
+  // number is minutes.
   double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
   for (std::size_t part = 1; part <= 4; ++part) {
     if (!found[part].matched) continue;
@@ -143,7 +144,7 @@ void require_slurm() {
 std::string queue_job(const Job& job, const fs::path& folder) {
   static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the cluster's name may follow
   write_output(folder / job.file, job.script);
-  // No time limit, because sbatch may queue a job and not answer in time.
+  // This call has no time limit, because a slow sbatch may queue the job after any limit.
   const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
   std::smatch found;
   const auto is_number = [&found](const std::string& text) {

@@ -29,11 +29,11 @@ constexpr std::size_t kIdDigits = 12;
 
 // job.sh PROGRAM FOLDER ARGUMENT...
 //
-// Slurm sends USR1 some time before the limit (with B: only to the shell), and TERM to all
-// processes if a job is cancelled or preempted. After both signals the program records its states
-// and ends with 85. After USR1 the script queues the task again, by array number and task number,
-// because the job number of a task may be the number of the whole array. If the program is killed
-// (out of memory), the script starts it again.
+// Some time before the time limit, Slurm sends USR1, only to the shell (`B:` in --signal). If a job
+// is cancelled or preempted, Slurm sends TERM to all processes. After either signal, the program
+// records its states and ends with exit code 85. After USR1, the script queues the task again. It
+// names the task by the numbers of the array and of the task, because a task's own job number may
+// be that of the whole array. If the program is killed (out of memory), the script starts it again.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
@@ -71,8 +71,8 @@ done
 exit "$code"
 )sh";
 
-/// Adds the job's command. Options on the command line override sbatch's variables. sbatch uses the
-/// last of two equal options, so users can change only --export.
+/// Adds the command to the job. Command-line options override sbatch's environment variables. The
+/// last of two equal options counts, so users can override only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -162,7 +162,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
     if (parent.empty() || one.look.done) continue;
     const auto [place, fresh] = places.try_emplace(packing, shares.size());
     if (fresh) {
-      shares.push_back(packings[packing]);  // no cost if the packing is not planned
+      shares.push_back(packings[packing]);  // cost 0 if no plan contains the packing
       shares.back().packings = {packing};
     }
     shares[place->second].add(left);
@@ -269,7 +269,7 @@ std::vector<Submission> unfinished_submissions(const Store& store) {
   std::vector<Submission> open = read_submissions(store);
   const auto is_done = [&](const std::string& id) { return look_at(store, store.stage(id)).done; };
   std::erase_if(open, [&](const Submission& submission) {
-    // Submissions without a folder came from other stores by a merge.
+    // A submission without a folder was copied here when another store was merged.
     return !fs::exists(submission.folder(store.folder())) ||
            std::ranges::all_of(submission.tasks, [&](const auto& task) {
              return std::ranges::all_of(task, is_done);
@@ -355,7 +355,7 @@ QueueView view_queue(const Store& store) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
       for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
-        QueuedRun& run = view.runs[id] = {queued, {}};  // the newest submission is the last
+        QueuedRun& run = view.runs[id] = {queued, {}};  // newer ones overwrite older ones
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
       }

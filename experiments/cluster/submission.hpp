@@ -32,8 +32,8 @@ struct Share {
   void add(const Share& other);
 };
 
-/// The unfinished runs of the plans, each run once, in one share for each packing, in the order of
-/// the plans. `store` may be null.
+/// Returns one share for each packing with unfinished runs, in the order of the plans. A run that
+/// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
 /// Joins the shares of packings into at most `tasks` shares, none of them empty. Starts with the
@@ -45,7 +45,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 struct JobOptions {
   std::string partition;
   std::string account;
-  std::string time;                 ///< limit of one start of a task, as text for Slurm
+  std::string time;                 ///< time limit of each start of a task, in Slurm's format
   std::size_t cpus = 0;             ///< cores of a task; 0 if not chosen yet
   std::size_t threads = 1;          ///< threads of each run
   std::size_t warn_seconds = 120;   ///< time between Slurm's warning and the limit
@@ -62,9 +62,9 @@ struct Proposal {
   double seconds(const Share& share) const;
 };
 
-/// Leaves out packings that are in `busy` or have a run in `busy`, with all their runs. If
-/// `job.cpus` is 0, a task gets one core per thread of its runs: at most 16, but enough for one
-/// run.
+/// Leaves out a packing and all its runs if `busy` contains the packing or one of its runs. If
+/// `job.cpus` is 0, tasks get one core for each thread of the runs in the largest share, but not
+/// more than the larger of 16 and `job.threads`.
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -72,7 +72,7 @@ struct Submission {
   std::string id;                               ///< 12 hex digits
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< number of the array job; "" if not queued
-  std::string merge_job;                        ///< number of the merge job ("fold_job" in the log)
+  std::string merge_job;                        ///< number of the merge job (event key "fold_job")
   std::vector<QueuedTask> queue;                ///< its jobs in the queue, from view_queue()
 
   std::string name() const { return "shearcell-" + id; }  ///< name of the array job
@@ -95,31 +95,31 @@ Job array_job(const Submission& submission, const std::filesystem::path& store,
 Job merge_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options, const std::string& array);
 
-/// Makes a store for each task, with copies of all records of its runs. Records the submission:
+/// Makes a store for each task, with copies of all records of its runs. Then records an event:
 /// `facts`, the runs of each task and the command. `seen`: number of submission events that the
-/// caller has read. Throws ConcurrencyConflict if another program has added one since.
+/// caller has read. Throws ConcurrencyConflict if another program has added such an event since.
 Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::json facts,
                               std::size_t seen);
 
 /// All submissions of the store, oldest first. Throws StoreDamaged if an event is invalid.
 std::vector<Submission> read_submissions(const Store& store);
 
-/// Submissions with a folder in this store and at least one run that is not done (Outlook).
+/// Submissions with a folder in this store and at least one run that is not done (Outlook::done).
 std::vector<Submission> unfinished_submissions(const Store& store);
 
 /// Merges the existing task stores of a submission into `store`. Returns the number of new
 /// checkpoints.
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
-/// Runs that are queued or being computed: runs of submissions in the queue, runs that programs on
-/// this machine hold, and unsettled packings of these runs.
+/// Runs that are queued or being computed: all runs of submissions with jobs in the queue, all runs
+/// that programs on this machine hold, and the packings of these runs that are not settled yet.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
-/// Writes `FOLDER.progress.json` for the task's store FOLDER, whole or not at all. Other machines
+/// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. Other machines
 /// read this file while the task runs, because SQLite's locks may not work between machines.
 void write_task_report(const std::filesystem::path& folder, const std::vector<Stage>& runs);
 
-/// Reads the state and cycle of each run from FOLDER.progress.json, by id; empty if impossible.
+/// State and cycle of each run, by id, from FOLDER.progress.json; empty if the file is not valid.
 std::map<std::string, Stage> read_task_report(const std::filesystem::path& folder);
 
 struct QueuedRun {
@@ -139,7 +139,7 @@ struct QueueView {
 /// Reads Slurm's queue if the store has unfinished submissions.
 QueueView view_queue(const Store& store);
 
-/// One line for `status`: the jobs of a submission and their states, or what to do if all ended.
+/// One line for `status`: the jobs of a submission and their states, or advice if all have ended.
 std::string describe(const Submission& submission);
 
 }  // namespace shearcell

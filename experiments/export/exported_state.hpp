@@ -36,7 +36,7 @@ struct ExportedState : Particles {
   /// The frame's scalar measures, by their names in `shearcell table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// Measures of each particle (analysis/measures.hpp). Unknown numbers are NaN, whole ones -1.
+  /// Measures of each particle (analysis/measures.hpp). Unknown: NaN, or -1 for whole numbers.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
   MeasureOutcome unread;                    ///< earlier checkpoints that could not be read
@@ -48,8 +48,9 @@ struct ExportedState : Particles {
 /// The name of a frame in file names: its cycle, or "step45600" in a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
-/// Makes a frame from a checkpoint. `sources` must have read the run; if null, measures that need
-/// earlier checkpoints are NaN. `every`: as in ToMeasure. Throws like analyse_stored().
+/// Makes a frame from a checkpoint. `sources` must have read the run (read_run()); without
+/// `sources`, measures that need earlier checkpoints are NaN. `every`: as in ToMeasure. Throws like
+/// analyse_stored().
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                        const Run& run = {}, const MeasureSources* sources = nullptr,
                        std::uint64_t every = 1);

@@ -29,14 +29,14 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 /// of order 1. `d_m` is d in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
-/// A folder with two files for each frame, grains_CYCLE.vtp (points with their data; scalars as
-/// field data) and cell_CYCLE.vtp (the six faces of the cell), and with frames.pvd, which lists all
-/// frames. SI units. `frames`: number of frames; the last one completes frames.pvd.
+/// A folder with frames.pvd, which lists all frames, and two files for each frame: grains_CYCLE.vtp
+/// (points with their data; scalars as field data) and cell_CYCLE.vtp (the six faces of the cell).
+/// SI units. `frames`: number of frames; frames.pvd is complete after the last.
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
-/// A folder with frame_CYCLE.data for each frame, in SI units and without measures (lammps_data);
-/// the title has the planes of the cell. Except for a stiffening, also in.frame_CYCLE, a script
-/// with which LAMMPS continues from the frame (lammps_script).
+/// A folder with frame_CYCLE.data for each frame, in SI units and without measures (lammps_data).
+/// The title line of this file gives the planes of the cell. If ExportedState::continued is set,
+/// the folder also gets in.frame_CYCLE, a script with which LAMMPS continues (lammps_script).
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, with a row for each contact. Particles are

@@ -28,8 +28,8 @@ bool looks_like_a_value(std::string_view text) {
   return number || std::ranges::find(kValues, word) != std::end(kValues);
 }
 
-// Quotes a text so that ASE and OVITO read it as text, if needed with single quotes inside.
-// Replaces characters that would end the quotes or the line.
+// Quotes a text. A text that ASE or OVITO would not read as text gets single quotes inside the
+// double quotes. Characters that would end the quotes or the line are replaced.
 std::string quoted(std::string text) {
   for (char& c : text) {
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
@@ -64,7 +64,7 @@ std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) 
   return line;
 }
 
-// The title has the planes of the cell, which a start from the file needs; the box is larger.
+// The title gives the planes of the cell, from which a simulation can start; the box is larger.
 std::string lammps_title(const ExportedState& f) {
   const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(
