@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Version number of the engine's results, bit for bit.
+// A version number that changes when any bit of the engine's results changes.
 #pragma once
 
 #include <cstdint>

@@ -28,7 +28,7 @@ struct Contact {
 void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& grains, const WallPose& pose,
                       const std::function<void(const Contact&)>& visit);
 
-/// Unit of the force tolerances [m d/s^2]: P d^2, or without pressure the larger of m g and 1.
+/// Unit of the force tolerances [m d/s^2]: P d^2; without pressure, the larger of m g and 1.
 double force_unit(const Scene& scene);
 
 struct Diagnostics {

@@ -19,8 +19,8 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
-// Random stream of a wall side. The draw number (Geometry::wall_grain_draw) 0 uses the streams 0 to
-// 3, number 1 the streams 5 to 8, number 2 the streams 10 to 13, and so on.
+// Random stream of a wall side. Draw 0 (Geometry::wall_grain_draw) uses the streams 0 to 3, draw 1
+// the streams 5 to 8, draw 2 the streams 10 to 13, and so on.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }
@@ -52,7 +52,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   const double area = length * depth;
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
-  // The necessary attempts diverge near jamming (0.547). A wall with fewer grains is still rough.
+  // Stops near the jamming coverage (0.547). A wall with fewer grains than `target` is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);

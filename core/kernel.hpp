@@ -26,7 +26,8 @@
 
 namespace shearcell {
 
-/// Rounds a number of grains up to a multiple of 8, the number of lanes of the widest vector.
+/// Rounds a number of grains up to a multiple of 8, the number of lanes of the widest vector. Lanes
+/// without a grain are called spare lanes.
 constexpr std::size_t padded(std::size_t grains) {
   return (grains + 7) / 8 * 8;
 }
@@ -46,8 +47,8 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
-/// Neighbour lists as row offsets (4 * index, in doubles). A block is a group of as many grains as
-/// a vector has lanes. A slot holds one neighbour of each grain of a block. Slot k of lane l of
+/// Neighbour lists as row offsets (4 * index, in doubles). A block is a group of grains, one for
+/// each lane of a vector. A slot holds one neighbour of each grain of a block. Slot k of lane l of
 /// block b is list[begin[b] + k * lanes + l], for k < moving_wall_slots[b] + other_slots[b]. The
 /// first moving_wall_slots[b] slots hold grains of the moving wall. Empty slots hold
 /// padding_offset().
@@ -60,8 +61,8 @@ struct NeighbourRows {
 };
 
 /// One time step of the leapfrog, followed by a check of the margins. The new velocity is
-/// velocity_factor * v + contact_kick * (contact sum) + gravity_step + fluid_step * (y -
-/// fluid_rest_height). In the comments on the members, D = 1 + b dt / 2m.
+/// velocity_factor * v + contact_kick * (contact sum) + gravity_step +
+/// fluid_step * (y - fluid_rest_height). In the comments on the members, D = 1 + b dt / 2m.
 struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4

@@ -15,9 +15,9 @@
 namespace shearcell {
 namespace {
 
-/// Returns the smallest limit of this process's cgroup (version 2), for example that of a batch
-/// job, and of all its parents. The search ends at the root, which in a container is the
-/// container's cgroup. read(file) returns a limit, or NaN if the file contains no number.
+/// Returns the smallest limit of the cgroup (version 2) of this process and of the parents of this
+/// cgroup. In a container, the last parent is the cgroup of the container. read(file) returns a
+/// limit, or NaN if the file contains no number.
 template <class Read>
 double smallest_limit(const char* name, const Read& read) {
   std::filesystem::path group = "/";

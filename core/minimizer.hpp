@@ -17,11 +17,11 @@ struct MinimizeSettings {
   std::uint64_t most_evaluations = 1'000'000;  ///< limit on the number of force evaluations
 };
 
-/// Moves the grains and the moving wall to a minimum by FIRE (Bitzek et al., Phys. Rev. Lett. 97,
-/// 170201 (2006), with the changes of Guenole et al., Comput. Mater. Sci. 175, 109584 (2020)).
-/// Afterwards all velocities are zero, and the step number is one higher. The result depends only
-/// on the positions and the scene, because global sums follow the order of permanent ids. Throws
-/// NumericalFailure if the tolerance is not reached or a watchdog check fails.
+/// Moves the grains and the moving wall to a minimum of the enthalpy by FIRE (Bitzek et al., Phys.
+/// Rev. Lett. 97, 170201 (2006), with the changes of Guenole et al., Comput. Mater. Sci. 175,
+/// 109584 (2020)). Afterwards all velocities are zero, and the step number is one higher. The
+/// result depends only on the positions and the scene, because sums follow the order of permanent
+/// ids. Throws NumericalFailure if the tolerance is not reached or a watchdog check fails.
 void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
 /// Returns the quantity that force_tolerance limits, for a state with upright walls. The contacts

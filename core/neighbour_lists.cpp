@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// Widens the margins if the lists are rebuilt every few dozen steps. This happens when many grains
-// are fast, for example while a wall presses loose grains together.
+// Widens the margins after a short time between two searches, as when a wall presses loose grains
+// together: many grains are then fast, and wide margins cost less than frequent searches.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;

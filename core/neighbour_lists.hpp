@@ -21,7 +21,7 @@
 
 namespace shearcell {
 
-/// Settings of the neighbour lists. They change the speed, never the bits.
+/// Settings of the neighbour lists. They change the speed, but no bit of a result.
 struct ListSettings {
   double outer_cutoff = 1.25;  ///< outer cutoff for two grains that only follow the shear [d]
   double inner_cutoff = 1.04;  ///< inner cutoff for two grains that only follow the shear [d]

@@ -94,7 +94,7 @@ class Surroundings {
                       hn::Set(kD, t.grid.position[1][place]),
                       hn::Set(kD, t.grid.position[2][place])};
     const V own_margin = hn::Set(kD, t.grid.margin[place]);
-    // Doubles hold all ids exactly. The comparison then gives a mask for vectors of doubles.
+    // Ids are compared as doubles (exact), to get the same type of mask as from the distances.
     const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
     std::size_t count = 0;
     for (std::size_t k = 0; k < size_; k += kLanes) {

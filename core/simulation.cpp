@@ -122,7 +122,7 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Prepares a kernel call for the present positions. Margins are checked against `tan_theta`.
+// Prepares a kernel call at the present positions. Margins will be checked at the tilt `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();
@@ -315,9 +315,9 @@ void Simulation::rebuild_lists(const Drive& drive) {
   ++counts_.builds;
 }
 
-// Sorts the grains by grid cell, so that near grains are near in memory. Each stretch of 256 grains
-// is then sorted by flags (near a wall or the periodic boundary) and by number of neighbours. So
-// the grains of a vector need the same branches and have lists of similar length.
+// Sorts the grains by grid cell, so that neighbours are close together in memory. Each stretch of
+// 256 grains is then sorted by flags (near a wall or the periodic boundary) and number of
+// neighbours. So the grains of a vector need the same branches and have lists of similar length.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());

@@ -49,7 +49,7 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w of contacts in the bounds of omega^2 (watchdog.hpp): 5 in the bound of the moving wall.
+// Weights w of contacts in the bounds of omega^2 (watchdog.hpp). kOnMovingWall: bound of the wall.
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
 // Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether

@@ -9,7 +9,7 @@
 
 namespace shearcell {
 
-/// Work, losses and energy changes of the grains and the moving wall in some steps [m d^2/s^2].
+/// Work, losses and energy changes of the grains and the moving wall during ledger() [m d^2/s^2].
 struct Ledger {
   double work_of_walls = 0;  ///< work of the drive that tilts the walls, without the load
   /// Energy that the grains lose to the fluid, the time integral of the sum of b v.(v - u). It is

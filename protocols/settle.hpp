@@ -22,14 +22,13 @@ struct SettleParameters {
 };
 
 /// Estimated time [s] that the moving wall needs to press loose grains into a dense packing, plus
-/// half a second. At the estimated speed, the drag on the wall and on all grains balances the
-/// pressure. The loose grains fill a height of `height` [d], with `per_area` grains per d^2 of
-/// wall.
+/// half a second. At the estimated speed, drag on the wall and all grains balances the pressure.
+/// The loose grains fill a height of `height` [d], with `per_area` grains per d^2 of wall.
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has pressed the grains together. With gravity
-/// from the start, the grains would form a heap. If the heap weighs nearly as much as the load P
-/// A_w (0.95 P A_w at N = 18200), it jams between rough side walls before it reaches the top.
+/// from the start, the grains would form a heap. If the heap weighs nearly as much as the load
+/// P A_w (0.95 P A_w at N = 18200), it jams between rough side walls before it reaches the top.
 ///
 /// Under gravity, the packing is checked every 0.1 s. It has settled when three numbers are below
 /// their tolerances: the force imbalance of the moving wall, the drag force B_w y' on this wall

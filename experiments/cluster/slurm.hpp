@@ -55,7 +55,7 @@ struct QueuedTask {
 /// Throws ProgramError if `sbatch` is not installed.
 void require_slurm();
 
-/// Writes the job's script into the folder, queues the job from there and returns its number.
+/// Writes the job's script into the folder, queues the job in this folder and returns its number.
 /// Throws ProgramError if sbatch refused the job and the job is not in the queue. Throws
 /// MachineError if it is unknown whether the job is queued.
 std::string queue_job(const Job& job, const std::filesystem::path& folder);

@@ -71,8 +71,8 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. Command-line options override sbatch's environment variables. The
-/// last of two equal options counts, so users can override only --export.
+/// Adds the command to the job. Command-line options override sbatch's environment variables. Of
+/// two equal options, the last is used, so users' options can override only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -355,7 +355,7 @@ QueueView view_queue(const Store& store) {
       const auto reports = read_task_report(open.task_store(store.folder(), task));
       const QueuedTask queued = task_of(open, task);
       for (const std::string& id : with_parents(store, open.tasks[task - 1])) {
-        QueuedRun& run = view.runs[id] = {queued, {}};  // newer ones overwrite older ones
+        QueuedRun& run = view.runs[id] = {queued, {}};  // newer submissions overwrite older ones
         const auto reported = reports.find(id);
         if (reported != reports.end()) run.reported = reported->second;
       }

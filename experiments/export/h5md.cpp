@@ -18,8 +18,8 @@ using hdf5::put_dataset;
 using hdf5::require;
 using hdf5::Shape;
 
-// MDAnalysis does not support metres, and reads units only as text of variable length. Velocities
-// in nm/ns and in m/s have equal numbers.
+// MDAnalysis does not support metres, and reads units only as text of variable length. A velocity
+// has the same value in nm/ns and in m/s.
 constexpr double nm_per_m = 1e9;
 constexpr std::size_t kHashDigits = 64;  // length of a SHA-256
 

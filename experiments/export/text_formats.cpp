@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formats that are text: extended XYZ, LAMMPS data, and run.json beside folders of frames.
+// The text formats: extended XYZ, LAMMPS data, contacts, and run.json for formats that are folders.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -64,7 +64,7 @@ std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) 
   return line;
 }
 
-// The title gives the planes of the cell, from which a simulation can start; the box is larger.
+// The title gives the planes of the cell, because the box in the file is larger than the cell.
 std::string lammps_title(const ExportedState& f) {
   const Eigen::Vector3d high = f.origin + f.edges.diagonal();
   return fmt::format(
