@@ -7,8 +7,8 @@
 namespace shearcell {
 
 // The kernel visits the sites row by row. Most neighbours of a site lie in its own row of cells and
-// in the rows below and above. Narrow strips make the rows short, so that three rows stay in the
-// cache.
+// in the rows below and above. Narrow strips (grid.hpp) make the rows short, so that three rows fit
+// in the cache.
 void CellOrder::choose_strip(std::size_t sites) {
   Grid& cells = grid_.cells;
   constexpr double kSitesPerRow = 1200;

@@ -37,7 +37,7 @@ inline double one_minus_square(double dx, double dy, double dz) {
   return std::fma(-dz, dz, std::fma(-dy, dy, std::fma(-dx, dx, 1.0)));
 }
 
-/// Returns the difference in z [d] to the nearest periodic image, from any difference `dz` [d].
+/// Reduces any difference `dz` in z to the difference from the nearest periodic image [d].
 inline double nearest_image(double dz, double depth, double per_depth) {
   return std::fma(-std::nearbyint(dz * per_depth), depth, dz);
 }

@@ -125,7 +125,7 @@ struct PruneTask {
   const std::int32_t* outer = nullptr;
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;   ///< per grain
-  std::int32_t first_wall = 0, moving_end = 0;  ///< row offsets of the moving wall's grains
+  std::int32_t first_wall = 0, moving_end = 0;  ///< range of the moving wall's row offsets
   std::array<WallPlane, 4> planes;              ///< the plane of the moving wall first
   double wall_margin = 0;                       ///< margin of the wall planes [d]
   std::int32_t* inner = nullptr;                ///< output, laid out as in NeighbourRows

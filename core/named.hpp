@@ -35,7 +35,7 @@ constexpr auto names_in_order(Names... names) {
   constexpr std::size_t size = sizeof...(Names);
   static_assert(named_detail::is_enumerator<static_cast<Enum>(size - 1)>(),
                 "there are more names than enumerators");
-  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(), "a value has no name");
+  static_assert(!named_detail::is_enumerator<static_cast<Enum>(size)>(), "a name is missing");
   return std::array<std::string_view, size>{names...};
 }
 

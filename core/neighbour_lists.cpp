@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// Widens the margins after a short time between two searches, as when a wall presses loose grains
-// together: many grains are then fast, and wide margins cost less than frequent searches.
+// Widens the margins if the last outer lists were valid for a short time. Many grains are then fast
+// (a wall presses loose grains together), and wide margins cost less than frequent searches.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;

@@ -200,7 +200,7 @@ HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vec
   return raise_excess(excess, t, g, next, margin);
 }
 
-// Sums the contacts of block n + 1 before it advances block n, which need not wait for its sum.
+// Sums the contacts of block n + 1 and then advances block n, whose sum is ready by then.
 double step(const StepTask& t, std::size_t first, std::size_t last) {
   if (first == last) return -1;
   const V depth = hn::Set(kD, t.depth);

@@ -305,7 +305,7 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites, team_);
-  // In a loose, fast packing, the lists become invalid long before the memory must be sorted again.
+  // If many grains are fast, the lists become invalid long before memory must be sorted again.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);

@@ -11,7 +11,7 @@ namespace shearcell {
 
 /// Work, losses and energy changes of the grains and the moving wall during ledger() [m d^2/s^2].
 struct Ledger {
-  double work_of_walls = 0;  ///< work of the drive that tilts the walls, without the load
+  double work_of_walls = 0;  ///< work of the drive that tilts the walls; excludes the load's work
   /// Energy that the grains lose to the fluid, the time integral of the sum of b v.(v - u). It is
   /// negative if the fluid drives the grains.
   double lost_by_grains = 0;

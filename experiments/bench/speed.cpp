@@ -17,7 +17,7 @@ namespace shearcell::bench {
 namespace {
 
 // The engine has no clock, so timed_kernels() wraps the functions of a kernel and adds up the
-// times. Only one simulation with one thread can be timed at once.
+// times. Only one simulation with one thread can be timed at a time.
 struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
@@ -98,8 +98,8 @@ Packing repeated(const Packing& one, std::size_t copies) {
   return made;
 }
 
-// Up to 18,200 grains are made as one packing. For more grains, a packing is repeated along the
-// depth: the smallest number of equal parts that together hold at least `grains` grains.
+// Up to 18,200 grains form one packing. A larger cell consists of equal packings along the depth:
+// as few as possible, with at least `grains` grains in all.
 Packing prepare(std::size_t grains) {
   const std::size_t parts = (grains + 18199) / 18200;
   Parameters parameters;

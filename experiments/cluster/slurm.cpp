@@ -151,7 +151,7 @@ std::string queue_job(const Job& job, const fs::path& folder) {
     return text.size() <= kLongest && std::regex_match(text, found, number);
   };
   if (sbatch.code == 0 && is_number(sbatch.output)) return found[1];
-  // sbatch failed, perhaps after it queued the job, or the site added text to the number.
+  // sbatch failed, perhaps after it queued the job, or the cluster added text to the job number.
   const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
   std::optional<std::vector<QueuedTask>> tasks;
   std::string queue = "no job of this name is in the queue";

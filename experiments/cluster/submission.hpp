@@ -27,7 +27,7 @@ struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
   double particle_steps = 0;          ///< remaining work, including the packings
-  double core_seconds = 0;            ///< remaining time, at the rates of the engines
+  double core_seconds = 0;            ///< remaining time of one core, from Rates (outlook.hpp)
 
   void add(const Share& other);
 };
@@ -63,8 +63,8 @@ struct Proposal {
 };
 
 /// Leaves out a packing and all its runs if `busy` contains the packing or one of its runs. If
-/// `job.cpus` is 0, tasks get one core for each thread of the runs in the largest share, but not
-/// more than the larger of 16 and `job.threads`.
+/// `job.cpus` is 0, each task gets as many cores as all runs of the largest share need at once, but
+/// at most 16 (or `job.threads`, if this is more).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -85,8 +85,8 @@ struct Submission {
   }
 };
 
-/// The array job. Task n works on its own store and ends with the program's exit code. It is queued
-/// again if it reaches its time limit.
+/// The array job. Task n works on its own store and ends with the program's exit code. A task that
+/// reaches its time limit is queued again.
 Job array_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options);
 
