@@ -62,6 +62,11 @@ inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
 
+/// " at scale desk", for messages. Empty if the manifest has no scales.
+inline std::string at_scale(const std::string& scale) {
+  return scale.empty() ? "" : " at scale " + scale;
+}
+
 /// The checkpoints to list: only recorded, recorded and pruned, or all (also rejected).
 enum class Listed { recorded, and_pruned, all };
 

@@ -73,7 +73,7 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   for (const std::string& why : result.undrawn) print_stderr("no plot: {}: {}\n", path, why);
   if (!result.undrawn.empty()) fail(context, kOtherError);
   if (context.json) return;
-  print_text("{} ({} scale): {}, {}, {} of them newly measured\n", path, scale_name(result.scale),
+  print_text("{}{}: {}, {}, {} of them newly measured\n", path, at_scale(result.scale),
              counted(result.runs, "run"), counted(result.checkpoints, "checkpoint"),
              result.measured.size());
   for (const auto& file : result.files) print_text("  {}\n", file.string());

@@ -283,13 +283,13 @@ void plan(const PlanOptions& options, Context& context) {
   }
   const std::string experiment =
       joined(plans, [](const Plan& one) { return one.manifest.experiment; });
-  const std::string scale = joined(plans, [](const Plan& one) { return scale_name(one.scale); });
+  const std::string scale = joined(plans, [](const Plan& one) { return one.scale; });
   const VariantNames names = names_of(plans, lines);
   const std::vector<Facts> stages = list_of(
       lines, [&](const Line& line) { return facts(line, names, options.manifests.size() > 1); });
   if (context.json) {
     return print_json({{"experiment", experiment},
-                       {"scale", scale},
+                       {"scale", scale_name(scale)},
                        {"experiments", list_of(plans, experiment_facts)},
                        {"notes", notes},
                        {"warnings", context.warnings},
@@ -303,7 +303,7 @@ void plan(const PlanOptions& options, Context& context) {
                        {"particle_steps_per_second_and_core", left.rate},
                        {"rate_measured", left.measured}});
   }
-  fmt::print("{} at scale {}: {}, {}\n\n", experiment, scale, counted(runs_planned, "run"),
+  fmt::print("{}{}: {}, {}\n\n", experiment, at_scale(scale), counted(runs_planned, "run"),
              counted(lines.size(), "stage"));
   print_table(stages);
   print_numerics(lines);

@@ -117,8 +117,8 @@ Facts facts_of(const Store& store, const Stage& stage) {
                       {"target_cycles", ask.target_cycles},
                       {"manifest", place.manifest},
                       {"overrides", overrides}});
-    places_text += fmt::format("{} ({}) {} seed {}, manifest {:.8}\n", place.experiment,
-                               scale_name(place.scale), place.variant, place.seed, place.manifest);
+    places_text += fmt::format("{}{}: {}, seed {}, manifest {:.8}\n", place.experiment,
+                               at_scale(place.scale), place.variant, place.seed, place.manifest);
     for (const std::string& line : describe(overrides)) places_text += line + "\n";
   }
   return {
@@ -313,7 +313,7 @@ void print(const FigureLineage& lineage, bool list) {
   Makers makers;
   const nlohmann::json& recorded = lineage.record.provenance;
   const nlohmann::json made = member_of(recorded, "made");
-  say("figure", "{}, {} scale, analysis version {}", lineage.record.name, scale_name(lineage.scale),
+  say("figure", "{}{}, analysis version {}", lineage.record.name, at_scale(lineage.scale),
       text_at(recorded, "analysis_version"));
   say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
       made.is_object() ? ", " + makers.number(made) : "");

@@ -214,8 +214,7 @@ void print_tables(const View& view) {
   for (const PlacedRun& listed : view.runs) {
     ++count[progress_of(listed.stage, view).first];
     for (const Membership& shown : listed.places) {
-      const std::string name =
-          shown.place.experiment + " at scale " + scale_name(shown.place.scale);
+      const std::string name = shown.place.experiment + at_scale(shown.place.scale);
       if (!tables.contains(name)) experiments.push_back(name);
       tables[name].push_back(facts(listed, shown, view));
     }

@@ -154,12 +154,15 @@ std::string caption_of(const ComputedFigure& figure, const RunSelection& selecte
   }
   // The title of a plot from a user's manifest only repeats the labels of the axes.
   const std::string title = find_figure(figure.name) == nullptr ? "" : ". " + figure.title;
-  std::string text =
-      fmt::format("{} Runs: {}. {}cale {}.",
-                  caption_of(fmt::format("Figure {}{}", figure.name, title), figure.tables),
-                  fmt::join(counts, "; "),
-                  figure.experiment.empty() ? "S" : "Experiment " + figure.experiment + ", s",
-                  scale_name(figure.scale));
+  std::string text = fmt::format(
+      "{} Runs: {}.", caption_of(fmt::format("Figure {}{}", figure.name, title), figure.tables),
+      fmt::join(counts, "; "));
+  const std::string& scale = figure.scale;
+  if (figure.experiment.empty()) {
+    text += scale.empty() ? "" : " Scale " + scale + ".";
+  } else {
+    text += " Experiment " + figure.experiment + (scale.empty() ? "" : ", scale " + scale) + ".";
+  }
   if (!selected.variants.empty()) {
     text += fmt::format(" Selected: {}.", fmt::join(selected.variants, ", "));
   }

@@ -188,10 +188,10 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     const auto shown = std::ranges::find(chosen.runs, where, experiment_scale<Run>);
     const auto count = std::ranges::count(chosen.runs, where, experiment_scale<Run>);
     chosen.notes.push_back(fmt::format(
-        "experiment {} at scale {}: left out: {} of another version of its manifest, {:.8}: {}; "
+        "experiment {}{}: left out: {} of another version of its manifest, {:.8}: {}; "
         "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
         "that states the runs of both versions; this computes only runs that neither version has",
-        where.first, scale_name(where.second), counted(variants.size(), "run"), manifest,
+        where.first, at_scale(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),
         shown == chosen.runs.end() ? "" : fmt::format(", {:.8}", shown->place.manifest)));

@@ -149,8 +149,8 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   }
   const std::string what =
       start.run.empty()
-          ? fmt::format("run of {} at scale {} with seed {}{}", start.experiment,
-                        scale_name(at_scale), variant.parameters.start_seed,
+          ? fmt::format("run of {}{} with seed {}{}", start.experiment,
+                        shearcell::at_scale(at_scale), variant.parameters.start_seed,
                         start.variant.empty() ? "" : " and " + printable(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {

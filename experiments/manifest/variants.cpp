@@ -86,7 +86,7 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
     std::string text = setting_text(key, variant, brief.contains(key));
     if (!text.empty()) parts.push_back(std::move(text));
   }
-  return parts.empty() ? "base" : fmt::format("{}", fmt::join(parts, ", "));
+  return parts.empty() ? "no sweep" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
 /// Normalizes "key=value": removes spaces, writes numbers as this program does ("1.28e-2" gives

@@ -69,7 +69,7 @@ std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 /// Returns the display names of variants, which are objects of swept keys and values and may be
 /// repeated. Labels come first, those with most keys before others, and replace the keys that they
 /// state. Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". The name
-/// is "base" if nothing is swept. (Ids and CSV files use Variant::name.)
+/// is "no sweep" if nothing is swept. (Ids and CSV files use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 

@@ -259,8 +259,8 @@ json stage_json(const RunLineage& stage) {
   for (const Membership& m : run.memberships) {
     const Place& place = m.place;
     members.push_back({{"manifest", brief(place.manifest)},
-                       {"text", fmt::format("{} at scale {}, {}, seed {}", place.experiment,
-                                            scale_name(place.scale), place.variant, place.seed)}});
+                       {"text", fmt::format("{}{}, {}, seed {}", place.experiment,
+                                            at_scale(place.scale), place.variant, place.seed)}});
   }
   for (const Attempt& attempt : stage.attempts) {
     const Maker maker = maker_of(attempt.host);

@@ -28,7 +28,7 @@ HEADLINES = [
     ("S3", "S3_overlap", "mean overlap [d]", "less than 0.001"),
     ("B5", "B5_phi", "gain of phi by pauses after each cycle, measured at rest", "positive"),
     ("summary", "summary.percentage",
-     "standard deviation of the percentage crystalline over experiments with other drags, time steps, pauses and walls "
+     "standard deviation of the percentage crystalline between experiments that differ in drag, time step, pauses or walls "
      "(claim chosen after the runs)",
      "negligible"),
     ("S5a", "S5a.onset@amplitude_rad=0.05", "phi at the onset, A = 0.05", "0.646 +- 0.001"),
@@ -42,8 +42,8 @@ HEADLINES = [
     ("committor", "committor.size@amplitude_rad=0.0833",
      "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow",
      "16 by the first definition", "another observable"),
-    ("S7", "S7.inner", "share of nuclei in the inner half of the width less the share in the outer half", "0"),
-    ("S7", "S7.top", "share of nuclei in the upper third of the height less the share in the lower third", "over 0.2"),
+    ("S7", "S7.inner", "share of nuclei in the inner half of the width minus the share in the outer half", "0"),
+    ("S7", "S7.top", "share of nuclei in the upper third of the height minus the share in the lower third", "over 0.2"),
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
 SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
