@@ -30,7 +30,7 @@ class VariantNames {
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// The display name of the stage in this place; the variant if no name is known.
+  /// The display name of a stage at a place in an experiment; place.variant if no name is known.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:
