@@ -82,7 +82,7 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 }
 
 /// Throws StoreDamaged if the stage started from a checkpoint of its parent that is not at `steps`.
-/// After a merge the checkpoint may be unknown: a merge skips a state that exists in other bytes.
+/// After a merge the checkpoint may be unknown: merge() adds no second file of the same state.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
@@ -242,7 +242,7 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed) {
   count = std::min(count, records.size());
-  // A remainder, because the distributions of <random> differ between standard libraries.
+  // Uses remainders, because the distributions of <random> differ between standard libraries.
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(records[i], records[i + random() % (records.size() - i)]);

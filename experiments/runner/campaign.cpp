@@ -139,8 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // The next call tries again. The store rejects records of a stage that another program
-        // took.
+        // The next call tries again. The store rejects records of a stage that was taken over.
       }
     });
     {
@@ -178,7 +177,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started was done before. Measures nothing: that may take long.
+  // Whether a job that will not be started was done before. Skips measures, which may take long.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;

@@ -98,7 +98,8 @@ class Measuring {
     const auto found = cache_.get(keys_);
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        throw MachineError(cache_.trouble() + "; it has the only measures of pruned checkpoints");
+        throw MachineError(cache_.trouble() +
+                           "; this file has the only measures of pruned checkpoints");
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
@@ -174,7 +175,7 @@ class Measuring {
   std::vector<std::size_t> place_;  // index in distinct_ of each checkpoint
   std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // one per checkpoint in distinct_; written by one thread each
+  std::vector<Results> results_;  // one per checkpoint in distinct_; one thread writes each
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;

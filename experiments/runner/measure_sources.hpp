@@ -44,7 +44,7 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< measures in the log; those of them not in the cache
+    std::size_t named = 0, absent = 0;  ///< measures in the log; of these, not cached
     std::string altered;  ///< message about a measure that differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the log.
@@ -77,9 +77,8 @@ class MeasureSources {
   struct Run {
     RunFacts facts = {};
     std::set<std::uint64_t> cadences = {1};
-    std::map<std::uint64_t, CheckpointRecord> checkpoints =
-        {};                                       // by step; empty if the run is not a shear
-    std::map<std::string, Digests> digests = {};  // by SHA-256 of the checkpoint
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; empty if not a shear
+    std::map<std::string, Digests> digests = {};                 // by SHA-256 of the checkpoint
   };
 
   const Store* store_ = nullptr;

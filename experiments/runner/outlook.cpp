@@ -24,9 +24,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed =
-    1'000'000;                           // longest list of checkpoints; a store may be forged
-constexpr double kMostCounted = 10'000;  // checkpoints to count; more are extrapolated
+constexpr std::size_t kMostListed = 1'000'000;  // limits lists of checkpoints from forged stores
+constexpr double kMostCounted = 10'000;         // largest exact count of future checkpoints
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
@@ -65,7 +64,7 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
 
 /// Where a stage ends for a single Ask (what one experiment wants of the stage).
 struct End {
-  double cycle = 0;                             ///< last cycle; fewer than asked if `until` ends it
+  double cycle = 0;                             ///< the ask's target_cycles, or an earlier cycle
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
   const CheckpointRecord* undecided = nullptr;  ///< first checkpoint that may reach `until`
 };
@@ -80,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // Earlier completions cannot decide an ask for more cycles than the stage's target.
+      // For an ask that exceeds the stage's target, the checkpoints must be measured.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -115,7 +114,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1, known = 0, at_most = 0;  // at_most: latest end that is possible
+  double latest = -1, known = 0, at_most = 0;  // at_most: latest possible end
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
@@ -300,8 +299,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Measures `first` and further checkpoints at whole cycles, one checkpoint per worker, and adds
-/// the measures that the `until` of these asks need to `measures`.
+/// Measures what the `until` of these asks require, of `first` and of further checkpoints at whole
+/// cycles, one checkpoint per worker. Adds the results to `measures`.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {

@@ -67,7 +67,7 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// When checkpoints of a shear are due, for each ask for one or more cycles. Throws StoreDamaged.
+/// When checkpoints of a shear are due, for each ask with at least one cycle. Throws StoreDamaged.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
@@ -123,14 +123,14 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that at least one ask wants, up to the ask's end_for().
+/// The recorded and pruned checkpoints that at least one ask wants, up to end_for() of the ask.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
 /// null. If the stage continued beyond this `until` because another experiment asked for more
-/// cycles, their number is added as "cycles_asked".
+/// cycles, the larger number of cycles is added as "cycles_asked".
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.

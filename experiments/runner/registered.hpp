@@ -22,9 +22,9 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of the variants of stages, by variant_names() of each manifest. A settled packing
-/// is called "packing". If an experiment has different packings at one scale, the values that
-/// differ are added: "packing N=600".
+/// Display names of the variants of stages, from variant_names() for each manifest. A settled
+/// packing is called "packing". If an experiment has different packings at one scale, the values
+/// that differ are added: "packing N=600".
 class VariantNames {
  public:
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest

@@ -117,7 +117,7 @@ struct Beginning {
   Cell cell;
   State state;
   std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
-  std::string parent_checkpoint = {};         ///< SHA-256 if the state is one of the parent, or ""
+  std::string parent_checkpoint = {};         ///< SHA-256 if the state is from the parent, or ""
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
@@ -350,7 +350,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // Makes the frame the newest state. The watchdog checks a copy that our own engine advances.
+  // Makes the frame the newest state. The watchdog checks it in our own engine, after one step.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -426,7 +426,7 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // The new completion is valid for all memberships, including those declared since the last one.
+    // This completion is valid for all memberships, including those declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -483,8 +483,7 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, the memory or the store failed. If start_stage() threw, the start may be
-      // recorded.
+      // The disk, memory or store failed. If start_stage() threw, the start may still be recorded.
       release(failure);
       throw;
     }
