@@ -177,7 +177,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started was done before. Skips measures, which may take long.
+  // Whether a job that will not be started was done before. Measures nothing, to avoid a wait.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;
@@ -233,8 +233,8 @@ class Campaign {
     if (holders.empty()) return;  // the other program has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another program computes ({}); a stage is free when that "
-                    "program has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another program computes ({}); this program continues "
+                    "a stage when that program has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }

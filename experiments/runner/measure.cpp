@@ -172,7 +172,7 @@ class Measuring {
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers
   std::vector<ToMeasure> distinct_;
-  std::vector<std::size_t> place_;  // index in distinct_ of each checkpoint
+  std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
   std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
   std::vector<std::size_t> todo_;
   std::vector<Results> results_;  // one per checkpoint in distinct_; one thread writes each

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the measures of a stored checkpoint are computed from: the checkpoint, earlier checkpoints
-// of the same run, and facts of the run.
+// The data from which the measures of a stored checkpoint are computed: the checkpoint, earlier
+// checkpoints of the same run, and facts of the run.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // limits lists of checkpoints from forged stores
+constexpr std::size_t kMostListed = 1'000'000;  // longest checkpoint list, even for a forged store
 constexpr double kMostCounted = 10'000;         // largest exact count of future checkpoints
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
@@ -99,7 +99,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the completed stage is long enough for `ask` because a recorded ask demands as much.
+/// Whether the completed stage is long enough for `ask` because a recorded ask is at least as long.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -299,8 +299,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Measures what the `until` of these asks require, of `first` and of further checkpoints at whole
-/// cycles, one checkpoint per worker. Adds the results to `measures`.
+/// Computes the measures that the `until` of these asks need, for `first` and further checkpoints
+/// at whole cycles (one checkpoint per worker), and adds them to `measures`.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {

@@ -238,8 +238,8 @@ class Engine {
   /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. A checkpoint is due afterwards. If LAMMPS does not answer,
-  /// no checkpoint is due, and the steps since the last checkpoint are lost.
+  /// Stops before the end of the stage. A checkpoint is due afterwards, unless LAMMPS does not
+  /// answer. In this case the steps since the last checkpoint are lost.
   virtual StageProgress halt() = 0;
 
   /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writing to terminals: their width and abilities, help pages, untrusted texts, progress.
+// Output to terminals: width and capabilities, help pages, untrusted texts, progress.
 #pragma once
 
 #include <fmt/format.h>

@@ -134,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // The tilt follows from the step number, the heights of the planes from the moving wall's atom.
+  // The tilt depends on the step number. One plane has the height of the moving wall's atom.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
