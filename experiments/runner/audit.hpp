@@ -32,10 +32,10 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
-  std::size_t cached = 0;              ///< checkpoints of the store with cached measures
-  std::size_t computed = 0;            ///< checkpoints whose measures were computed again
-  std::size_t not_covered = 0;         ///< pruned checkpoints without digests in the log
-  std::size_t absent = 0;              ///< measures with a digest in the log that are not cached
+  std::size_t cached = 0;       ///< checkpoints of the store with cached measures
+  std::size_t computed = 0;     ///< checkpoints whose measures were computed again
+  std::size_t not_covered = 0;  ///< pruned checkpoints without digests in the log
+  std::size_t absent = 0;       ///< measures that have a digest in the log but are not cached
   std::vector<Finding> findings = {};  ///< errors
 };
 

@@ -158,7 +158,7 @@ class Campaign {
   };
 
   // The first job that can begin; otherwise the first held job that is due for a check; otherwise
-  // null. Marks jobs that can no longer begin as ended.
+  // null. Sets the state of a job that can no longer begin to JobState::ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {

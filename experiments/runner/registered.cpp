@@ -10,12 +10,12 @@
 namespace shearcell {
 namespace {
 
-// Replaces the manifest in the Group of a packing, because the packings of all versions of an
-// experiment are named together.
+// Used instead of the manifest in the Group of a packing, because the packings of all versions of
+// an experiment are named together.
 const std::string kPackings = "packings";
 
-/// All registered manifests, oldest first. A manifest that was registered again after another
-/// version appears again. Throws StoreDamaged for an event that does not hold a manifest.
+/// All registered manifests, oldest first. A manifest appears twice if it was registered again
+/// after another version. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");
