@@ -34,8 +34,8 @@ void require_same(const std::string& what, const json& recorded, const json& exp
                                  recorded.dump(), expected.dump()));
 }
 
-/// Checks seed, swept values and variant. Skips swept parameters that do not act on the run or are
-/// not part of its id.
+/// Throws StoreDamaged if seed, swept values or variant contradict the parameters. Skips a swept
+/// parameter that has no effect on the run or is not part of the run's id.
 void check_place(const Place& place, const StageInputs& stage, const json& resolved) {
   require_same("seed", place.seed, stage.seed);
   for (const auto& [key, value] : place.swept.items()) {
@@ -63,8 +63,8 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps at which the run was completed. Each completion gives the last step of its attempt and the
-/// furthest step so far; the two differ if attempts of several stores were merged.
+/// Steps at which the run may have been completed: for each completed attempt, its last step and
+/// the largest step so far. These steps can differ if attempts of several stores were merged.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
@@ -81,8 +81,8 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a state of its parent that is at none of `steps`.
-/// A merged store may lack this state: a merge leaves out files that another HDF5 library wrote.
+/// Throws StoreDamaged if the stage started from a checkpoint of its parent that is not at `steps`.
+/// After a merge the checkpoint may be unknown: merge() adds no second file of the same state.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
@@ -125,7 +125,7 @@ struct CachedMeasure {
   DerivedObject object;
 };
 
-/// The cached measures of a checkpoint, for the intervals of all experiments that use its run.
+/// The cached measures of a checkpoint, for every checkpoint interval (`every`) of its run.
 std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
                                            MeasureSources& sources) {
   sources.read_run(record.run);
@@ -165,7 +165,7 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
   } catch (const AnalysisError& error) {
     return error.what();
   } catch (const FilePruned&) {
-    // Another program has pruned the checkpoint meanwhile.
+    // Another program has just pruned the checkpoint.
   }
   return "";
 }
@@ -207,7 +207,7 @@ std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  std::map<std::string, CheckpointRecord> unnamed;  // pruned, without digests in the log
+  std::map<std::string, CheckpointRecord> unnamed;  // pruned, and no digests in the log
   for (const Stage& stage : store.stages()) {
     for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {
@@ -242,7 +242,7 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed) {
   count = std::min(count, records.size());
-  // The distributions of <random> differ between standard libraries; a remainder does not.
+  // Uses remainders, because the distributions of <random> differ between standard libraries.
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(records[i], records[i + random() % (records.size() - i)]);
@@ -253,7 +253,7 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 
 std::uint64_t seed_of(const Head& head) {
   const std::string digits = head.hash.substr(0, 12);
-  std::uint64_t seed = 0;  // 0 if a damaged log has no digits
+  std::uint64_t seed = 0;  // stays 0 if the hash in a damaged log is not a number
   std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
   return seed;
 }
@@ -279,7 +279,7 @@ std::vector<Finding> check_runs(const Store& store) {
       check_beginning(store, stage, ends->second);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
-    } catch (const UnreadableRecord& unknown) {  // parameters of another version
+    } catch (const UnreadableRecord& unknown) {  // another version recorded the parameters
       note(Finding::Severity::note, unknown);
     } catch (const NotFound& parent) {
       note(Finding::Severity::note, parent);
@@ -314,7 +314,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // sources cannot predict this seed
+  const std::uint64_t seed = seed_of(store.head());  // unpredictable for the sources
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

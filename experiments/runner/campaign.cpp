@@ -37,7 +37,7 @@ enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// A stage that no program holds counts as blocked after this many failed starts.
+// After this many failed starts, a stage that no program holds counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -68,7 +68,7 @@ class Progress {
     print_stderr("{}: {}\n", shown.name, shown.text);
   }
 
-  /// `how`: how the stage ended; printed unless empty. `done`: count the stage as done.
+  /// `how`: how the stage ended; printed unless empty. `done`: whether the stage counts as done.
   void end(const StageJob& job, const std::string& how, bool done) {
     const std::lock_guard lock(mutex_);
     running_.erase(job.id);
@@ -102,7 +102,7 @@ class Progress {
   void draw() {
     if (quiet_ || !terminal_) return;
     erase();
-    // A longer line would wrap, and erase() would not erase its beginning.
+    // erase() does not erase the beginning of a line that wraps.
     const std::size_t longest = terminal_columns(stderr).value_or(80) - 1;
     std::multimap<std::string, std::string> lines;
     for (const auto& [id, shown] : running_) lines.emplace(shown.name, shown.text);
@@ -139,7 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // The next call tries again. Until then the log decides whose records are valid.
+        // The next call tries again. The store rejects records of a stage that was taken over.
       }
     });
     {
@@ -153,13 +153,12 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    // For a stage that another program holds or took; written by the thread that runs the job.
-    Clock::time_point check_at = {};
-    int losses = 0;
+    Clock::time_point check_at = {};  // next check of a stage that another program holds
+    int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 
   // The first job that can begin; otherwise the first held job that is due for a check; otherwise
-  // null. Marks jobs that can no longer begin as ended.
+  // null. Sets the state of a job that can no longer begin to JobState::ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {
@@ -178,7 +177,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started was done before. Measures nothing: the user waits.
+  // Whether a job that will not be started was done before. Measures nothing, to avoid a wait.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;
@@ -234,8 +233,8 @@ class Campaign {
     if (holders.empty()) return;  // the other program has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another program computes ({}); a stage is free when that "
-                    "program has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another program computes ({}); this program continues "
+                    "a stage when that program has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }
@@ -252,7 +251,7 @@ class Campaign {
     } catch (const ProgramError& error) {
       note(job, &CampaignResult::blocked, error.what());  // LAMMPS is missing
     } catch (const NotFound& error) {
-      // A checkpoint that the stage needs was pruned or never recorded.
+      // The checkpoint from which the stage starts was pruned or never recorded.
       note(job, &CampaignResult::blocked, error.what());
     } catch (const TooLittleMemory& error) {
       note(job, &CampaignResult::failed, error.what());
@@ -363,8 +362,8 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-/// A job for each stage, named after the stage's first place. If several stages have the same name,
-/// for example at several scales, their ids are added.
+/// A job for each stage, named after the stage's first place. If several jobs have the same name,
+/// for example at several scales, the stage's id is appended to each of these names.
 std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
   std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;
@@ -410,7 +409,7 @@ std::vector<StageJob> declare(Store& store, const Plan& plan) {
     for (const Stage* stage : {run.prepare ? &*run.prepare : nullptr, &run.stage}) {
       if (stage == nullptr) continue;
       const bool first = known.insert(stage->id).second;
-      if (!first && stage != &run.stage) continue;  // a packing that variants share
+      if (!first && stage != &run.stage) continue;  // several variants share this packing
       store.declare_stage(*stage);
       if (first) stages.push_back(*stage);
     }
@@ -425,7 +424,7 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (const Stage& stage : stages) {
     if (prefixes.empty() && !look_at(store, stage).done) asked.push_back(stage.id);
   }
-  // Includes parents, since the last checkpoint of a parent may be lost.
+  // Parents are included, because the last checkpoint of a parent may be lost.
   const std::set<std::string> wanted = with_parents(store, asked);
   std::erase_if(stages, [&](const Stage& stage) { return !wanted.contains(stage.id); });
   return jobs_of(stages, VariantNames(store));

@@ -22,24 +22,24 @@ struct StageJob {
 struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
-  std::size_t elsewhere = 0;  ///< stages that another program completed meanwhile
+  std::size_t elsewhere = 0;  ///< stages that another program completed during this campaign
   std::size_t failed = 0;     ///< stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;
   /// Not computed: the parent failed or was interrupted, LAMMPS is missing, the record cannot be
   /// read, or a checkpoint that the stage needs was pruned or never recorded.
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< stages with a damaged file in the store
-  std::size_t files_deleted = 0;      ///< checkpoint files, because of --keep-every
-  std::vector<std::string> messages;  ///< one per failure, damage or new bits version
+  std::size_t files_deleted = 0;      ///< checkpoint files deleted because of --keep-every
+  std::vector<std::string> messages;  ///< failures, damage, and states of another bits_version
 };
 
 /// Records the manifest and the runs of the plan. Returns the stages of these runs, each stage
 /// once, parents first, otherwise in the plan's order.
 std::vector<StageJob> declare(Store& store, const Plan& plan);
 
-/// The stages of the store that are not done (Outlook::done), with their parents. With `prefixes`,
-/// instead the stages whose ids begin with one of these texts, with their parents. Throws NotFound
-/// if a prefix fits no stage or several stages.
+/// Without `prefixes`: the stages of the store that are not done (Outlook::done), and their
+/// parents. Otherwise: the stages whose ids begin with one of the prefixes, and their parents.
+/// Throws NotFound if a prefix fits no stage or several stages.
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed

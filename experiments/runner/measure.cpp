@@ -35,7 +35,7 @@ class Measuring {
     for (const std::string& name : names) add(provider(name));
     wanted_ = providers_.size();
     for (const std::string& name : options.also) add(provider(name));
-    // A checkpoint that two experiments share is listed twice.
+    // `checkpoints` lists a checkpoint twice if two experiments share it.
     std::map<std::pair<std::string_view, std::uint64_t>, std::size_t> known;
     for (const ToMeasure& one : checkpoints) {
       sources_.read_run(one.checkpoint->run);
@@ -98,7 +98,8 @@ class Measuring {
     const auto found = cache_.get(keys_);
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        throw MachineError(cache_.trouble() + "; it has the only measures of pruned checkpoints");
+        throw MachineError(cache_.trouble() +
+                           "; this file has the only measures of pruned checkpoints");
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
@@ -168,13 +169,13 @@ class Measuring {
   const std::span<const ToMeasure> checkpoints_;
   MeasureSources sources_;
   const MeasureOptions& options_;
-  std::vector<const Provider*> providers_;  // requested ones, then MeasureOptions::also
+  std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers
   std::vector<ToMeasure> distinct_;
-  std::vector<std::size_t> place_;  // index in distinct_ of each checkpoint
-  std::vector<DerivedKey> keys_;    // for each of distinct_: one per provider
+  std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
+  std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // for each of distinct_; threads write different ones
+  std::vector<Results> results_;  // one per checkpoint in distinct_; one thread writes each
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;

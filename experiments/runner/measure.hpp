@@ -19,17 +19,17 @@
 
 namespace shearcell {
 
-/// Called after each item with the progress, by one thread at a time. May be empty.
+/// Called with the progress after each item, by one thread at a time. May be empty.
 using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 struct MeasureOptions {
   std::size_t workers = 1;
   ReadProgress report = {};  ///< called after each computed checkpoint
-  /// Names of further providers. Their results are computed and cached whenever a checkpoint is
-  /// analysed, so that one analysis serves many callers. They must not need earlier checkpoints.
+  /// Names of further providers. Whenever a checkpoint is analysed, their results are also computed
+  /// and cached for later calls. These providers must not need earlier checkpoints.
   std::vector<std::string> also = {};
-  /// Measures that need a simulation (ComputedFrom::simulation) are computed only from this first
-  /// to this last cycle. Other checkpoints lack these measures. Empty: for all cycles.
+  /// First and last cycle at which measures that need a simulation (ComputedFrom::simulation) are
+  /// computed. Checkpoints at other cycles lack these measures. If empty, all cycles have them.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
@@ -43,24 +43,24 @@ struct MeasureOutcome {
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-/// A checkpoint to measure, for an experiment with a checkpoint after every `every` cycles.
-/// Measures that compare two checkpoints use only whole cycles that `every` divides.
+/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. A measure
+/// uses an earlier checkpoint at a whole cycle only if `every` divides this cycle.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;
 };
 
-/// Sets the measures of the checkpoints: those of the providers, and those that follow from the log
-/// (ComputedFrom::record). `lacking` lists providers without a result. Results are cached under
-/// the checkpoint's recorded SHA-256; if a result is cached, the file is not read and may be
-/// missing. Cached and computed results are the same bytes. Throws StoreDamaged, with a remedy, if
-/// a cached result does not match its key.
+/// Sets the measures of the checkpoints: the results of the providers, and the measures that need
+/// only the log (ComputedFrom::record). Sets `lacking` to the providers that gave no result.
+/// Results are cached under the checkpoint's recorded SHA-256. If all results are cached, the file
+/// is not read and may be missing. Throws StoreDamaged, with a remedy, if a provider cannot read a
+/// cached result, and MachineError if the cached measures of a pruned checkpoint cannot be read.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);
 
-/// Analyses a stored checkpoint. If the state cannot be analysed, throws StoreDamaged, which names
-/// checkpoint and run, because this program never records such a state.
+/// Analyses a stored checkpoint. Throws StoreDamaged, which names checkpoint and run, if the state
+/// cannot be analysed: this program never records such a state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

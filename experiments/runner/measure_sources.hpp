@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the measures of a stored checkpoint are computed from: the checkpoint, earlier checkpoints
-// of the same run, and facts of the run.
+// The data from which the measures of a stored checkpoint are computed: the checkpoint, earlier
+// checkpoints of the same run, and facts of the run.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ class MeasureSources {
   /// run to another function. After that, any number of threads may call the other functions.
   void read_run(const std::string& run);
 
-  /// The earlier checkpoint of the same run that the provider needs. Null if an experiment with a
-  /// checkpoint after every `every` cycles has no such checkpoint. Valid as long as this object.
+  /// The earlier checkpoint of the same run that the provider needs. Null if it is not recorded, or
+  /// if it is at a whole cycle that `every` does not divide. Valid as long as this object exists.
   const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
                                   std::uint64_t every) const;
 
@@ -37,20 +37,20 @@ class MeasureSources {
   DerivedKey key(const CheckpointRecord& record, const Provider& provider,
                  std::uint64_t every) const;
 
-  /// Whether a cached object still has the digest that was logged when the checkpoint's file was
-  /// pruned. Empty if the log has no digest of this object. True if the log has no digests of the
-  /// checkpoint.
+  /// Whether a cached object has the digest that was logged when the checkpoint was pruned. True if
+  /// the log has no digest for the whole checkpoint; empty if it has digests for other objects of
+  /// the checkpoint, but not for this one.
   std::optional<bool> is_as_pruned(const CheckpointRecord& record,
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< number of logged measures; of these, not cached
-    std::string altered;                ///< message on a measure that differs from the log, or ""
+    std::size_t named = 0, absent = 0;  ///< measures in the log; of these, not cached
+    std::string altered;  ///< message about a measure that differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the log.
   PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;
 
-  /// Checkpoint intervals [cycles] of the experiments that use the run, and 1.
+  /// Checkpoint intervals [cycles] of the experiments that use the run; 1 is always included.
   const std::set<std::uint64_t>& cadences(const std::string& run) const {
     return runs_.at(run).cadences;
   }
@@ -66,9 +66,9 @@ class MeasureSources {
   /// Adds the measures that need only the log (ComputedFrom::record).
   void add_recorded(const CheckpointRecord& record, Measures& measures) const;
 
-  /// The measures of a loaded checkpoint: those of the providers for which `wanted` is true, and
-  /// those that need only the log. Measures whose earlier checkpoint cannot be read are left out,
-  /// and the reason is added to `unread`.
+  /// The measures of a loaded checkpoint: the results of all providers for which `wanted` is true,
+  /// and the measures that need only the log. If an earlier checkpoint cannot be read, leaves out
+  /// the measures that need it and adds the reason to `unread`.
   Measures measures_of(const CheckpointRecord& record, std::uint64_t every,
                        const Checkpoint& checkpoint, const Analysis& analysis,
                        bool (*wanted)(const Provider&), MeasureOutcome& unread) const;
@@ -77,7 +77,7 @@ class MeasureSources {
   struct Run {
     RunFacts facts = {};
     std::set<std::uint64_t> cadences = {1};
-    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; only of a shear
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; empty if not a shear
     std::map<std::string, Digests> digests = {};                 // by SHA-256 of the checkpoint
   };
 

@@ -24,8 +24,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // checkpoints in a list; the store is not trusted
-constexpr double kMostCounted = 10'000;         // one by one; larger numbers are extrapolated
+constexpr std::size_t kMostListed = 1'000'000;  // longest checkpoint list, even for a forged store
+constexpr double kMostCounted = 10'000;         // largest exact count of future checkpoints
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   throw StoreDamaged(fmt::format("run {:.8}: invalid `until`: {}", stage.id, problem.what()));
 }
 
-/// Outlook::ended, read from a recorded completion.
+/// The part of Outlook::ended that was read from a recorded completion.
 struct EarlyEnd {
   Until until;
   double reached = 0;  ///< the cycle at which `until` was reached
@@ -62,9 +62,9 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
   return std::nullopt;
 }
 
-/// The end of a stage if only one ask counts.
+/// Where a stage ends for a single Ask (what one experiment wants of the stage).
 struct End {
-  double cycle = 0;                             ///< the ask's number of cycles, or fewer
+  double cycle = 0;                             ///< the ask's target_cycles, or an earlier cycle
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
   const CheckpointRecord* undecided = nullptr;  ///< first checkpoint that may reach `until`
 };
@@ -79,14 +79,14 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // An end that was recorded for fewer cycles says nothing about an ask for more cycles.
+      // For an ask that exceeds the stage's target, the checkpoints must be measured.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
       if (!end.reached) end.undecided = &one;
       break;
     }
-    // NaN does not reach the value, for example phi without interior grains.
+    // NaN never reaches the value of `until`. Example: phi of a cell without interior grains.
     if (!(known->second.number(until->measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
@@ -99,7 +99,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the completed stage meets an ask because it has met a recorded ask.
+/// Whether the completed stage is long enough for `ask` because a recorded ask is at least as long.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -114,7 +114,7 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
   bool long_enough = true, reached = true;
-  double latest = -1, known = 0, at_most = 0;  // latest known and latest possible end
+  double latest = -1, known = 0, at_most = 0;  // at_most: latest possible end
   for (const Ask& ask : asks) {
     const End end = end_by(stage, ask, checkpoints, measures);
     const bool earlier =
@@ -149,9 +149,8 @@ double settling_time_s(const Parameters& p) {
   return std::min(std::max({time, damping_time_s(p), pressing_time_s(p)}), p.settle_time_limit_s);
 }
 
-/// Estimated force evaluations of one minimization at the default tolerance: the mean over the nine
-/// minimizations of B.2. Within a sixth of the measured means: 8.2e3, 16e3 and 52e3 at N = 600,
-/// 2000 and 7900.
+/// Estimated force evaluations of one minimization at the default tolerance. Within a sixth of the
+/// means of the nine minimizations of B.2: 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
 double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
@@ -236,7 +235,7 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
       throw StoreDamaged(fmt::format("run {:.8}: too many recorded checkpoint_phases: {}", stage.id,
                                      ask.checkpoint_phases.size()));
     }
-    if (ask.target_cycles == 0) continue;  // the ask needs only cycle 0, which each shear records
+    if (ask.target_cycles == 0) continue;  // only cycle 0, which every shear records
     cadences.push_back(
         {ask.checkpoint_every, steps_at(ask.checkpoint_phases, drive), ask.target_cycles});
   }
@@ -300,8 +299,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Measures `first` and the next checkpoints at whole cycles for the `until` of these asks: one
-/// checkpoint per worker.
+/// Computes the measures that the `until` of these asks need, for `first` and further checkpoints
+/// at whole cycles (one checkpoint per worker), and adds them to `measures`.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {
@@ -323,7 +322,7 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
-  // The `also` measures need no second analysis, and figures need these measures.
+  // Figures need the measures in `also`, which the same analysis gives at no extra cost.
   const MeasureOptions also = {.workers = options.workers,
                                .report = options.report,
                                .also = {scalars_provider, "crystallites"}};
@@ -331,14 +330,14 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
     if (!one.lacking.empty()) continue;
-    // NaN stands for a number that the checkpoint lacks, and does not reach the value.
+    // A number that the checkpoint lacks becomes NaN, which never reaches the value of `until`.
     for (const std::string& name : wanted) one.measures.numbers.try_emplace(name, std::nan(""));
     measures[one.sha256] = std::move(one.measures);
   }
 }
 
-/// Among asks without this `until` that were recorded when the stage ended: the largest number of
-/// cycles that the stage has reached; else 0.
+/// The largest number of cycles that an ask without this `until` demands and the stage has reached;
+/// 0 if there is none. Considers only asks that were recorded when the stage ended.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -406,7 +405,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
-  // No other experiment can have continued a stage with one ask.
+  // If the stage has a single ask, no other experiment has continued it beyond `until`.
   if (stage.memberships.size() < 2 || ask.until.is_null()) {
     return static_cast<double>(ask.target_cycles);
   }
@@ -468,19 +467,19 @@ std::optional<double> expected_end(std::span<const Stage> stages, const json& un
   return sum / count;
 }
 
-// --- What it costs ---
+// --- Estimates of memory, file sizes and time ---
 
 namespace {
 
-// Assumed rates [particle-steps/s] until the store has measured rates. Measured with rough cells on
-// one core of an EPYC (Zen 4) by `bench speed`; LAMMPS: 29 Sep 2021, one process (SCALING.md).
+// Rates [particle-steps/s] that are assumed until the store has measured rates. `bench speed` gave
+// them with rough cells on one core of an EPYC (Zen 4). LAMMPS: 29 Sep 2021 (SCALING.md).
 struct MeasuredRate {
   double grains, rate;
 };
 constexpr MeasuredRate kOurRates[] = {{5200, 74e6}, {1e5, 57e6}, {1e6, 53e6}};
 constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
-// Interpolates between two measured sizes by a power law in N. Constant beyond the outer sizes.
+// Interpolates by a power law in N; constant below the smallest and above the largest measured N.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   if (grains <= rates.front().grains) return rates.front().rate;
   for (std::size_t i = 1; i < rates.size(); ++i) {
@@ -492,7 +491,7 @@ double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   return rates.back().rate;
 }
 
-// Measured size of a checkpoint file [bytes]: per grain, per wall grain, and the rest.
+// Measured size [bytes] of a checkpoint file: for each grain, for each wall grain, and the rest.
 constexpr double kBytesPerGrain = 121;
 constexpr double kBytesPerWallGrain = 98;
 constexpr double kBytesPerFile = 18e3;

@@ -30,9 +30,9 @@ using KnownMeasures = std::map<std::string, Measures>;
 struct Outlook {
   /// The stage is completed, is long enough for all asks, and lacks no checkpoint.
   bool done = false;
-  /// Steps, ascending, of missing checkpoints: an experiment asks for them, they lie before the
-  /// last checkpoint, and they were never recorded. A replay can compute them. Empty for LAMMPS,
-  /// whose runs cannot be replayed bit for bit.
+  /// Steps, ascending, of checkpoints that an experiment asks for and that were not recorded when
+  /// the stage passed these steps. A replay can compute them. Empty for LAMMPS, whose runs cannot
+  /// be replayed bit for bit.
   std::vector<std::uint64_t> missing = {};
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
@@ -45,21 +45,21 @@ struct Outlook {
   nlohmann::json ended = nullptr;
   /// The first checkpoint that may have reached an `until`, but whose measures are unknown.
   std::optional<CheckpointRecord> undecided = {};
-  // Upper bounds of the remaining work. For settling: estimates, from 600 to 18200 grains.
+  // The remaining work: upper bounds for a shear, estimates for other kinds of stages.
   double checkpoints = 0;
   double particle_steps = 0;
   double bytes = 0;  ///< estimated size of the checkpoint files
-  /// Why this program cannot read the stage's parameters, so that the remaining work is unknown; ""
-  /// if it can read them.
+  /// Why this program cannot read the stage's parameters, or "". If set, the remaining work is
+  /// unknown.
   std::string unreadable = {};
 };
 
 /// Finds what remains to be computed of a stage for `asks` (Ask: what an experiment wants of a
 /// stage). `stage`: a recorded or a new stage; its recorded asks may differ from `asks`.
 /// `checkpoints`: all checkpoints of the stage except rejected ones, by step (Listed::and_pruned).
-/// A completed stage also meets an ask if a recorded ask has the same `until`, at least as many
-/// cycles, and a multiple of the ask's `checkpoint_every`. Throws StoreDamaged for an ask that no
-/// manifest can state.
+/// A completed stage is also long enough for an ask if a recorded ask has the same `until`, at
+/// least as many cycles, and a `checkpoint_every` that is a multiple of the ask's. Throws
+/// StoreDamaged if an ask is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -67,23 +67,23 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// When checkpoints of a shear are due, for each ask of at least one cycle. Throws StoreDamaged.
+/// When checkpoints of a shear are due, for each ask with at least one cycle. Throws StoreDamaged.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
-/// The checkpoints that asks want of a stage: at their intervals, at their phases and at their last
-/// cycles. Checkpoints that interruptions or other experiments left are excluded, so that figures
-/// and tables do not depend on them.
+/// The checkpoints of a stage that asks want: at the intervals, the phases and the last cycle of
+/// each ask. Checkpoints that were recorded only because of an interruption or another experiment
+/// are excluded, so that figures and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
   /// Steps, ascending, of missing checkpoints before the stage's last checkpoint; at most a
   /// million.
   std::vector<std::uint64_t> missing = {};
-  double to_come = 0;  ///< number after the stage's last checkpoint; estimated above 10,000
+  double to_come = 0;  ///< number of checkpoints not reached yet; an estimate if above 10,000
 };
 
 /// The checkpoints that asks want from cycle `first` to `last`. `checkpoints`: as for outlook(). If
-/// the stage is not a shear, or there are no asks: all checkpoints at whole cycles, none missing.
+/// the stage is not a shear or `asks` is empty, returns all checkpoints at whole cycles.
 AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
                                    std::span<const CheckpointRecord> checkpoints, double first = 0,
                                    double last = StoreLimits::cycles);
@@ -123,14 +123,14 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that at least one ask wants, for each ask up to end_for().
+/// The recorded and pruned checkpoints that at least one ask wants, up to end_for() of the ask.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
-/// The recorded Outlook::ended if an `until` completed the stage before its largest number of
-/// cycles; else null. "cycles_asked" is added if the stage continued beyond this `until` because
-/// another experiment asked for more cycles.
+/// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
+/// null. If the stage continued beyond this `until` because another experiment asked for more
+/// cycles, the larger number of cycles is added as "cycles_asked".
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
@@ -154,7 +154,7 @@ double checkpoint_bytes(const Geometry& shape);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
-  bool measured;                     ///< in this store's runs; false: assumed
+  bool measured;                     ///< whether it was measured in this store's runs
 };
 
 /// Mean rates of recorded runs [particle-steps/s].
@@ -179,10 +179,10 @@ struct Work {
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
-  double longest_seconds = 0;                ///< time of the longest run, with its packing
+  double longest_seconds = 0;                ///< longest time of a stage including its parents
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< whether all rates were measured
-  std::map<std::string, double> chain = {};  ///< seconds of a stage with its parents, by id
+  std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by stage id
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);

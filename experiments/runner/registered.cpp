@@ -10,11 +10,12 @@
 namespace shearcell {
 namespace {
 
-// In a Group, this text replaces the manifest: packings of all versions are named together.
+// Used instead of the manifest in the Group of a packing, because the packings of all versions of
+// an experiment are named together.
 const std::string kPackings = "packings";
 
-/// All registered manifests, oldest first. A manifest that was registered again after another
-/// version appears again. Throws StoreDamaged for an event that does not hold a manifest.
+/// All registered manifests, oldest first. A manifest appears twice if it was registered again
+/// after another version. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");
@@ -70,7 +71,7 @@ VariantNames::VariantNames(const std::vector<Stage>& stages, const Labels& label
         variant_names(vary, stated == labels.end() ? std::vector<VariantLabel>() : stated->second);
     if (std::get<1>(group) == kPackings) {
       for (auto& [parameters, name] : names) name = "packing " + name;
-      if (names.size() < 2) continue;  // of() returns the variant "packing"
+      if (names.size() < 2) continue;  // of() then returns place.variant: "packing"
     }
     names_[group] = std::move(names);
   }

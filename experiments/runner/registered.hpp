@@ -22,15 +22,15 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of the variants of stages, by variant_names() of each manifest. A settled packing
-/// is called "packing". If an experiment has different packings at one scale, the values that
-/// differ are added: "packing N=600".
+/// Display names of the variants of stages, from variant_names() for each manifest. A settled
+/// packing is called "packing". If an experiment has different packings at one scale, the values
+/// that differ are added: "packing N=600".
 class VariantNames {
  public:
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// The display name of the stage in this place; the variant if no name is known.
+  /// The display name of a stage at a place in an experiment; place.variant if no name is known.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:

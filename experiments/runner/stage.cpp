@@ -58,7 +58,7 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   const Parameters& p = inputs.parameters;
   const std::uint64_t cycles = stage.target_cycles;
   if (inputs.file && !inputs.file->settles) {
-    return cyclic_shear({}, 0, {});  // the grains keep their positions
+    return cyclic_shear({}, 0, {});  // no cycles: the grains keep their positions
   }
   if (inputs.stage == StageKind::prepare) {
     const SettleParameters settle{p.settle_force_tolerance, p.settle_kinetic_tolerance,
@@ -73,8 +73,8 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
-// The watchdog's overlap limit [d]: the largest limit of the stage's manifests. `otherwise` is the
-// limit of manifests that state none. It is not part of the run's id (see campaign.cpp).
+// The watchdog's overlap limit [d]: the largest limit in the stage's manifests, with `otherwise`
+// for a manifest without a limit. The limit is not part of the run's id (see declare()).
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {
@@ -98,7 +98,6 @@ struct ReadyStage {
   Protocol protocol;
 };
 
-/// Throws StoreDamaged if the stage's id is not the hash of the recorded parameters.
 ReadyStage ready_stage(const Store& store, Stage stage) {
   if (stage_key(stage.resolved) != stage.id) {
     throw StoreDamaged("run " + stage.id.substr(0, 12) +
@@ -118,7 +117,7 @@ struct Beginning {
   Cell cell;
   State state;
   std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
-  std::string parent_checkpoint = {};         ///< SHA-256 if the state is the parent's, or ""
+  std::string parent_checkpoint = {};         ///< SHA-256 if the state is from the parent, or ""
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
@@ -147,9 +146,9 @@ Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOp
   return {std::move(checkpoint->cell), std::move(checkpoint->state), std::nullopt, record->sha256};
 }
 
-/// The stage's newest valid checkpoint before `before_step`. Without one, the state with which the
-/// stage begins. Throws Interrupted if a stop is requested while a cell is filled. `damage`: as for
-/// Store::newest_valid_checkpoint().
+/// The stage's newest valid checkpoint before `before_step`, or the initial state of the stage if
+/// there is no such checkpoint. Throws Interrupted if a stop is requested while a cell is filled.
+/// `damage`: as for Store::newest_valid_checkpoint().
 Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions& options,
                        std::vector<std::string>* damage, std::uint64_t before_step = UINT64_MAX) {
   const Stage& stage = plan.stage;
@@ -175,7 +174,7 @@ Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions&
   const bool recorded = ended.state == StageState::completed && !known.empty();
   if (recorded) restore_if_pruned(store, known.back(), options);
   auto parent = store.newest_valid_checkpoint(stage.parent, damage);
-  // The checkpoint must be the one at which the parent was completed.
+  // The stage must start from the checkpoint at which the parent was completed.
   if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
     throw StoreDamaged(fmt::format(
         "run {:.12}: the settled packing from which run {:.12} starts is missing or damaged; {}",
@@ -196,7 +195,7 @@ Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::s
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
 }
 
-/// A checkpoint of this state. `scene`: the present scene; a stiffening changes its stiffness.
+/// A checkpoint of this state. `scene`: the scene with the present stiffness (see stiffen()).
 Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
@@ -239,8 +238,8 @@ class Engine {
   /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. A checkpoint is due, except if LAMMPS did not answer: then
-  /// the last recorded state is the newest one.
+  /// Stops before the end of the stage. A checkpoint is due afterwards, unless LAMMPS does not
+  /// answer. In this case the steps since the last checkpoint are lost.
   virtual StageProgress halt() = 0;
 
   /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.
@@ -264,7 +263,7 @@ class OwnEngine final : public Engine {
     const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
     const double before = thread_seconds();
     progress_ = plan_.protocol.advance(simulation_, steps);
-    core_seconds_ += threads_ * (thread_seconds() - before);  // all threads work equally long
+    core_seconds_ += threads_ * (thread_seconds() - before);  // all threads work for the same time
     return progress_;
   }
   StageProgress halt() override {
@@ -288,10 +287,10 @@ class OwnEngine final : public Engine {
   StageProgress progress_;
 };
 
-/// Advances to `step`, or to the end of the stage if that comes first. Calls between(progress)
-/// about every 50 ms.
+/// Advances to `step`, or to the end of the stage if the end comes first. Calls the function
+/// `between` with the progress about every 50 ms.
 StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
-  StageProgress progress;  // at cycle 0 if no step is needed
+  StageProgress progress;  // cycle 0 if the engine is already at `step`
   while (engine.step() < step && !progress.finished) {
     progress = engine.advance_by(step - engine.step());
     if (engine.step() < step) between(progress);
@@ -299,8 +298,8 @@ StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& betw
   return progress;
 }
 
-// Longest time for LAMMPS to write a frame and end. LAMMPS looks for a stop request every half
-// second. Batch systems kill a job half a minute after their first signal.
+// Longest time to wait until LAMMPS has written a frame. LAMMPS checks for a stop request about
+// every half second. Batch systems kill a job half a minute after their first signal.
 constexpr std::chrono::seconds kPatience{10};
 
 class LammpsEngine final : public Engine {
@@ -351,7 +350,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // Makes the frame the newest state. The watchdog checks it after one step of our own engine.
+  // Makes the frame the newest state. The watchdog checks it in our own engine, after one step.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -415,20 +414,19 @@ class StageAttempt {
             std::make_unique<OwnEngine>(plan_, std::move(beginning), options_.parallel.threads);
       }
       first_step_ = engine->step();
-      // A shear or a stiffening records the state with which it begins as cycle 0.
       if (fresh && plan_.inputs.stage != StageKind::prepare) record(*engine, 0);
       if (ends_early()) return StageOutcome::completed;
       return advance(*engine);
     });
   }
 
-  // Records missing checkpoints of a completed run: the checkpoints at these steps.
+  // Records the missing checkpoints of a completed run at these steps.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = beginning_of(store_, plan_, options_, nullptr, steps.front());
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // The stage is now completed for all memberships, also for those declared later.
+    // This completion is valid for all memberships, including those declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -485,7 +483,7 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, the memory or the store failed. After a failed sync, the start may be recorded.
+      // The disk, memory or store failed. If start_stage() threw, the start may still be recorded.
       release(failure);
       throw;
     }
@@ -496,7 +494,7 @@ class StageAttempt {
     try {
       store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
-      // The end cannot be recorded either. Then the run's lease expires.
+      // The end cannot be recorded. Another program can continue when the run's lease has expired.
     }
   }
 
@@ -530,7 +528,7 @@ class StageAttempt {
     const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
     if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
     const nlohmann::json ended = measured_outlook(store_, now, asks, seen_, measures_, {}).ended;
-    recorded_.restart();  // effort does not include measuring
+    recorded_.restart();  // the time of measuring is not part of the effort
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }
@@ -585,8 +583,7 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// Whether the newest checkpoint can be read or was pruned. If it is damaged, run_stage() reports
-// the damage.
+// Whether the newest checkpoint can be read or was pruned. run_stage() reports a damaged one.
 bool newest_is_sound(const Store& store, const Stage& stage) {
   const auto found = store.checkpoints(stage.id, Listed::and_pruned);
   return !found.empty() &&
@@ -595,7 +592,7 @@ bool newest_is_sound(const Store& store, const Stage& stage) {
 
 // --- Recomputing a recorded state ---
 
-// Maps doubles to integers in the same order. Neighbours differ by 1, and so do -0 and +0.
+// Maps doubles to integers in the same order. The integers of adjacent doubles differ by 1.
 std::int64_t ordered_bits(double x) {
   const auto bits = std::bit_cast<std::int64_t>(x);
   return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
@@ -691,7 +688,7 @@ void compare_again(const Store& store, const Checkpoint& found, Replay& replay) 
   }
 }
 
-/// Recomputes and compares a checkpoint. If options.restores, also writes its file.
+/// Recomputes a checkpoint and compares it with the record. Writes the file if options.restores.
 Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& options) {
   Replay result{.record = record};
   const auto found = compute_again(store, result, options);
@@ -752,7 +749,7 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
     if (!missing.empty()) return StageAttempt(store, std::move(stage), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const Interrupted&) {
-    return StageOutcome::interrupted;  // before the attempt's start was recorded
+    return StageOutcome::interrupted;  // no start of an attempt was recorded
   } catch (const ConcurrencyConflict&) {
     return StageOutcome::lost;
   }
@@ -795,7 +792,7 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
   if (by.bits_version == bits_version) return std::nullopt;
   return fmt::format(
       "shearcell {} computed this state with bits version {}, and this program has bits version "
-      "{}, which gives other last bits",
+      "{}, whose results differ in the last bits",
       maker_of(by.host).version, by.bits_version, bits_version);
 }
 

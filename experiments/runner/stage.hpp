@@ -18,7 +18,7 @@ namespace shearcell {
 
 struct Parallel {
   std::size_t threads = 1;  ///< of this program's engine; the results do not depend on it
-  std::size_t ranks = 1;    ///< processes of LAMMPS; more than one run under mpirun
+  std::size_t ranks = 1;    ///< LAMMPS processes; if more than one, they run under mpirun
 };
 
 /// How run_stage() ended. `already`: nothing was left to compute. `lost`: another program computes
@@ -87,12 +87,12 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 /// Recomputes a checkpoint from the nearest earlier checkpoint whose file exists, or from the
 /// beginning of the stage. Compares the state and the numbers that are recorded with it (cycle,
 /// time, tilt, observables), and records ReplayVerified or ReplayDiverged. Throws FilePruned if the
-/// replay needs the state with which the stage begins and this state was pruned.
+/// replay needs the parent's state from which the stage starts and this state was pruned.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// Like verify_by_replay(), but restores the file of a pruned, missing or damaged checkpoint with
-/// the same SHA-256. If the replay needs a pruned state with which the stage begins, the file of
-/// that state is restored too. If the bytes differ, records ReplayDiverged and writes no file.
+/// the same SHA-256, and the file of the parent's state if the replay needs this state and it was
+/// pruned. If the bytes differ, records ReplayDiverged and writes no file.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

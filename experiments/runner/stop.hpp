@@ -8,12 +8,11 @@
 namespace shearcell {
 
 /// Catches SIGINT and SIGTERM from now on, and SIGHUP unless it is ignored (nohup). Ignores
-/// SIGPIPE, because a campaign continues when nobody reads its progress.
+/// SIGPIPE, so that a campaign continues if the reader of its output ends.
 void catch_stop_signals();
 
-/// Used instead of catch_stop_signals() in a task of a batch system, which sends SIGTERM or
-/// SIGUSR1, perhaps several times, and kills the task later. Signals after the first have no
-/// effect.
+/// Replaces catch_stop_signals() in a task of a batch system. A batch system sends SIGTERM or
+/// SIGUSR1, perhaps several times, and kills the task later. Only the first signal has an effect.
 void catch_batch_signals();
 
 bool stop_requested();

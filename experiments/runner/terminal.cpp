@@ -85,7 +85,7 @@ std::string filled(std::string_view help, std::size_t width) {
   constexpr std::size_t kNarrowest = 24;  // least width of the last column
   std::vector<std::string> paragraphs;
   std::istringstream lines{std::string(help)};
-  bool goes_on = false;  // whether the paragraph continues
+  bool goes_on = false;  // whether the next line may continue the paragraph
   for (std::string line; std::getline(lines, line);) {
     const bool heading = line.starts_with("Usage:") || (line.size() < 20 && line.ends_with(':'));
     const bool plain = !line.empty() && line[0] != ' ' && !heading;

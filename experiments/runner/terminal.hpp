@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writing to terminals: their width and abilities, help pages, untrusted texts, progress.
+// Output to terminals: width and capabilities, help pages, untrusted texts, progress.
 #pragma once
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ std::size_t columns_of(std::string_view text);
 std::string_view first_columns(std::string_view text, std::size_t count);
 
 /// Wraps a help page to `width` columns. The lines of a paragraph are joined and wrapped again.
-/// Indented lines are not joined; if they are wrapped, the rest is indented to the start of their
-/// last column.
+/// Indented lines are not joined. If an indented line is wrapped, its continuation lines begin
+/// where the last column of the line begins.
 std::string filled(std::string_view help, std::size_t width);
 
 /// fmt::print() for untrusted texts: control characters are escaped.

@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // LAMMPS creates atoms only between existing atoms, so this one begins at a grain's height.
+    // LAMMPS creates no atom outside the atoms' box, so this atom begins at a grain's x and y.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
@@ -134,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // Tilt and heights at the present step, from the step number and the moving wall's atom.
+  // The tilt depends on the step number. One plane has the height of the moving wall's atom.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
@@ -157,8 +157,8 @@ pair_coeff * * ${{law}})",
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Moves the wall grains of a group: in x by the variable `x` from their positions in the data
-  // file, with the velocity `vx`; in y with the moving wall if the group `rises`.
+  // Moves the wall grains of a group. In x, the variable `x` is the displacement from the positions
+  // in the data file, and `vx` is the velocity. In y, a group that `rises` follows the moving wall.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
@@ -190,8 +190,8 @@ pair_coeff * * ${{law}})",
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
-  // A side plane turns about its end at the top wall. Regions are given in their present pose:
-  // LAMMPS computes their velocities from displacements. fix wall/region reports a force only once.
+  // A side plane turns about its upper end. Regions move relative to the pose at the start. Bottom
+  // and top use wall/harmonic, because fix wall/region reports its force for the first step only.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -298,7 +298,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // Frames have the velocities of half a step earlier, so f/m dt/2 is subtracted.
+  // A frame contains the velocities half a step earlier, so f/m dt/2 is subtracted.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
@@ -315,8 +315,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Output during one cycle, or one second of a packing. This precedes the first `run`, because
-  // later definitions need another setup, which would compute the drag from changed velocities.
+  // Output during one cycle, or during one second for a packing. Defined before the first `run`:
+  // later definitions need a second setup, which would compute the drag from changed velocities.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));

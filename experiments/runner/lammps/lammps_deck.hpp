@@ -25,10 +25,10 @@ struct LammpsTask {
   std::uint64_t stride = 1;         ///< steps between frames; the last step has a frame too
   std::uint64_t check_every = 100;  ///< steps between two checks for the file `stop`
   bool added_mass = true;           ///< false: explicit drag, with an error of order dt
-  Units units = {1, 1};             ///< of lengths and masses in both files
+  Units units = {1, 1};             ///< of lengths and masses in data file and deck
 };
 
-/// A data file (atom_style sphere). Ids begin with 1, grains first. Type 1 is a grain; types 2 to 5
+/// A data file (atom_style sphere). Ids begin at 1, grains first. Type 1 is a grain; types 2 to 5
 /// are wall grains of the left, right, bottom and top wall. The box is upright and includes the
 /// wall grains and the planes, because LAMMPS drops atoms outside it. `title` is the first line.
 std::string lammps_data(const Particles& particles, std::string_view title);
@@ -39,8 +39,8 @@ std::string lammps_data(const Particles& particles, std::string_view title);
 std::string lammps_deck(const LammpsTask& task);
 
 /// An input script for users, with comments. The script reads the file `data` and continues from
-/// it, in the task's units, which must be SI. It runs one cycle, or as many steps as its variable
-/// `steps` states, and writes NAME.lammpstrj and NAME_end.dump. The task's `end`, `stride` and
+/// it, in the task's units, which must be SI. It computes one cycle, or the number of steps in its
+/// variable `steps`, and writes NAME.lammpstrj and NAME_end.dump. The task's `end`, `stride` and
 /// `check_every` have no effect.
 std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
 

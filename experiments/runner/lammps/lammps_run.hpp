@@ -23,8 +23,8 @@ struct LammpsProgram {
 std::string lammps_name();
 
 /// Finds the program lammps_name(), in PATH if the name has no slash. Throws ProgramError if the
-/// program does not exist, does not answer or lacks the package GRANULAR, or if several ranks are
-/// wanted without mpirun. Throws Interrupted if the program does not answer and a stop is
+/// program does not exist, does not answer or lacks the package GRANULAR, or if `ranks` is above 1
+/// and mpirun does not exist. Throws Interrupted if the program does not answer and a stop is
 /// requested.
 LammpsProgram find_lammps(std::size_t ranks = 1);
 
