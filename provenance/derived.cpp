@@ -122,6 +122,7 @@ void DerivedCache::attempt(Work&& work) {
       database_.reset();
       set_aside(file_);
     } catch (const std::exception& problem) {
+      unread_ = true;
       return give_up(problem.what());
     }
   }

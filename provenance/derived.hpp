@@ -56,6 +56,8 @@ class DerivedCache {
 
   /// Why nothing can be stored; "" if objects can be stored.
   const std::string& trouble() const { return trouble_; }
+  /// Whether the machine failed to read or write the file, which may be intact.
+  bool is_unread() const { return unread_; }
   /// A message about a damaged file that was renamed and replaced, now or earlier; otherwise "".
   std::string replaced() const;
 
@@ -72,6 +74,7 @@ class DerivedCache {
   bool read_only_;
   std::optional<sqlite::Database> database_;
   std::string trouble_;
+  bool unread_ = false;
 };
 
 }  // namespace shearcell

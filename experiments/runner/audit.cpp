@@ -184,7 +184,8 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
   const auto note = [&](const std::string& run, const std::string& what) {
-    check.findings.push_back({Finding::Severity::error, "measures", run, what});
+    const auto severity = cache.is_unread() ? Finding::Severity::unread : Finding::Severity::error;
+    check.findings.push_back({severity, "measures", run, what});
   };
   for (const Stage& stage : store.stages()) {
     sources.read_run(stage.id);
@@ -200,6 +201,7 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
   for (const std::string& why : {cache.trouble(), cache.replaced()}) {
     if (!why.empty()) note("", why);
   }
+  if (cache.is_unread()) check.absent = 0;  // unknown
 }
 
 /// Returns why measures cannot be copied; "" if they can.
