@@ -121,8 +121,8 @@ void require_known_schema(sqlite::Database& database) {
 }
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
-/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added what
-/// experiments ask of a run, why the run ended, and the newest manifests.
+/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added, for
+/// each run, the requests of the experiments and the reason for its end, and the newest manifests.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
@@ -161,8 +161,8 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Names the changed field of an event: the field whose expected value, known from the events
-/// before and after, makes the hash valid again.
+/// Says which field of an event was changed: the field whose expected value makes the hash valid
+/// again. The neighbouring events give the expected prev_hash, version and hash.
 std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
                       const std::optional<Event>& next) {
   Event repaired = event;
@@ -189,7 +189,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // A new store begins with an empty file. If there are objects beside it, the log was lost.
+    // An empty file is valid only in a new store. If the folder `objects` exists, the log was lost.
     if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");

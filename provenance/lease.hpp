@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A lease says which program computes a run now, so that several programs can share one store.
 //
-// Leases are not part of the log. The log alone decides which events are valid, so nothing that was
-// recorded is lost with the table of leases.
+// Leases are not part of the log. The log alone decides which events are valid, so no event is lost
+// if the table of leases is lost.
 #pragma once
 
 #include <cstdint>

@@ -25,20 +25,20 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// What an experiment asks of a stage.
+/// The computation that an experiment requests from a stage.
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
   nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
-  std::vector<double> checkpoint_phases = {};  ///< more checkpoints at these fractions of a cycle
+  std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle with more checkpoints
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
 };
 
-/// The place of a stage in an experiment, and what the experiment asks of the stage.
+/// The place of a stage in an experiment, and the request of the experiment.
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// Whether no manifest that was registered later declares a stage of the experiment and scale.
+  /// False if a manifest that was registered later declares a stage of this experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -101,7 +101,7 @@ struct Stage {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// A run is what a user counts, lists and averages: a place and its last stage. A stage that two
+/// The unit that users count, list and average: a place and the last stage in it. A stage that two
 /// experiments share belongs to two runs.
 struct Run {
   Place place = {};
@@ -109,8 +109,8 @@ struct Run {
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
   bool named = false;     ///< whether the name is a label of the manifest
-  /// Whether the run belongs to the newest version of the manifest and no later declaration put
-  /// another run in its place.
+  /// False if the manifest has a newer version, or if another run was declared later in the same
+  /// place.
   bool newest = true;
 };
 
@@ -124,8 +124,8 @@ bool same_computation(const auto& a, const auto& b) {
 struct PruneChoice {
   std::vector<std::string> runs;  ///< run ids; empty for all runs
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
-  /// Whether to prune, in completed stages, also the checkpoints from which the run would continue
-  /// or from which other stages started.
+  /// For completed stages: prune also the last checkpoint, from which the stage could continue, and
+  /// the checkpoints from which other stages started.
   bool last_too = false;
 };
 
