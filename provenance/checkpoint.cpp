@@ -241,8 +241,8 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
                               "a memory file"),
                       H5Fclose);
-    // H5MD requires the version of the creator. The version of the layout is written instead of the
-    // version of the program, so that equal states give equal bytes in every release.
+    // H5MD requires the version of the creator. The layout version is written instead of the
+    // program version, so that equal states give equal bytes in every release.
     hdf5::put_h5md(file, std::to_string(hdf5::kRestartFormat));
     put_particles(file, checkpoint);
     put_observables(file, checkpoint);
@@ -279,9 +279,10 @@ void require_plausible(const Checkpoint& checkpoint) {
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
   for (const double length :
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
-    if (std::abs(length) > kLongestCell) refuse("/restart/cell", "is larger than a cell can be");
+    if (std::abs(length) > kLongestCell)
+      refuse("/restart/cell", "is not a plausible size of a cell");
   }
-  // An analysis needs memory for each periodic image of a grain and for each layer of the cell.
+  // Both checks limit the memory that an analysis needs for periodic images and layers of the cell.
   if (cell.depth < 0.1 * cell.width) {
     refuse("/restart/cell", "has a depth of less than a tenth of its width");
   }
@@ -292,7 +293,7 @@ void require_plausible(const Checkpoint& checkpoint) {
   if (cell.width * cell.depth * height > kLoosestCell * (grains + 100)) {
     refuse("/restart/cell", "is too large for its number of grains");
   }
-  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is too large for an angle");
+  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a plausible tilt");
   if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
     refuse("/restart/position", "has a grain far outside of any cell");
   }

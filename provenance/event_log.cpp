@@ -121,8 +121,8 @@ void require_known_schema(sqlite::Database& database) {
 }
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
-/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added, for
-/// each run, the requests of the experiments and the reason for its end, and the newest manifests.
+/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added the
+/// newest manifests and, for each run, the requests of the experiments and the reason for its end.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
@@ -310,7 +310,8 @@ std::optional<ChainFault> EventLog::verify_chain() const {
     if (event_hash(*event) != event->hash) {
       return fault(change_of(*event, last.hash, version, next));
     }
-    if (event->prev_hash != last.hash) return fault("it does not follow the event before it");
+    if (event->prev_hash != last.hash)
+      return fault("its prev_hash is not the hash of the event before it");
     if (event->version != version) {
       return fault(fmt::format("its version is {}, but should be {}", event->version, version));
     }

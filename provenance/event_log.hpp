@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log store.sqlite: events in streams. A chain of SHA-256 reveals any later change.
+// The append-only log store.sqlite: events in streams. A chain of hashes reveals any later change.
 #pragma once
 
 #include <cstdint>

@@ -57,7 +57,7 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (host.is_object()) attempt.host = host;
-    // Early events have no bits_version: those of layout 1 have version 1, of layout 2 version 2.
+    // Early events have no bits_version. Their version equals the layout of the event: 1 or 2.
     attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;

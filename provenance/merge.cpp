@@ -86,7 +86,7 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
 }
 
 /// Whether the checkpoint is new: `into` lacks it, or has only a damaged file, which `record` can
-/// replace. If `into` has the state in another file (from another HDF5 library), it is not new.
+/// replace. A state that `into` has in another file (from another HDF5 library) is not new.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
@@ -305,8 +305,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
-  // The last event of a figure is the valid one. If the figure that the store had before the merge
-  // is newer than the copied figure, its event is appended again.
+  // The last event of a figure is the valid one. If the store had a newer figure before the merge,
+  // the event of the newer figure is appended again.
   for (const FigureRecord& copied : query_figures(into)) {
     const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
     if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;

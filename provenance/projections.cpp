@@ -20,7 +20,7 @@ using sqlite::Database;
 using sqlite::Statement;
 
 // `registered` is the seq of the last registration. `newest` holds, for each experiment and scale,
-// the manifest with the last registration of all manifests that declared a run there.
+// the last registered manifest that declared a run there.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -95,10 +95,10 @@ CREATE TABLE newest(
 void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every) {
   const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
     if (value >= low && value <= StoreLimits::cycles) return;
-    throw StoreDamaged(
-        fmt::format("the record of a run has {} = {}, outside {} to {}; run `verify`, and restore "
-                    "the store from a backup",
-                    name, value, low, StoreLimits::cycles));
+    throw StoreDamaged(fmt::format(
+        "the record of a run has {} = {}, outside the range {} to {}; run `verify`, and "
+        "restore the store from a backup",
+        name, value, low, StoreLimits::cycles));
   };
   require("target_cycles", target_cycles, 0);
   require("checkpoint_every", checkpoint_every, 1);

@@ -29,8 +29,8 @@ sqlite::Database empty_projections(const std::string& name);
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
 /// nothing. Throws StoreDamaged when a required member of the payload is missing.
 void apply(sqlite::Database& database, const Event& event);
-/// Applies the event, then checks its time and the SHA-256 of a registered manifest or file of
-/// grains. Returns a description of what is wrong, or "".
+/// Applies the event. Then checks that the event has a time, and that a registered manifest or file
+/// of grains has the recorded SHA-256. Returns a description of what is wrong, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.

@@ -30,7 +30,7 @@ struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
   nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
-  std::vector<double> checkpoint_phases = {};  ///< fractions of a cycle with more checkpoints
+  std::vector<double> checkpoint_phases = {};  ///< extra checkpoints: fractions of a cycle
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
 };
 
@@ -57,7 +57,7 @@ inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
   return asks;
 }
 
-/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events hold "".
+/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events store "".
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }

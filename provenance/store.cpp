@@ -359,7 +359,7 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   {
     const std::scoped_lock guard(mutex_);
-    database_.require_in_place();  // the file must not be written into a store that replaced this
+    database_.require_in_place();  // do not write the file into a store that replaced this one
   }
   const std::string sha256 = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
@@ -585,7 +585,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool la
   }
   std::uint64_t freed = 0;
   for (const CheckpointRecord& record : records) {
-    // The lock prevents that the file is recorded again between the check and the removal.
+    // Without the lock, the file could be recorded again between the check and the removal.
     const Writing lock(*this);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) continue;

@@ -47,7 +47,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< a copy of it can later prove that the log only grew
+  Head head;                      ///< a saved copy can later prove that the log only grew
 
   /// The number of findings of this severity.
   std::size_t count(Finding::Severity severity) const;
@@ -72,16 +72,16 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 /// ConcurrencyConflict. Every function may throw StoreDamaged, and std::runtime_error when the
 /// machine fails or another process keeps the store locked.
 ///
-/// Between start_stage() and the end of the attempt this object holds a lease on the run. Each
-/// record_checkpoint() and renew_leases() renews the lease. Another program may take over the run
+/// Between start_stage() and the end of the attempt this object holds a lease on the run. Calls of
+/// record_checkpoint() and renew_leases() renew the lease. Another program may take over the run
 /// when the lease has expired, or at once when the process of the holder is dead. The next record
 /// of the previous holder then throws ConcurrencyConflict, and the previous holder must stop the
 /// computation. The destructor releases all leases.
 class Store {
  public:
   /// Throws NotFound if there is no store and `access` does not create one, UsageError if a store
-  /// cannot be created at this path, and StoreDamaged if the log is lost, damaged or newer, or if
-  /// the store is opened for writing and its folder of checkpoints is lost. A lease expires when it
+  /// cannot be created at this path, and StoreDamaged if the log is lost, is damaged or has a newer
+  /// schema, or if a store to be written lacks its folder of checkpoints. A lease expires when it
   /// is not renewed for `lease_seconds` (at most kLongestLeaseMs).
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);

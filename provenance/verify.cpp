@@ -170,7 +170,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      // A forged table cannot hide damage, because compare_tables() reports the forged table.
+      // A forged table cannot hide damage, because compare_tables() reports the forgery.
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;
