@@ -230,7 +230,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
   require_sound(checkpoint);
   std::vector<std::byte> image;
   try {
-    constexpr std::size_t about = 3 * 256;  // bytes per grain: three copies of the file
+    constexpr std::size_t about = 3 * 256;  // [bytes per grain], for three copies of the file
     const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
@@ -279,8 +279,7 @@ void require_plausible(const Checkpoint& checkpoint) {
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
   for (const double length :
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
-    if (std::abs(length) > kLongestCell)
-      refuse("/restart/cell", "is not a plausible size of a cell");
+    if (std::abs(length) > kLongestCell) refuse("/restart/cell", "has an implausible size");
   }
   // Both checks limit the memory that an analysis needs for periodic images and layers of the cell.
   if (cell.depth < 0.1 * cell.width) {

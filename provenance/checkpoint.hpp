@@ -43,8 +43,8 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image);
 /// for a cell. Such a value could make a run or an analysis overflow or never end.
 void require_plausible(const Checkpoint& checkpoint);
 
-/// SHA-256 (hex) of the exact state and cell. Two runs continue identically if and only if these
-/// hashes of their states are equal.
+/// SHA-256 (hex) of the exact state and cell. Two runs continue identically if and only if their
+/// state hashes are equal.
 std::string state_hash(const Checkpoint& checkpoint);
 
 }  // namespace shearcell

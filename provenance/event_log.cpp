@@ -60,8 +60,8 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
-/// Creates the log under a temporary name, so that a killed program leaves no partial log, and
-/// renames it. Does nothing if another program has created the log. If the file system cannot
+/// Creates the log under a temporary name and then renames it, so that a killed program leaves no
+/// partial log. Does nothing if another program has created the log. If the file system cannot
 /// rename without replacing a file, the caller creates the log in place.
 void create_whole(const std::filesystem::path& file) {
   const std::filesystem::path whole =
@@ -77,13 +77,13 @@ void create_whole(const std::filesystem::path& file) {
   }
 }
 
-/// A forged schema could contain SQL that runs whenever a table is read or written. So every schema
-/// statement must be one that this program writes. A missing table causes an error only when it is
-/// used. Derived tables of an older schema may differ, because they are not read.
+/// Throws unless every schema statement is one that this program writes, because a forged schema
+/// could contain SQL that runs whenever a table is read or written. A missing table causes an error
+/// only when it is used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
-  own.execute("ANALYZE");  // makes tables of statistics, which are allowed too
+  own.execute("ANALYZE");  // creates tables of statistics, which a store may have too
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
@@ -310,8 +310,7 @@ std::optional<ChainFault> EventLog::verify_chain() const {
     if (event_hash(*event) != event->hash) {
       return fault(change_of(*event, last.hash, version, next));
     }
-    if (event->prev_hash != last.hash)
-      return fault("its prev_hash is not the hash of the event before it");
+    if (event->prev_hash != last.hash) return fault("prev_hash is not the previous event's hash");
     if (event->version != version) {
       return fault(fmt::format("its version is {}, but should be {}", event->version, version));
     }

@@ -34,7 +34,7 @@ struct Source {
   std::filesystem::path folder;
   Head head;
   std::vector<Event> events;
-  Database tables;  ///< derived from the events alone, in memory
+  Database tables;  ///< in memory, derived only from the events
   ObjectStore objects;
 };
 

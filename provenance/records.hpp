@@ -155,12 +155,12 @@ struct CheckpointRecord {
   std::string state_hash;
   std::map<std::string, double> observables;
   CheckpointState state = CheckpointState::recorded;
-  std::uint64_t seq = 0;  ///< of the event that recorded it
+  std::uint64_t seq = 0;  ///< of the event that recorded the checkpoint
 };
 
 struct FigureRecord {
   std::string name;           ///< "drag/desk/S2"
-  std::uint64_t seq = 0;      ///< of the event that recorded it
+  std::uint64_t seq = 0;      ///< of the event that recorded the figure
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs
 };

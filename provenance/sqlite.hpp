@@ -75,7 +75,7 @@ class Database {
   std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Prepared statements that are not in use, by SQL text: preparing is slower than running.
+  /// Unused prepared statements, by SQL text. They are kept because preparing is slow.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 

@@ -353,8 +353,8 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
     throw std::invalid_argument(
         fmt::format("run {}: the checkpoint names run '{}'", id, checkpoint.run));
   }
-  // The file is written before the event: a crash between them leaves a file without an event,
-  // never an event without its file.
+  // The file is written before the event. A crash between the two writes leaves a file without an
+  // event, never an event without its file.
   const std::string state = state_hash(checkpoint);
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   {

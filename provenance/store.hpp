@@ -207,11 +207,11 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). With `runs`, merges only the manifests and
-  /// these runs, which must include all their parents. Throws NotFound when a source is not a store
-  /// and MachineError while a program computes a run of this store. Throws StoreDamaged, before
-  /// anything is written, when a source is damaged, or when two stores hold different states of one
-  /// run at one step or different runs under one id.
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
+  /// which must include all parents, and all manifests and files of grains. Throws NotFound when a
+  /// source is not a store and MachineError while a program computes a run of this store. Throws
+  /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
+  /// different states of one run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
