@@ -84,8 +84,9 @@ struct Stage {
   std::string parent;                                  ///< id of the stage before it; "" if none
   std::string kind;                                    ///< "prepare", "shear", ...
   nlohmann::json resolved = nlohmann::json::object();  ///< parameters; the id is their hash
-  /// `declared`: not started, or completed and then given a larger target. `running`: started and
-  /// not ended; after a kill the stage stays `running` until it is resumed.
+  /// `declared`: not started, or completed and later found incomplete (a larger target, or a
+  /// rejected last checkpoint). `running`: started and not ended; after a kill the stage stays
+  /// `running` until it is resumed.
   StageState state = StageState::declared;
   std::uint64_t grains = 0;
   std::uint64_t target_cycles = 0;                ///< the largest declared target
@@ -109,8 +110,7 @@ struct Run {
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
   bool named = false;     ///< whether the name is a label of the manifest
-  /// False if the manifest has a newer version, or if another run was declared later in the same
-  /// place.
+  /// False if the manifest has a newer version, or another run was declared later in this place.
   bool newest = true;
 };
 
