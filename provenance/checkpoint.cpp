@@ -27,10 +27,10 @@ using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
 
-static_assert(std::endian::native == std::endian::little, "hashes and files are little-endian");
+static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
-/// restart_numbers() and cell_numbers() call field(name, value) for each number of /restart and of
-/// /restart/cell, in the order of the file.
+/// restart_numbers() calls field(name, value) for each number of /restart, and cell_numbers() for
+/// each number of /restart/cell. The order is the order in the file.
 void restart_numbers(auto& checkpoint, auto field) {
   field("time_s", checkpoint.time_s);
   field("cycle", checkpoint.cycle);
@@ -153,13 +153,13 @@ void require_sound(const Checkpoint& c) {
   for (const auto& [name, value] : c.observables) {
     if (name.size() > StoreLimits::text) reject("the name of an observable is too long");
     if (name.empty() || name == "." || name.find_first_of(std::string("/\0", 2)) != name.npos) {
-      reject("'" + name + "' cannot name an observable");
+      reject("'" + name + "' is not a valid name of an observable");
     }
     require_finite("observable " + name, value);
   }
 }
 
-/// The bytes of the file. The bytes of the frame are still zero.
+/// The bytes of the file, with zeros in place of the frame (hdf5::kFrameSize bytes).
 std::vector<std::byte> framed_image(const Handle& file) {
   require(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "the buffers");
   const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
@@ -192,7 +192,7 @@ Cell read_cell(const Object& group) {
   Cell cell;
   cell_numbers(cell, [&](const char* name, double& value) { value = group.number(name); });
   const std::uint64_t moving = group.count("moving");
-  if (moving > 1) refuse("/restart/cell/moving", "is not a wall");
+  if (moving > 1) refuse("/restart/cell/moving", "does not name a wall");
   cell.moving = static_cast<MovingWall>(moving);
   const auto side = group.bytes("wall_grain_side");
   const Eigen::Matrix3Xd position = vectors(group, "wall_grain_position");
@@ -200,7 +200,7 @@ Cell read_cell(const Object& group) {
     refuse("/restart/cell/wall_grain_position", "does not have as many rows as wall_grain_side");
   }
   for (std::size_t i = 0; i < side.size(); ++i) {
-    if (side[i] > 3) refuse("/restart/cell/wall_grain_side", "is not a wall");
+    if (side[i] > 3) refuse("/restart/cell/wall_grain_side", "does not name a wall");
     cell.wall_grains.push_back(
         {static_cast<WallSide>(side[i]), position.col(static_cast<Eigen::Index>(i))});
   }
@@ -230,7 +230,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
   require_sound(checkpoint);
   std::vector<std::byte> image;
   try {
-    constexpr std::size_t about = 3 * 256;  // bytes per grain: three copies of the file
+    constexpr std::size_t about = 3 * 256;  // [bytes per grain], for three copies of the file
     const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
@@ -241,8 +241,8 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const Handle file(require(H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation.get(), access.get()),
                               "a memory file"),
                       H5Fclose);
-    // H5MD requires the version of the creator. The version of the layout is written, not of the
-    // program, so equal states give equal bytes in every release.
+    // H5MD requires the version of the creator. The layout version is written instead of the
+    // program version, so that equal states give equal bytes in every release.
     hdf5::put_h5md(file, std::to_string(hdf5::kRestartFormat));
     put_particles(file, checkpoint);
     put_observables(file, checkpoint);
@@ -279,9 +279,9 @@ void require_plausible(const Checkpoint& checkpoint) {
   if (!(cell.width > 0 && cell.depth > 0)) refuse("/restart/cell", "has no width or no depth");
   for (const double length :
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
-    if (std::abs(length) > kLongestCell) refuse("/restart/cell", "is larger than any cell");
+    if (std::abs(length) > kLongestCell) refuse("/restart/cell", "has an implausible size");
   }
-  // An analysis needs memory for each periodic image of a grain and for each layer of the cell.
+  // Both checks limit the memory that an analysis needs for periodic images and layers of the cell.
   if (cell.depth < 0.1 * cell.width) {
     refuse("/restart/cell", "has a depth of less than a tenth of its width");
   }
@@ -292,7 +292,7 @@ void require_plausible(const Checkpoint& checkpoint) {
   if (cell.width * cell.depth * height > kLoosestCell * (grains + 100)) {
     refuse("/restart/cell", "is too large for its number of grains");
   }
-  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is too large for a tilt");
+  if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a plausible tilt");
   if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
     refuse("/restart/position", "has a grain far outside of any cell");
   }

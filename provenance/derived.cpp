@@ -30,7 +30,7 @@ CREATE TABLE derived(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// Hash of key and content, so that content that was moved to another key is detected.
+/// Hash of key and content. It also detects content that was moved to another key.
 std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
   return Sha256()
       .add_fields("shearcell derived 1", key.checkpoint, key.measure, key.version)
@@ -43,8 +43,8 @@ fs::path damaged_name(const fs::path& file, int n) {
   return fmt::format("{}.damaged-{}", file.string(), n);
 }
 
-/// Renames a damaged file, which may hold the only measures of pruned checkpoints, and its journal.
-/// SQLite would play back a remaining journal into the new database.
+/// Renames a damaged file, because it may hold the only measures of pruned checkpoints. Also
+/// renames its journal, because SQLite would play back this journal into the new database.
 void set_aside(const fs::path& file) {
   std::error_code ignored;
   int n = 1;
@@ -74,13 +74,13 @@ void DerivedCache::open() {
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
     throw MachineError(
         file_.string() +
-        ": measures are cached in this file, but it is a folder, link or device; remove it");
+        ": the cache of measures must be a file, but this is a folder, link or device; remove it");
   }
   const bool empty = type == fs::file_type::not_found || fs::is_empty(file_);
   if (read_only_ && empty) return;
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
-  // Nothing is synced. Hashes reveal damage by a power cut, and such objects are computed again.
+  // Nothing is synced. After a power cut, objects with a wrong hash are computed again.
   database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
@@ -96,9 +96,9 @@ void DerivedCache::open() {
     throw MachineError(file_.string() + ": this database belongs to another program; remove it");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
-    throw StoreDamaged(file_.string() + ": the layout has another version");
+    throw StoreDamaged(file_.string() + ": the database has another layout version");
   }
-  // A trigger that another program added would run at every insert.
+  // If another program added a trigger, SQLite would run this trigger at every insert.
   sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0",
                         kDerivedTable);
   if (odd.step()) throw StoreDamaged(file_.string() + ": it has tables of another program");

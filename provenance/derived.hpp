@@ -19,7 +19,7 @@ namespace shearcell {
 /// The key of an object: everything that determines its content.
 struct DerivedKey {
   std::string checkpoint;     ///< SHA-256 of the checkpoint's file
-  std::string measure;        ///< name of the computation with its parameters
+  std::string measure;        ///< name and parameters of the computation
   std::uint64_t version = 0;  ///< version of the code that computes the measure
 };
 
@@ -28,9 +28,9 @@ struct DerivedObject {
   std::vector<std::byte> content;
 };
 
-/// Short digests of the objects of one checkpoint. The key of a digest is the first word of the
-/// measure and a short hash of measure and version. The log holds the digests of pruned
-/// checkpoints, because their measures cannot be computed again.
+/// Short digests of the objects of one checkpoint. Each key is the first word of the measure, "-"
+/// and a short hash of measure and version. When a checkpoint is pruned, the log stores the digests
+/// of its measures, because these measures cannot be computed again.
 using Digests = std::map<std::string, std::string>;
 /// The key and digest of one object.
 Digests::value_type digest_entry(const DerivedObject& object);

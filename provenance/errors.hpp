@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exceptions, by what the caller can do. experiments/cli/main.cpp maps them to exit codes.
+// Exceptions, grouped by what the caller can do. experiments/cli/main.cpp maps them to exit codes.
 #pragma once
 
 #include <stdexcept>

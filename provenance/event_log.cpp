@@ -60,8 +60,8 @@ void create_tables(sqlite::Database& database) {
   lock.commit();
 }
 
-/// Creates the log under a temporary name, so that a killed program leaves no partial log, and
-/// renames it. Does nothing if another program has created the log. If the file system cannot
+/// Creates the log under a temporary name and then renames it, so that a killed program leaves no
+/// partial log. Does nothing if another program has created the log. If the file system cannot
 /// rename without replacing a file, the caller creates the log in place.
 void create_whole(const std::filesystem::path& file) {
   const std::filesystem::path whole =
@@ -77,13 +77,13 @@ void create_whole(const std::filesystem::path& file) {
   }
 }
 
-/// A forged schema could contain SQL that runs whenever a table is read or written. So every schema
-/// statement must be one that this program writes. A missing table causes an error only when it is
-/// used. Derived tables of an older schema may differ, because they are not read.
+/// Throws unless every schema statement is one that this program writes, because a forged schema
+/// could contain SQL that runs whenever a table is read or written. A missing table causes an error
+/// only when it is used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
-  own.execute("ANALYZE");  // makes tables of statistics, which are allowed too
+  own.execute("ANALYZE");  // creates tables of statistics, which a store may have too
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;
@@ -121,8 +121,8 @@ void require_known_schema(sqlite::Database& database) {
 }
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
-/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added what
-/// experiments ask of a run, why the run ended, and the newest manifests.
+/// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added the
+/// newest manifests and, for each run, the requests of the experiments and the reason for its end.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
@@ -161,8 +161,8 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Names the changed field of an event: the field whose expected value, known from the events
-/// before and after, makes the hash valid again.
+/// Says which field of an event was changed: the field whose expected value makes the hash valid
+/// again. The neighbouring events give the expected prev_hash, version and hash.
 std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
                       const std::optional<Event>& next) {
   Event repaired = event;
@@ -189,7 +189,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // A new store begins with an empty file. If there are objects beside it, the log was lost.
+    // An empty file is valid only in a new store. If the folder `objects` exists, the log was lost.
     if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or name another store");
@@ -310,7 +310,7 @@ std::optional<ChainFault> EventLog::verify_chain() const {
     if (event_hash(*event) != event->hash) {
       return fault(change_of(*event, last.hash, version, next));
     }
-    if (event->prev_hash != last.hash) return fault("it does not follow the event before it");
+    if (event->prev_hash != last.hash) return fault("prev_hash is not the previous event's hash");
     if (event->version != version) {
       return fault(fmt::format("its version is {}, but should be {}", event->version, version));
     }

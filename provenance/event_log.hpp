@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The append-only log store.sqlite: events in streams. A chain of SHA-256 reveals any later change.
+// The append-only log store.sqlite: events in streams. A chain of hashes reveals any later change.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ std::string utc_text(std::int64_t ms);
 struct NewEvent {
   std::string type;
   nlohmann::json payload;       ///< in the newest layout of its type
-  std::string not_before = {};  ///< lower limit of recorded_at, for a clock that was set back
+  std::string not_before = {};  ///< earliest recorded_at, in case the clock was set back
 };
 
 /// Identifies the content of a log: equal heads mean equal logs.
@@ -77,8 +77,8 @@ class EventLog {
  public:
   explicit EventLog(sqlite::Database& database);
 
-  /// Appends an event to a stream, in the newest layout of its type. The parameter `lock` requires
-  /// the caller to hold the write lock, so that no seq or version is assigned twice.
+  /// Appends an event to a stream, in the newest layout of its type. The parameter `lock` proves
+  /// that the caller holds the write lock, so that no seq or version is assigned twice.
   Event append(const sqlite::WriteTransaction& lock, std::string_view stream,
                const NewEvent& event);
 
@@ -91,7 +91,7 @@ class EventLog {
   Head head() const;
   /// Hash of the event with this seq: 64 zeros for seq 0, "" when there is no such event.
   std::string hash_at(std::uint64_t seq) const;
-  /// Events of one stream or of all streams (""), of one type or of all types (""), in order.
+  /// Events in order. An empty `stream` selects all streams, an empty `type` all types.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   /// Calls visit(event) for all events in order, without loading the whole log into memory.
   void for_each(const std::function<void(const Event&)>& visit) const;

@@ -30,7 +30,7 @@ struct ManifestRegistered {
   }
 };
 
-/// A file of grains that was registered as the start of runs.
+/// A file of grains that was registered as the initial packing of runs.
 struct PackingRegistered {
   static constexpr std::string_view kType = "PackingRegistered";
   std::string sha256, path, text;
@@ -96,7 +96,7 @@ struct CheckpointFile {
 
 struct CheckpointPruned : CheckpointFile {
   static constexpr std::string_view kType = "CheckpointPruned";
-  Digests measures = {};  ///< of cached measures; empty in events of earlier versions
+  Digests measures = {};  ///< digests of cached measures; empty in older events
   static void fields(auto& e, auto field) {
     CheckpointFile::fields(e, field);
     field("measures", e.measures, true);
@@ -161,7 +161,7 @@ struct StoreMerged {
   }
 };
 
-/// Any other event: no struct describes its payload (FigureGenerated), or its type is unknown.
+/// Any other event: its type is unknown, or no struct describes its payload (FigureGenerated).
 struct Other {};
 
 using Any =

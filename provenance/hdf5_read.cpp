@@ -16,10 +16,10 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-static_assert(std::endian::native == std::endian::little, "files are little-endian");
+static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
 constexpr std::uint64_t kNowhere = ~std::uint64_t{0};  // HDF5's undefined address
-constexpr std::uint64_t kMostMessages = 4096;          // of one object header
+constexpr std::uint64_t kMostMessages = 4096;          // in one object header
 
 /// Types of messages in an object header (section IV.A.2 of the format).
 enum Message : std::uint64_t {

@@ -2,9 +2,9 @@
 // Reads untrusted HDF5 files with the features that checkpoint.cpp uses. The HDF5 library is not
 // used because version 1.10 crashes on some forged files.
 //
-// Supported are superblock 0, object headers of version 1 with links and attributes in them, and
-// contiguous data. Everything else (soft and external links, chunks, filters, dense groups, shared
-// types) is refused. Every address, length and count is checked before use. Format:
+// The reader supports superblock 0, object headers of version 1 that contain links and attributes,
+// and contiguous data. It rejects everything else (soft and external links, chunks, filters, dense
+// groups, shared types). Every address, length and count is checked before use. Format:
 // https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 #pragma once
 
@@ -27,7 +27,7 @@ inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 /// Version of the layout of /restart.
 inline constexpr std::uint64_t kRestartFormat = 1;
 
-/// The text of the frame for a digest, without padding.
+/// The text of the frame of a file with this digest, without padding.
 inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }

@@ -15,9 +15,9 @@
 namespace shearcell::hdf5 {
 
 /// A lock for the HDF5 library, which may be built without thread safety. Create a Library object
-/// before any call. The library then prints no errors; they become exceptions. The constructor
-/// throws std::bad_alloc if `room` bytes cannot be allocated, because the library may crash when
-/// memory runs out.
+/// before any call. The library then prints no errors; require() throws an exception instead. The
+/// constructor throws std::bad_alloc if `room` bytes cannot be allocated, because the library may
+/// crash when memory runs out.
 class Library {
  public:
   explicit Library(std::size_t room = 0) {
@@ -63,7 +63,7 @@ inline Handle creation_list(hid_t kind) {
   return list;
 }
 
-/// Creates a group. State the number of `links` or `attributes` if it will exceed 8.
+/// Creates a group. If it will have more than 8 links or attributes, pass their number.
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);

@@ -21,11 +21,11 @@ nlohmann::json parse_json(std::string_view text);
 /// Like parse_json(), but parses CBOR.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);
 
-/// The exception for an event whose payload lacks a required value or has one of a wrong type.
+/// The exception for an event in whose payload a required value is missing or has a wrong type.
 StoreDamaged damaged_payload(const Event& event, const nlohmann::json::exception& problem);
 
 /// The member `key`, a whole number from 0 to 2^64 - 1. Throws nlohmann::json::exception when the
-/// member is missing or is another value, even 1e300, which `get` of the library would convert.
+/// member is missing or has any other value. (The library's `get` would convert even 1e300.)
 std::uint64_t count_at(const nlohmann::json& object, const char* key);
 
 /// `value` rounded to `significant` digits; null if `value` is not finite.

@@ -53,7 +53,7 @@ Lease read_lease(const Statement& row) {
   return lease;
 }
 
-/// Boot id and process-id namespace. With both, a process id identifies one process.
+/// Boot id and process-id namespace. A process id is valid only within this boot and namespace.
 std::string this_place() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id") >> std::ws, boot);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A lease says which program computes a run now, so that several programs can share one store.
 //
-// Leases are not part of the log. The log alone decides which events are valid, so nothing that was
-// recorded is lost with the table of leases.
+// Leases are not part of the log. The log alone decides which events are valid, so no event is lost
+// if the table of leases is lost.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ Holder this_process();
 /// or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
-/// Whether any program may take over the lease. A lease lapses when it expires, when
+/// Whether another program may take over the run. A lease lapses when it expires, when
 /// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (checked
 /// only for the same boot and namespace). It also lapses when the clock was set back to a time
 /// before the renewal.

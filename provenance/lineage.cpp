@@ -36,8 +36,8 @@ class LineageBuilder {
     const auto known = std::ranges::find(lineage_.checkpoints, sha256, &CheckpointHistory::sha256);
     if (!is_sha256_hex(sha256) || known == lineage_.checkpoints.end()) {
       throw StoreDamaged(
-          fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256, or the tables "
-                      "do not have it; run `verify`",
+          fmt::format("event {} ({} of {}): '{:.64}' is not a SHA-256, or the "
+                      "checkpoint is missing in the tables; run `verify`",
                       event_.seq, event_.type, event_.stream, sha256));
     }
     known->recorded_at = event_.recorded_at;
@@ -57,7 +57,7 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (host.is_object()) attempt.host = host;
-    // Early events have no bits_version. Their layout 1 means version 1, and layout 2 version 2.
+    // Early events have no bits_version. Their version equals the layout of the event: 1 or 2.
     attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;
@@ -135,7 +135,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // Early events do not name their initial state. It is the newest checkpoint of the parent.
+      // Early events do not name the initial state. It was the newest checkpoint of the parent.
       attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
       if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }
@@ -174,8 +174,8 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
     auto found = std::get<events::ManifestRegistered>(events::decode(event));
     if (sha256_hex(found.text) != sha256) {
       throw StoreDamaged(fmt::format(
-          "event {} (ManifestRegistered): its text has another SHA-256 than its stream says; run "
-          "`verify`",
+          "event {} (ManifestRegistered): the SHA-256 of its text differs from the SHA-256 in the "
+          "stream name; run `verify`",
           event.seq));
     }
     found.sha256 = sha256;  // a forged payload may state another SHA-256

@@ -22,7 +22,7 @@ template <>
 inline constexpr auto kNames<AttemptOutcome> =
     names_in_order<AttemptOutcome>("running", "completed", "interrupted", "failed", "lost");
 
-/// Program and machine of an attempt, as texts for display; "unknown" for what was not recorded.
+/// Program and machine of an attempt, as texts for display. A text is "unknown" if not recorded.
 struct Maker {
   std::string program;                 ///< "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release"
   std::string version;                 ///< "0.1.0 (dd11cbe)"
@@ -46,11 +46,11 @@ struct Attempt {
   nlohmann::json host = nlohmann::json::object();
   std::string from_run;  ///< run of the initial state; "" if it began from loose grains or a file
   std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; inferred for old events
+  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; derived for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 
-/// One checkpoint in its state after all events.
+/// One checkpoint, and its state after all events of the log.
 struct CheckpointHistory {
   CheckpointRecord record;
   std::string recorded_at;  ///< UTC
@@ -77,7 +77,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id
 
-/// Adds the lineage of the run and of the stages before it, unless `lineages` has the run.
+/// Adds the lineages of the run and of all stages before it, unless `lineages` contains the run.
 void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages);
 
 /// Processor time of a stage, and the names of the processors.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Merges the events and checkpoints of other stores into one store.
 //
-// The result is the union of the stores. Skipped are events that the store already has (equal
-// stream, type, layout, time and payload), checkpoints that it already has, and attempts that
-// recorded nothing else. Copied events keep their time and payload; seq, version and hashes are
-// new. Of two states of a run, the state at the later step is kept; at equal steps the order is
-// completed, failed, interrupted, running, declared. Merging the same store again changes nothing.
+// The result is the union of the stores. A merge skips events that the store already has (equal
+// stream, type, layout, time and payload), checkpoints that it already has, and attempts that did
+// not record new checkpoints. Copied events keep their time and payload; seq, version and hashes
+// are new. Of two states of a run, the merge keeps the state at the later step. At equal steps it
+// prefers completed, failed, interrupted, running, declared. A repeated merge changes nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,12 +29,12 @@ using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-/// A snapshot of a store to merge from, whose chain and events were checked.
+/// A store to merge from: a snapshot of its log, after the hash chain and the events were checked.
 struct Source {
   std::filesystem::path folder;
   Head head;
   std::vector<Event> events;
-  Database tables;  ///< derived from the events alone, in memory
+  Database tables;  ///< in memory, derived only from the events
   ObjectStore objects;
 };
 
@@ -85,8 +85,8 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   }
 }
 
-/// Whether `into` lacks the checkpoint, or has a damaged file for it that `record` can replace. The
-/// same state in other bytes (written by another HDF5 library) is not news.
+/// Whether the checkpoint is new: `into` lacks it, or has only a damaged file, which `record` can
+/// replace. A state that `into` has in another file (from another HDF5 library) is not new.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
@@ -124,13 +124,13 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 using Stream = std::vector<const Event*>;  // in the order of the log
 
 /// Decides which events of one run are copied. If the store does not have the run, every attempt is
-/// copied. Otherwise an attempt is copied if it recorded a checkpoint that is news. The last
+/// copied. Otherwise an attempt is copied if it recorded a new checkpoint (see is_news). The last
 /// attempt is also copied if the run is further in the source than in the store.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
-  std::set<std::string> known;       ///< SHA-256 of checkpoints that are not news
-  std::set<std::uint64_t> attempts;  ///< seq in the source of all events of the copied attempts
+  std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
+  std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
   bool source_wins = false;          ///< the run is further in the source than in the store
 
   bool wants(const Database& into, const Event& event) const {
@@ -142,25 +142,25 @@ struct RunMerge {
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);
     }
-    // The event is about a rejected, pruned or regenerated checkpoint, or about something else.
+    // Events that reject, prune or regenerate a checkpoint are copied only for new checkpoints.
     if (!event.type.starts_with("Checkpoint")) return true;
     const nlohmann::json sha256 = member_of(event.body(), "sha256");
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
   }
 
-  /// Returns `last_claim` if the copied events changed the state of the run. Appending this event
-  /// again restores the state that the run had in this store.
+  /// Returns `last_claim` if the copied events changed the state of the run. The caller appends it
+  /// again, which restores the state that the run had before the merge.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // A larger target has made the completed run `declared`. This state is kept.
+    // If a larger target has changed the completed run to `declared`, the run stays `declared`.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
   }
 };
 
-/// The seq of all events of the attempts to copy.
+/// The seq of each event that belongs to an attempt to copy.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;
@@ -221,7 +221,7 @@ bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. If `runs` is not empty, reads only these runs and the texts.
+/// Reads and checks a source. If `runs` is not empty, reads only these runs and all texts.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -305,8 +305,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
-  // The last event of a figure counts. If the store's own figure is newer than the copied one, the
-  // event of the own figure is appended again.
+  // The last event of a figure is the valid one. If the store had a newer figure before the merge,
+  // the event of the newer figure is appended again.
   for (const FigureRecord& copied : query_figures(into)) {
     const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
     if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;
@@ -359,7 +359,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // The last event about a checkpoint may still be its rejection, but now its file is valid.
+        // The last event of a copied checkpoint may be its rejection, but its file is valid now.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;
@@ -369,7 +369,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         reports.push_back(std::move(report));
       }
     } catch (const FilePruned&) {
-      // A program pruned a checkpoint of a source after the source was read. The loop starts again.
+      // A program pruned a checkpoint after its store was read, so the loop reads the store again.
     }
   }
   return reports;

@@ -70,7 +70,7 @@ std::string ObjectStore::put(std::span<const std::byte> bytes) {
   const Descriptor folder = open_object_folder(folder_, sha256, true);
   try {
     get(sha256, bytes.size());
-    sync(folder, path);  // the program that wrote it may have been killed before its sync
+    sync(folder, path);  // the program that wrote the file may have been killed before the sync
     return sha256;
   } catch (const StoreDamaged&) {
     // The object is missing or damaged, so it is written below.

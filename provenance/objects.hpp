@@ -34,8 +34,8 @@ class ObjectStore {
   /// Deletes the file of an object. Returns false when there was no file. Throws std::system_error.
   bool remove(std::string_view sha256);
 
-  /// Files in `objects` that do not belong to the digests in `known`, including temporary files of
-  /// interrupted writes. The paths are relative to the store folder and sorted.
+  /// Files in `objects` whose digests are not in `known`, including temporary files of interrupted
+  /// writes. The paths are relative to the store folder and sorted.
   std::vector<std::string> strangers(const std::set<std::string>& known) const;
 
   /// The path of an object's file, relative to the store folder.

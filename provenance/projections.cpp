@@ -19,8 +19,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// `registered` is the seq of the last registration. For each experiment and scale, `newest` holds
-// the manifest that was registered last among those that declared a run.
+// `registered` is the seq of the last registration. `newest` holds, for each experiment and scale,
+// the last registered manifest that declared a run there.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -95,10 +95,10 @@ CREATE TABLE newest(
 void require_cycles(std::uint64_t target_cycles, std::uint64_t checkpoint_every) {
   const auto require = [](const char* name, std::uint64_t value, std::uint64_t low) {
     if (value >= low && value <= StoreLimits::cycles) return;
-    throw StoreDamaged(
-        fmt::format("the record of a run has {} = {}, outside {} to {}; run `verify`, and restore "
-                    "the store from a backup",
-                    name, value, low, StoreLimits::cycles));
+    throw StoreDamaged(fmt::format(
+        "the record of a run has {} = {}, outside the range {} to {}; run `verify`, and "
+        "restore the store from a backup",
+        name, value, low, StoreLimits::cycles));
   };
   require("target_cycles", target_cycles, 0);
   require("checkpoint_every", checkpoint_every, 1);
@@ -120,14 +120,14 @@ class Projector {
                       event_.seq, event_.type, event_.stream));
     }
     require_cycles(ask.target_cycles, ask.checkpoint_every);
-    // A completed run may have ended before its target (`until`), so its cycles are compared too.
+    // `until` may have ended the run before its target, so the new target is compared with `cycle`.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A declaration that asks for nothing more makes the run the current one for its place.
+    // A repeated declaration (no larger target, same interval) makes the run current in its place.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -219,7 +219,7 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Makes `manifest` the newest at the scale, unless the present one was registered later.
+  /// Makes `manifest` the newest at this scale, unless the previous newest was registered later.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
@@ -237,8 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Moves the run to its furthest recorded checkpoint. Does nothing if the run is beyond `sha256`,
-  /// so pruning its last checkpoints does not move a run back.
+  /// Moves the run to its furthest recorded checkpoint. Does nothing if the run is already beyond
+  /// checkpoint `sha256`, so a run whose last checkpoints were pruned does not move back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
@@ -378,11 +378,11 @@ std::string try_apply(Database& database, const Event& event) {
       return event.stream == stream && registered.sha256 == sha256_hex(registered.text);
     };
     if (manifest != nullptr && !is_of("manifest/" + manifest->sha256, *manifest)) {
-      return "the manifest's text has another SHA-256";
+      return "the SHA-256 of the manifest's text differs from the recorded one";
     }
     const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
     if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
-      return "the text of the file of grains has another SHA-256";
+      return "the SHA-256 of the file of grains differs from the recorded one";
     }
     return event.recorded_at.empty() ? "it does not say when it was recorded" : "";
   } catch (const StoreDamaged& damage) {

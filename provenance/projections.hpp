@@ -29,15 +29,15 @@ sqlite::Database empty_projections(const std::string& name);
 /// Applies one event to the tables; no other code writes to them. Events of unknown type change
 /// nothing. Throws StoreDamaged when a required member of the payload is missing.
 void apply(sqlite::Database& database, const Event& event);
-/// Applies the event, then checks its time and the SHA-256 of a registered manifest or file of
-/// grains. Returns a description of what is wrong, or "".
+/// Applies the event. Then checks that the event has a time, and that a registered manifest or file
+/// of grains has the recorded SHA-256. Returns a description of what is wrong, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.
 void derive_projections(sqlite::Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& lock);
-/// Derives the tables in memory for a connection that only reads; they hide the stored tables of an
-/// older schema. Events that cannot be applied are skipped; `verify` names them.
+/// Derives the tables in memory for a connection that only reads. SQL statements then use these
+/// tables instead of the stored tables of an older schema. Skips events that cannot be applied.
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
 /// The rows of a table in ascending order, each cell as an SQL literal.
@@ -46,13 +46,13 @@ using TableRows = std::vector<std::vector<std::string>>;
 /// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);
 
-// All queries throw StoreDamaged when a table holds a value that no event can give.
+// All queries throw StoreDamaged when a table holds a value that cannot come from an event.
 
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` is a new place of the stage, or has a larger target or another checkpoint
-/// interval there. `known` is the stage in the store, if it is stored.
+/// Whether `wanted` gives the stage a new place, or a larger target or another checkpoint interval
+/// in a known place. `known` is the stage as stored, or nothing if the store does not have it.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// Whether `run` was declared last in this place. Runs from different packings can share a place.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

@@ -25,20 +25,20 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// What an experiment asks of a stage.
+/// The computation that an experiment requests from a stage.
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
   nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
-  std::vector<double> checkpoint_phases = {};  ///< more checkpoints at these fractions of a cycle
+  std::vector<double> checkpoint_phases = {};  ///< extra checkpoints: fractions of a cycle
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
 };
 
-/// The place of a stage in an experiment, and what the experiment asks of the stage.
+/// The place of a stage in an experiment, and the request of the experiment.
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// Whether no manifest that was registered later declares a stage of the experiment and scale.
+  /// False if a manifest that was registered later declares a stage of this experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -57,7 +57,7 @@ inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
   return asks;
 }
 
-/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events hold "".
+/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events store "".
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
@@ -89,8 +89,9 @@ struct Stage {
   std::string parent;                                  ///< id of the stage before it; "" if none
   std::string kind;                                    ///< "prepare", "shear", ...
   nlohmann::json resolved = nlohmann::json::object();  ///< parameters; the id is their hash
-  /// `declared`: not started, or completed and then given a larger target. `running`: started and
-  /// not ended; after a kill the stage stays `running` until it is resumed.
+  /// `declared`: not started, or completed and later found incomplete (a larger target, or a
+  /// rejected last checkpoint). `running`: started and not ended; after a kill the stage stays
+  /// `running` until it is resumed.
   StageState state = StageState::declared;
   std::uint64_t grains = 0;
   std::uint64_t target_cycles = 0;                ///< the largest declared target
@@ -106,7 +107,7 @@ struct Stage {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// A run is what a user counts, lists and averages: a place and its last stage. A stage that two
+/// The unit that users count, list and average: a place and the last stage in it. A stage that two
 /// experiments share belongs to two runs.
 struct Run {
   Place place = {};
@@ -114,8 +115,7 @@ struct Run {
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
   bool named = false;     ///< whether the name is a label of the manifest
-  /// Whether the run belongs to the newest version of the manifest and no later declaration put
-  /// another run in its place.
+  /// False if the manifest has a newer version, or another run was declared later in this place.
   bool newest = true;
 };
 
@@ -129,8 +129,8 @@ bool same_computation(const auto& a, const auto& b) {
 struct PruneChoice {
   std::vector<std::string> runs;  ///< run ids; empty for all runs
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
-  /// Whether to prune, in completed stages, also the checkpoints from which the run would continue
-  /// or from which other stages started.
+  /// For completed stages: prune also the last checkpoint, from which the stage could continue, and
+  /// the checkpoints from which other stages started.
   bool last_too = false;
 };
 
@@ -160,12 +160,12 @@ struct CheckpointRecord {
   std::string state_hash;
   std::map<std::string, double> observables;
   CheckpointState state = CheckpointState::recorded;
-  std::uint64_t seq = 0;  ///< of the event that recorded it
+  std::uint64_t seq = 0;  ///< of the event that recorded the checkpoint
 };
 
 struct FigureRecord {
   std::string name;           ///< "drag/desk/S2"
-  std::uint64_t seq = 0;      ///< of the event that recorded it
+  std::uint64_t seq = 0;      ///< of the event that recorded the figure
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs
 };

@@ -37,7 +37,7 @@ json reference(const std::string& id) {
 /// The entities of the crate; each id occurs once.
 class Graph {
  public:
-  /// Adds the entity unless its id is known, and returns a reference to it.
+  /// Adds the entity unless its id is known. Returns a reference to the entity.
   json add(json entity) {
     const std::string id = entity.at("@id").get<std::string>();
     if (known_.insert(id).second) entities_.push_back(std::move(entity));

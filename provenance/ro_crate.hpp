@@ -22,7 +22,7 @@ struct CrateFacts {
 /// Collects the content of a crate. Throws NotFound for an unknown run.
 CrateFacts crate_facts(const Store& store, const std::string& run);
 
-/// Paths in the crate. They contain only hashes, so a forged record cannot name a file elsewhere.
+/// Paths in the crate. They contain only hashes, so a forged record cannot name an outside file.
 std::string crate_path_of_checkpoint(const std::string& sha256);
 std::string crate_path_of_manifest(const std::string& sha256);
 inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";

@@ -40,8 +40,8 @@ std::string full_name(const std::filesystem::path& file);
 /// the machine fails (disk full, no permission).
 ///
 /// The database file and its journal must be regular files without hard links. SQLite derives the
-/// name of the journal from the name of the file. With a second name, SQLite would miss the journal
-/// or play back the journal of another database.
+/// name of the journal from the name of the file. If the file had a second name, SQLite could miss
+/// its journal or play back the journal of another database.
 class Database {
  public:
   /// Even with Access::read SQLite may write: it rolls back the transaction of a killed program.
@@ -58,24 +58,24 @@ class Database {
   /// Throws MachineError when the file was moved, replaced or deleted. Called before each
   /// transaction, because a transaction may play back a journal.
   void require_in_place() const;
-  /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite calls a database
-  /// damaged that it cannot read.
+  /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite itself reports
+  /// such a read error as a damaged database.
   void require_readable(std::string_view doing) const;
-  /// Throws the exception for an SQLite result code. `doing` is the failed operation: "read".
+  /// Throws the exception for an SQLite result code. `doing` is the failed operation, e.g. "read".
   [[noreturn]] void fail(int code, std::string_view doing) const;
 
  private:
   friend class Statement;
   void require_same_file() const;
-  /// Throws MachineError if the error `code` comes from a journal that a killed program left and
-  /// that this user cannot play back.
+  /// Throws MachineError if the cause of the error `code` is the journal of a killed program that
+  /// this user cannot play back.
   void require_journal_can_be_played_back(int code) const;
   using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
   std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Prepared statements that are not in use, by SQL text: preparing is slower than running.
+  /// Unused prepared statements, by SQL text. They are kept because preparing is slow.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 

@@ -89,7 +89,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
       objects.string()));
 }
 
-/// Why the program with this token has lost the run; "" while it holds the run.
+/// Why the program with this token no longer holds the run; "" if it still holds the run.
 std::string loss_of(const sqlite::Database& database, const std::string& token,
                     const std::string& id, std::uint64_t attempt) {
   for (const Lease& lease : query_leases(database, id)) {
@@ -97,13 +97,13 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
     return fmt::format("its lease expired and another program took the run ({})",
                        describe(lease.holder));
   }
-  // If another program has continued the run, its attempt or (after a merge) its end is recorded.
+  // A newer attempt, or an end that a merge copied, shows that another program continued the run.
   const auto run = query_stage(database, id);
   const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";
 }
 
-/// Throws NotFound if the prefix has several candidates. `id` is the member that has the prefix.
+/// Throws NotFound if there are several candidates. Their members `id` begin with the prefix.
 void require_one(const char* what, std::string_view prefix, const auto& candidates, auto id) {
   constexpr std::size_t most = 10;
   if (candidates.size() < 2) return;
@@ -125,14 +125,14 @@ std::set<std::string> initial_states(const EventLog& log) {
   return found;
 }
 
-/// The cycle of the parent with whose state the stage begins.
+/// The stage starts from the state of its parent at this cycle.
 double start_cycle(const Stage& stage) {
   const json cycle = member_of(member_of(stage.resolved, "parameters"), "start_cycle");
   return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
-/// Whether `keep_every` keeps the checkpoint. While a packing settles, all checkpoints have cycle
-/// 0, but only the first one is kept.
+/// Whether `keep_every` keeps the checkpoint. All checkpoints of a settling packing have cycle 0;
+/// only the checkpoint at step 0 is kept.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;
@@ -283,7 +283,7 @@ void Store::declare_stage(const Stage& declared) {
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
-    // If another start was declared in between, this stage becomes the current one again.
+    // If another stage was declared later in this place, this stage becomes the current one again.
     if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
@@ -353,13 +353,13 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
     throw std::invalid_argument(
         fmt::format("run {}: the checkpoint names run '{}'", id, checkpoint.run));
   }
-  // The file is written before the event: a crash between them leaves a file without an event,
-  // never an event without its file.
+  // The file is written before the event. A crash between the two writes leaves a file without an
+  // event, never an event without its file.
   const std::string state = state_hash(checkpoint);
   const std::vector<std::byte> bytes = encode_checkpoint(checkpoint);
   {
     const std::scoped_lock guard(mutex_);
-    database_.require_in_place();  // the file must not go to a store that replaced this one
+    database_.require_in_place();  // do not write the file into a store that replaced this one
   }
   const std::string sha256 = objects_.put(bytes);
   const std::scoped_lock guard(mutex_);
@@ -532,7 +532,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
   const std::vector<Stage> known = stages();
-  std::set<std::pair<std::string, double>> to_come;  // run and cycle from which a stage will start
+  std::set<std::pair<std::string, double>> to_come;  // (run, cycle) of future initial states
   for (const Stage& stage : known) {
     if (!stage.parent.empty() && !has_ended(stage.state))
       to_come.emplace(stage.parent, start_cycle(stage));
@@ -540,7 +540,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   std::vector<CheckpointRecord> found;
   for (const Stage& stage : known) {
     if (!choice.runs.empty() && std::ranges::count(choice.runs, stage.id) == 0) continue;
-    // Keeps the newest readable checkpoint, and all later ones, whose damage `resume` reports.
+    // Keeps the newest readable checkpoint and the damaged ones after it, which `resume` reports.
     std::vector<CheckpointRecord> records = checkpoints(stage.id);
     const bool all = choice.last_too && stage.state == StageState::completed;
     bool kept = all;
@@ -585,7 +585,7 @@ std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool la
   }
   std::uint64_t freed = 0;
   for (const CheckpointRecord& record : records) {
-    // The lock prevents a new record of the file between the check and the removal.
+    // Without the lock, the file could be recorded again between the check and the removal.
     const Writing lock(*this);
     const auto now = query_checkpoint(database_, record.run, record.sha256);
     if (!now || now->state != CheckpointState::pruned) continue;

@@ -47,7 +47,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< a copy kept elsewhere can prove that the log only grew
+  Head head;                      ///< a saved copy can later prove that the log only grew
 
   /// The number of findings of this severity.
   std::size_t count(Finding::Severity severity) const;
@@ -72,17 +72,17 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 /// ConcurrencyConflict. Every function may throw StoreDamaged, and std::runtime_error when the
 /// machine fails or another process keeps the store locked.
 ///
-/// Between start_stage() and the end of the attempt this object holds a lease on the run. Every
-/// recorded event of the run and renew_leases() renew the lease. Another program may take over the
-/// run when the lease has expired, or at once when the process of the holder is dead. The next
-/// record of the previous holder then throws ConcurrencyConflict, and the previous holder must stop
-/// the computation. The destructor releases all leases.
+/// Between start_stage() and the end of the attempt this object holds a lease on the run. Calls of
+/// record_checkpoint() and renew_leases() renew the lease. Another program may take over the run
+/// when the lease has expired, or at once when the process of the holder is dead. The next record
+/// of the previous holder then throws ConcurrencyConflict, and the previous holder must stop the
+/// computation. The destructor releases all leases.
 class Store {
  public:
-  /// Throws StoreDamaged when the folder is not a store, has a newer schema, or must be written but
-  /// lacks the folder of its checkpoints. Throws NotFound when the folder is missing and `access`
-  /// does not create it. A lease expires when it is not renewed for `lease_seconds`, which is at
-  /// most kLongestLeaseMs.
+  /// Throws NotFound if there is no store and `access` does not create one, UsageError if a store
+  /// cannot be created at this path, and StoreDamaged if the log is lost, is damaged or has a newer
+  /// schema, or if a store to be written lacks its folder of checkpoints. A lease expires when it
+  /// is not renewed for `lease_seconds` (at most kLongestLeaseMs).
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();
@@ -104,10 +104,10 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each place that is new to the stage, or that has a larger target or another checkpoint
-  /// interval. A larger target makes a completed stage `declared` again. Throws
-  /// std::invalid_argument when the id is not a SHA-256 or belongs to other parameters, or when the
-  /// parent was not declared.
+  /// Records each place that is new for the stage, has a larger target or another checkpoint
+  /// interval, or was given to another stage in the meantime. A larger target makes a completed
+  /// stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or belongs
+  /// to other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
@@ -150,7 +150,7 @@ class Store {
 
   /// Appends an event that changes no run: FigureGenerated to "figure/drag/desk/S2", ReplayVerified
   /// or ReplayDiverged to the stream of the run, CampaignSubmitted or JobQueued to kSubmissions.
-  /// Throws ConcurrencyConflict unless the stream has `seen` events.
+  /// Throws ConcurrencyConflict if `seen` is given and the stream does not have `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);
 
@@ -184,7 +184,7 @@ class Store {
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest figure of each name, sorted by name
-  /// Events of one stream ("run/<id>", ...) or of all (""), of one type or of all types ("").
+  /// Events of `stream` ("run/<id>", ...; "": all streams) that have this `type` ("": all types).
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   Head head() const;
 
@@ -192,12 +192,12 @@ class Store {
 
   /// Drops the tables and derives them from the events.
   void rebuild();
-  /// Reports damage as findings. If the log does not continue the earlier head `against`, this is
-  /// damage too. Throws only when the machine fails.
+  /// Reports damage as findings. A log that does not continue the earlier head `against` is damaged
+  /// too. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
   /// The checkpoints that prune() may delete. Without PruneChoice::last_too they exclude the newest
-  /// checkpoint of a run, its newest readable checkpoint, and initial states of other stages.
+  /// readable checkpoint of each run, all later ones, and the initial states of other stages.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
@@ -207,11 +207,11 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). With `runs`, merges only the manifests and
-  /// these runs, which must include all their parents. Throws NotFound when a source is not a store
-  /// and MachineError while a program computes a run of this store. Throws StoreDamaged, before
-  /// anything is written, when a source is damaged, or when two stores hold different states of one
-  /// run at one step or different runs under one id.
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
+  /// which must include all parents, and all manifests and files of grains. Throws NotFound when a
+  /// source is not a store and MachineError while a program computes a run of this store. Throws
+  /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
+  /// different states of one run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 

@@ -59,7 +59,7 @@ void add_error(VerifyReport& report, const std::string& subject, const std::stri
   report.findings.push_back({Severity::error, subject, run, message});
 }
 
-/// Removes the subject and the path before it from the beginning of an error message.
+/// Removes "PATH/SUBJECT: " or "SUBJECT: " from the beginning of an error message.
 std::string without_path(const std::string& subject, const std::string& message) {
   const std::size_t at = message.find(subject + ": ");
   if (at == message.npos || (at > 0 && message[at - 1] != '/')) return message;
@@ -70,7 +70,7 @@ std::string event_name(std::uint64_t seq) {
   return fmt::format("event {}", seq);
 }
 
-/// Checks that the log still contains the earlier head. If so, no event up to it was changed.
+/// Checks that the log contains the earlier head. If so, no event up to this head was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
   const std::string event = event_name(earlier.seq);
   if (report.head.seq < earlier.seq) {
@@ -170,7 +170,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      // A forged table cannot hide damage: compare_tables() reports it as an error.
+      // A forged table cannot hide damage, because compare_tables() reports the forgery.
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;

@@ -15,7 +15,7 @@
 
 namespace shearcell {
 
-/// Owns a file descriptor and closes it in the destructor. It is negative if no file is open.
+/// Owns a file descriptor, which is negative if no file is open. The destructor closes the file.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -53,7 +53,7 @@ void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
 /// mode 0666 minus umask. Then renames it to the last component of `path`, which replaces a file or
-/// link there. After any error, deletes the temporary file and throws as fail_on().
+/// link there. After any error, deletes the temporary file and throws an exception of fail_on().
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability);

@@ -117,7 +117,7 @@ std::vector<Case> damaged_events() {
                "ManifestRegistered", "info"),
       reported("manifest_of_another_text", "show tiny/base/S2a.csv", 4,
                payload("ManifestRegistered", [](auto& b) { b["text"] = "a: 1"; }),
-               "has another SHA-256"),
+               "the SHA-256 of its text differs"),
       reported(
           "parameters_of_another_run", "resume", 4,
           [](auto& s) {

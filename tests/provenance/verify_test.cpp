@@ -256,7 +256,7 @@ TEST_F(VerifyTest, FindsARewrittenLogFromARecordedHead) {
             forged.prev_hash + "', hash = '" + forged.hash +
             "' WHERE seq = " + std::to_string(forged.seq));
     if (i == 4) {
-      EXPECT_TRUE(names(verify(), event(6), "does not follow"));
+      EXPECT_TRUE(names(verify(), event(6), "prev_hash is not"));
     }
   }
   Store(path_, Access::write).rebuild();
