@@ -22,7 +22,8 @@ constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are wit
 constexpr std::size_t kMost = 14;
 using Bonds = std::array<std::uint32_t, kMost>;  // bit b of entry a: neighbours a and b are bonded
 
-// Longest bond: halfway between the first and second shells of FCC, in units of the first.
+// Longest bond, relative to the radius of the first shell of FCC: the mean of the radii of the
+// first and second shells.
 const double kCut = 0.5 * (1 + std::numbers::sqrt2);
 
 struct Neighbour {
