@@ -30,12 +30,11 @@ struct CensoredValue {
   bool censored = false;
 };
 
-/// Mean of the values. If a value is censored, the interval is the union of the intervals for two
-/// distributions: the normal distribution and the Gumbel distribution of smallest values. The
-/// hazard of the Gumbel distribution is exponential. It is included because the hazard of the onset
-/// rises with phi. With fewer than two observed values the estimate is infinite. The interval then
-/// begins at the smallest value if the sign test, 2^-n <= (1 - level) / 2, allows it, else at
-/// -infinity.
+/// Mean of the values. If a value is censored, the interval is the union of two intervals: one
+/// for a normal distribution and one for a Gumbel distribution of smallest values. The Gumbel
+/// distribution has an exponential hazard, and the hazard of the onset rises with phi. With fewer
+/// than two observed values the estimate is infinite. The interval then begins at the smallest
+/// value if 2^-n <= (1 - level) / 2 (sign test), else at -infinity.
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 
@@ -43,10 +42,10 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// in sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). For independent groups Welch's
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
-/// Pairs with a censored value are included, with the expectation value of its residual. An
-/// estimate from a[k] - b[k] as one censored value would be biased, since b[k] decides whether it
-/// is censored. Without censoring the interval is Welch's interval or, for pairs, Student's
-/// interval. Empty if a group has fewer than two observed values.
+/// Pairs with a censored value are included. The residual of a censored value is its expectation
+/// value. To treat a[k] - b[k] as one censored value would give a bias, since b[k] decides whether
+/// the difference is censored. Without censoring the interval is Welch's interval or, for pairs,
+/// Student's interval. Empty if a group has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);

@@ -27,14 +27,13 @@ struct CheckpointMeasures : CheckpointRecord {
   std::vector<std::string> lacking = {};
 };
 
-/// A run with its measured checkpoints.
 struct FrameRun : Run {
   /// Id of the stage that settled the packing, or SHA-256 of the file that the packing was read
   /// from; "" if there is neither.
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far, even if it has no checkpoint here
+  double end = 0;  ///< last cycle of the run so far; the frame may lack a checkpoint there
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -127,7 +126,6 @@ std::vector<const FrameRun*> pointers(std::span<const FrameRun> runs);
 /// Groups runs by a parameter, ascending. Runs whose parameter is not a number are left out.
 std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun> runs,
                                                        const std::string& parameter);
-/// The number of variants among the runs.
 std::size_t count_variants(RunGroup runs);
 
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
@@ -136,8 +134,8 @@ const std::string& packing_of(const FrameRun& run);
 /// Groups the runs by packing_of(), in the order of `group`.
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
 PackingGroups by_packing(RunGroup group);
-/// Returns one mean per packing, over the values of the runs of the packing. `values` has one value
-/// for each run. Values that are not finite are left out. Packings are in the order of the runs.
+/// Returns, for each packing, the mean of the values of its runs. `values` has one value for each
+/// run. Values that are not finite are left out. Packings are in the order of the runs.
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// Mean over runs of the measure at the first checkpoint of each run; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
@@ -153,7 +151,6 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 /// change together, `first` is returned.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
-/// The swept keys that distinguish the variants of the runs.
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over

@@ -19,7 +19,7 @@ namespace shearcell {
 /// counted if, for example, most of its grains are in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Like `grew`, but the later crystallite shares most grains with a larger earlier crystallite.
+  /// Like `grew`, but the later crystallite has most grains from a larger earlier crystallite.
   std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
   std::size_t vanished = 0;  ///< like `shrank`, but including grains in no crystallite
@@ -45,9 +45,9 @@ struct GrowthRate {
   double size = 0;  ///< geometric mean size of the crystallites in the bin [grains]
   GrowthCount count;
   double delta = 0;
-  /// The larger of two standard errors. One is the bootstrap error over runs. The other assumes
-  /// that the n = larger + smaller crystallites are independent: 2 sqrt((larger + 1) (smaller + 1)
-  /// / (n + 3)) / (n + 2).
+  /// The larger of two standard errors: the bootstrap error over runs, and the error
+  /// 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2) for independent crystallites, where
+  /// n = larger + smaller.
   double delta_error = 0;
 };
 
@@ -82,8 +82,7 @@ class GrowthCurve {
   std::optional<Estimate> critical_size() const;
   /// The size for which the excess of growing over shrinking crystallites of this size and above is
   /// largest. There the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer
-  /// et al., Ann. Math. Stat. 26, 641 (1955)). This is a check of critical_size(); its error is
-  /// larger.
+  /// et al., Ann. Math. Stat. 26, 641 (1955)). A less precise check of critical_size().
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -72,7 +72,7 @@ struct Measure {
   /// The name used in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
-  bool waits = false;           ///< cycle of an event; a run may end before the event
+  bool waits = false;           ///< true for the cycle of an event; a run may end before it
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
@@ -95,7 +95,6 @@ struct RunFacts {
   double number(const char* key) const;
 };
 
-/// The input from which a provider computes measures of a checkpoint.
 struct MeasureInput {
   /// Analysis of the checkpoint's packing; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
@@ -144,9 +143,8 @@ struct Provider {
 std::span<const Provider> all_providers();
 /// The provider with this name, which must exist.
 const Provider& provider(std::string_view name);
-/// The names of the providers for which fits() is true.
 std::vector<std::string> provider_names(bool (*fits)(const Provider&));
-/// Provider of volume fractions and numbers of crystallites. All measured frames have them.
+/// Provider of volume fractions and numbers of crystallites, which every measured frame contains.
 inline constexpr const char* scalars_provider = "scalars";
 /// Provider of the computing time, which is read from the log (FrameRun::core_time_s).
 inline constexpr const char* cost_provider = "cost";

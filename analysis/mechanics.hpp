@@ -44,7 +44,6 @@ struct Mechanics {
 Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
                     std::span<const std::uint8_t> interior);
 
-/// SI values of the units of Mechanics.
 struct MechanicalUnits {
   double stress_Pa;          ///< k/d
   double kinetic_stress_Pa;  ///< m/(d s^2)

@@ -69,7 +69,6 @@ struct Neighbours {
   }
 };
 
-/// Throws AnalysisError if the checkpoints have different numbers of grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   if (earlier.state.position.cols() != later.state.position.cols()) {
     throw AnalysisError("two checkpoints of one run have different numbers of grains");

@@ -118,9 +118,9 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. At the amplitude and about the phi of at
-/// least one event there must be a larger cell. The same must hold for a smaller cell. Cells are
-/// compared by N, since the number of interior grains differs slightly between seeds of one N.
+/// Whether the runs show how the rate depends on size. There must be a larger cell and a smaller
+/// cell, each at the amplitude and about the phi of at least one event. Cells are compared by N,
+/// since the number of interior grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {
@@ -136,7 +136,7 @@ bool is_bounded(const Shares& amplitudes) {
   return larger && smaller;
 }
 
-/// Variance of the score between packings over the variance for independent runs, at least 1.
+/// Ratio of the variance of the score between packings to that of independent runs, at least 1.
 double variance_between_packings(const Likelihood& at) {
   double squares = 0;
   for (const auto& [packing, score] : at.score_of) squares += score * score;

@@ -2,7 +2,7 @@
 // Where in the cell nuclei appear (supplement E), and how often: events per grain and cycle against
 // phi, and how this rate grows with the number of grains. The supplement does not give the rate.
 // The rate tests whether nucleation is homogeneous: nucleation in the bulk is proportional to the
-// volume, nucleation at walls to their area.
+// volume, and nucleation at walls is proportional to the area of the walls.
 #pragma once
 
 #include <cstddef>
@@ -80,12 +80,12 @@ inline constexpr double rate_step = 0.0005;
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
 /// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It holds the exponents for
-/// which the log-likelihood is below its maximum by at most a limit. If runs share a packing, the
-/// limit is multiplied by the variance of the score between packings over the variance for
+/// which the log-likelihood is at most a limit below its maximum. If runs share a packing, the
+/// limit is multiplied by the ratio of the variance of the score between packings to that of
 /// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
-/// (2011)). Empty for fewer than least_runs packings. Also empty unless there was a larger cell
-/// (more grains N) at the amplitude and about the phi of at least one event, and also a smaller
-/// cell.
+/// (2011)). Empty for fewer than least_runs packings. Also empty unless a larger cell (more grains
+/// N) and a smaller cell were observed, each at the amplitude and about the phi of at least one
+/// event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -187,7 +187,7 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
     sums.push_back({bin, n, {}});
   });
   // If the number of sites is odd, the last block has one site. The sums over even and odd indices
-  // are then added up before this block.
+  // are combined before this block is added.
   for (Eigen::Index from = 0, size = 0; from < sites.cols(); from += size) {
     size = std::min(kBlock, sites.cols() - from);
     if (size > 1) size -= size % 2;

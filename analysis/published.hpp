@@ -46,7 +46,7 @@ inline constexpr const char* growth_cannot_be_decided =
     "over one cycle it grows, over 20 it falls, and over 5 the ratio is near 1, the edge of the "
     "claim";
 
-/// The published amplitude nearest to `amplitude_rad`, whose numbers are then used. [choice]
+/// Returns the published amplitude nearest to `amplitude_rad`. Its numbers are used. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);

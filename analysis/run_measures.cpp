@@ -119,10 +119,10 @@ std::vector<Provider> run_providers() {
       {.name = cost_provider,
        .measures = {{.name = "core_time_s",
                      .unit = "s",
-                     .meaning = "processor time of all steps of the run, summed over all attempts "
-                                "and machines; the time to make the packing is not included. Each "
-                                "experiment that shares a run counts its full time. Without a "
-                                "record of processor time: wall-clock time times processes",
+                     .meaning = "processor time of all steps of the run, over all attempts and "
+                                "machines; the time to make its packing is not included. Each "
+                                "experiment that shares a run counts the full time. Without such a "
+                                "record, wall-clock time times the number of processes",
                      .kind = MeasureKind::run,
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",

@@ -22,15 +22,15 @@ struct RunStatistics {
 /// Statistics of one value per run. Values that are not finite are not counted.
 RunStatistics over_runs(std::span<const double> values);
 
-/// `mean` is the root mean square. Its error is the error of the mean square over twice the root.
+/// `mean` is the root mean square (rms). Its error is the error of the mean square / (2 rms).
 RunStatistics rms_over_runs(std::span<const double> values);
 
 /// Slope of the least-squares line of y against x; NaN if all x are equal.
 double least_squares_slope(std::span<const std::pair<double, double>> points);
 
 /// Computes a number from a selection of runs, in which a run may occur several times; NaN if the
-/// selection has no such number. The bootstrap draws 1000 selections with replacement. Its
-/// generator is counter-based, so the same input gives the same values.
+/// selection has no such number. The bootstrap draws 1000 selections with replacement. The
+/// random numbers are counter-based, so the same input gives the same values.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
 /// Standard error of a statistic: its standard deviation over the selections, multiplied by
@@ -50,7 +50,6 @@ inline constexpr std::size_t least_runs = 3;
 /// 1 - 2^(1 - runs): 75 % for 3 runs, 94 % for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
 
-/// Stands for an end of an interval that has no bound.
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Interval {
@@ -115,18 +114,18 @@ struct SpreadBetween {
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
-/// Ratio a / b of two independent estimates of positive quantities. The lower end of the interval
-/// adds the lower error of ln a and the upper error of ln b in quadrature, the upper end the other
-/// two errors: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
+/// Ratio a / b of two independent estimates of positive quantities. The lower error of ln(a / b) is
+/// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is
+/// computed from the other two errors: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
 /// Number of runs per group, or of pairs, for which an interval excludes, with 90 % probability, a
 /// value that differs from the true value by `distance`. With `both_sides` the interval must
-/// exclude the two values that differ by `distance`. A normal distribution is assumed, with
+/// exclude both values at this distance. A normal distribution is assumed, with
 /// Student's t for type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in
 /// Clinical Research (2008), section 3.2. Empty if the number is more than 10000. The spread of a
 /// few runs is uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and 0.5
-/// to 4 times that from 6 runs.
+/// to 4 times the number found from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 

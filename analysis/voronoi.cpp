@@ -245,7 +245,7 @@ class Tessellation {
     const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
 
     // Forward error of Cramer's rule. The errors of numerator and determinant are a few roundoffs
-    // times the sum of the magnitudes of their terms. Counting the operations gives less than 32.
+    // (fewer than 32 by a count of the operations) times the sum of the magnitudes of their terms.
     constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
     const double radius = v.norm();
     const double la = std::sqrt(aa);
