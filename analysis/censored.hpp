@@ -31,10 +31,10 @@ struct CensoredValue {
 };
 
 /// Mean of the values. If a value is censored, the interval is the union of two intervals: one
-/// for a normal distribution and one for a Gumbel distribution of smallest values. The Gumbel
-/// distribution has an exponential hazard, and the hazard of the onset rises with phi. With fewer
-/// than two observed values the estimate is infinite. The interval then begins at the smallest
-/// value if 2^-n <= (1 - level) / 2 (sign test), else at -infinity.
+/// for a normal distribution and one for a Gumbel distribution of smallest values. phi at the onset
+/// is skewed, since its hazard rises with phi; the hazard of the Gumbel distribution is
+/// exponential. With fewer than two observed values the estimate is infinite. The interval then
+/// begins at the smallest value if 2^-n <= (1 - level) / 2 (sign test), else at -infinity.
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 

@@ -120,9 +120,9 @@ std::vector<Provider> run_providers() {
        .measures = {{.name = "core_time_s",
                      .unit = "s",
                      .meaning = "processor time of all steps of the run, over all attempts and "
-                                "machines; the time to make its packing is not included. Each "
-                                "experiment that shares a run counts the full time. Without such a "
-                                "record, wall-clock time times the number of processes",
+                                "machines, without the time to make its packing. Each experiment "
+                                "that shares a run counts the full time. If no processor time was "
+                                "recorded, wall-clock time times the number of processes is used",
                      .kind = MeasureKind::run,
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",

@@ -121,11 +121,11 @@ Estimate ratio(const Estimate& a, const Estimate& b);
 
 /// Number of runs per group, or of pairs, for which an interval excludes, with 90 % probability, a
 /// value that differs from the true value by `distance`. With `both_sides` the interval must
-/// exclude both values at this distance. A normal distribution is assumed, with
-/// Student's t for type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in
-/// Clinical Research (2008), section 3.2. Empty if the number is more than 10000. The spread of a
-/// few runs is uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and 0.5
-/// to 4 times the number found from 6 runs.
+/// exclude both values at this distance. A normal distribution is assumed, with Student's t for
+/// type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
+/// (2008), section 3.2. Empty if the number is more than 10000. The spread of a few runs is
+/// uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and 0.5 to 4 times
+/// the number found from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
