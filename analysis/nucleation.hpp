@@ -80,7 +80,7 @@ inline constexpr double rate_step = 0.0005;
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
 /// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It holds the exponents for
-/// which the log-likelihood is at most a limit below its maximum. If runs share a packing, the
+/// which the log-likelihood is within a limit of its maximum. If runs share a packing, the
 /// limit is multiplied by the ratio of the variance of the score between packings to that of
 /// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
 /// (2011)). Empty for fewer than least_runs packings. Also empty unless a larger cell (more grains
