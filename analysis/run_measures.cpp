@@ -120,7 +120,7 @@ std::vector<Provider> run_providers() {
        .measures = {{.name = "core_time_s",
                      .unit = "s",
                      .meaning = "processor time of all steps of the run, over all attempts and "
-                                "machines, without the time to make its packing. Each experiment "
+                                "machines, without the time to make the packing. Each experiment "
                                 "that shares a run counts the full time. If no processor time was "
                                 "recorded, wall-clock time times the number of processes is used",
                      .kind = MeasureKind::run,

@@ -108,9 +108,9 @@ struct SpreadBetween {
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
-/// MSB and MSW are the mean squares between and within groups. n0 is their effective size. F(k - 1,
-/// n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two groups with
-/// values, or if no group has two values.
+/// MSB and MSW are the mean squares between and within groups. n0 is the effective group size. F(k
+/// - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two groups
+/// with values, or if no group has two values.
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
@@ -148,7 +148,7 @@ struct SurvivalStep {
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
 /// Returns the first cycle after which fewer than half of the runs still wait. If exactly half wait
-/// between two events, returns the middle of both cycles. Empty if more than half wait at the end.
+/// between two events, returns the mean of both cycles. Empty if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
 /// The log-rank statistic: the events of `a`, minus the events expected if both groups wait equally
