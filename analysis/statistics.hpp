@@ -108,9 +108,9 @@ struct SpreadBetween {
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
-/// MSB and MSW are the mean squares between and within groups. n0 is the effective group size. F(k
-/// - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two groups
-/// with values, or if no group has two values.
+/// MSB and MSW are the mean squares between and within groups. n0 is the effective group size.
+/// F(k - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two
+/// groups with values, or if no group has two values.
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
