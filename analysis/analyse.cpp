@@ -171,7 +171,7 @@ std::vector<Provider> packing_providers() {
                                .whole = true,
                                .of_wall_grains = -1}),
                     of_grains("crystallite", "1",
-                              "number of the grain's crystallite, by lowest grain id; 0 = none",
+                              "the grain's crystallite, numbered by lowest grain id; 0 = none",
                               "crystallites", {.whole = true, .of_wall_grains = -1})},
        .compute = grains_of}};
 }

@@ -49,8 +49,8 @@ struct Analysis {
   CrystalliteMap crystallites;  ///< positions of the crystallites
 };
 
-/// Computes the measures of a packing and of each grain. Throws AnalysisError in the cases that
-/// voronoi() states, and for a cell less than 1 d deep.
+/// Computes the measures of a packing and of each grain. Throws AnalysisError if voronoi() throws
+/// it, or if the cell is less than 1 d deep.
 Analysis analyse(const Checkpoint& checkpoint);
 
 /// Mean of value_of(i) over interior grains i with a finite value; NaN if there are none.

@@ -22,7 +22,7 @@ double normal_hazard(double z) {
   return std::sqrt(2 / std::numbers::pi) * std::exp(-z * z / 2) / std::erfc(z / std::sqrt(2.0));
 }
 
-/// ln L of one value at z = (y - mu) / sigma, and minus its first and second derivatives by z.
+/// ln L of one value at z = (y - mu) / sigma, -d(ln L)/dz and -d^2(ln L)/dz^2.
 struct Term {
   double logarithm = 0;
   double first = 0;
@@ -43,15 +43,15 @@ Term gumbel(double z, bool censored) {
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// Row k of `terms`, multiplied by the vector of parameters, gives z of value k. The parameters are
-/// h and the components of g. A fixed parameter has a column of zeros.
+/// z of value k is row k of `terms` times the vector of parameters. The parameters are h = 1 /
+/// sigma and two components of g = mu / sigma. A fixed parameter has a column of zeros in `terms`.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;
   Distribution distribution;
 };
 
-/// ln L, its gradient (`slope`), and minus its matrix of second derivatives (`curvature`).
+/// ln L, its gradient (`slope`), and the negative of its Hessian matrix (`curvature`).
 struct Expansion {
   double logarithm = 0;
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
@@ -76,8 +76,8 @@ Expansion expanded(const Sample& sample, const Eigen::Vector3d& at) {
 }
 
 /// Maximizes ln L by Newton's method, starting from `at`, and returns the maximum. A step that
-/// would lower ln L is halved. Without scatter of the observed values ln L has no maximum; h then
-/// stops at 1e8.
+/// would lower ln L is halved. If the observed values do not scatter, ln L has no maximum. The
+/// iteration then ends when h reaches 1e8.
 double maximize(const Sample& sample, Eigen::Vector3d& at) {
   Expansion here = expanded(sample, at);
   double gain = 1;
@@ -107,7 +107,7 @@ Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());
   const double slope = x.empty() ? 0 : 1;
-  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mu contains value * weight
+  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mu = value * weight + constant
   std::ranges::transform(values, y.begin(), &CensoredValue::value);
   std::ranges::copy(x, weight.begin());
   const auto centred = [n](Eigen::VectorXd& numbers) {  // shifts and scales to mean 0, variance 1
@@ -155,7 +155,8 @@ std::vector<double> plain(CensoredValues values) {
   return numbers;
 }
 
-/// Residuals (y - mean) / sigma, minus their mean. A censored value has its expected residual.
+/// Residuals (y - mean) / sigma, shifted so that they have zero mean. For a censored value the
+/// expectation value of the residual is used.
 Eigen::VectorXd residuals(CensoredValues values, const Fit& fit) {
   Eigen::VectorXd found(std::ssize(values));
   std::ranges::transform(values, found.begin(), [&fit](const CensoredValue& one) {
@@ -225,7 +226,7 @@ std::optional<Estimate> censored_slope(CensoredValues values, std::span<const do
   const double t = quantile_at(level, static_cast<double>(values.size() - 2));
   const Fit found = fitted(values, x, t);
   Estimate slope = estimate_with(found.value, found.interval, t, values.size());
-  double low = infinite, high = -infinite;  // range of x of the observed values
+  double low = infinite, high = -infinite;  // smallest and largest x of observed values
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!values[k].censored) low = std::min(low, x[k]), high = std::max(high, x[k]);
   }

@@ -30,30 +30,30 @@ struct CensoredValue {
   bool censored = false;
 };
 
-/// Mean of the values. The distribution of phi at the onset is skewed, since its hazard rises with
-/// phi. If a value is censored, the interval is therefore the union of two intervals, from a normal
-/// distribution and from a Gumbel distribution of smallest values, whose hazard is exponential.
-/// With fewer than two observed values the estimate is infinite, and the interval begins at the
-/// smallest value if the sign test allows this bound: 2^-n <= (1 - level) / 2.
+/// Mean of the values. If a value is censored, the interval is the union of two intervals: one
+/// for a normal distribution and one for a Gumbel distribution of smallest values. phi at the onset
+/// is skewed, since its hazard rises with phi; the hazard of the Gumbel distribution is
+/// exponential. With fewer than two observed values the estimate is infinite. The interval then
+/// begins at the smallest value if 2^-n <= (1 - level) / 2 (sign test), else at -infinity.
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 
-/// Difference mean(a) - mean(b), from the normal intervals of both means. The groups may differ in
-/// sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). Independent groups have Welch's
-/// degrees of freedom. If `paired`, a[k] and b[k] share a packing, and the errors of the means are
-/// correlated like the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)). The residual of a
-/// censored value is its expectation. Pairs with censored values count. Treating a[k] - b[k] as one
-/// censored value would be biased, since b[k] decides whether the difference is censored. Without
-/// censoring these are the intervals of Welch and of Student (pairs). Empty if a group has fewer
-/// than two observed values.
+/// Difference mean(a) - mean(b), from the normal intervals of the two means. The groups may differ
+/// in sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). For independent groups Welch's
+/// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
+/// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
+/// Pairs with a censored value are included. The residual of a censored value is its expectation
+/// value. To treat a[k] - b[k] as one censored value would give a bias, since b[k] decides whether
+/// the difference is censored. Without censoring the interval is Welch's interval or, for pairs,
+/// Student's interval. Empty if a group has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);
 
-/// Slope b of values[k] ~ a + b x[k], with one sigma for all x. Empty for fewer than three observed
-/// values, or if all x are equal. If all observed values have the same x, and all other x lie on
-/// one side of this x, a steeper slope is always more likely. The estimate and one end of the
-/// interval are then infinite.
+/// Slope b of values[k] ~ a + b x[k]. sigma is the same for all x. Empty for fewer than three
+/// observed values, or if all x are equal. If all observed values have the same x, and all other x
+/// lie on one side of this x, L has no maximum, because it increases with the steepness of the
+/// slope. The estimate and one end of the interval are then infinite.
 std::optional<Estimate> censored_slope(std::span<const CensoredValue> values,
                                        std::span<const double> x, double level = confidence_level);
 

@@ -22,8 +22,8 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
 
 /// Grains that a crystallite shares with crystallites of earlier cycles.
 struct Origin {
-  std::size_t own = 0;                           ///< remembered grains of the followed crystallite
-  std::size_t last = 0;                          ///< grains of the last descendants
+  std::size_t own = 0;                           ///< grains that are remembered (see followed())
+  std::size_t last = 0;                          ///< grains that were in the last descendants
   std::map<std::int32_t, std::size_t> of_other;  ///< grains from other crystallites, by label
 
   bool continues_another() const {
@@ -54,7 +54,7 @@ Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t labe
     const CrystalliteMap &before = *maps[cycle - 1], &now = *maps[cycle];
     Grains own;
     for (const Grains& grains : recent) own.insert(grains.begin(), grains.end());
-    std::map<std::int32_t, std::int32_t> other;  // label by grain, if not followed
+    std::map<std::int32_t, std::int32_t> other;  // label by grain, for other crystallites
     for (std::size_t k = 0; k < before.grain.size(); ++k) {
       const bool is_other =
           !descendants.contains(before.label[k]) && !own.contains(before.grain[k]);

@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Fewest grains of a descendant. A state with only smaller crystallites is a control. [choice]
+/// Smallest descendant [grains]. A state with only smaller crystallites is a control. [choice]
 inline constexpr std::int32_t least_descendant = 3;
 /// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;
@@ -37,11 +37,11 @@ struct Followed {
 /// Follows crystallite `label` of maps[0] through the later maps. There is one map for each cycle.
 ///
 /// Remembered grains are the grains of all descendants in the last `remembered_cycles` cycles that
-/// had a descendant. A crystallite of at least `least_descendant` grains is a descendant if it has
-/// a remembered grain. The exception is a crystallite that shares more grains with a crystallite of
-/// the previous cycle that was not a descendant: it continues that other crystallite. The followed
-/// crystallite has merged if there is no descendant, and a crystallite that continues another one
-/// has at least half of the grains of the last descendants.
+/// had a descendant. A crystallite with at least `least_descendant` grains and a remembered grain
+/// is a descendant, unless it continues another crystallite. It continues a crystallite of the
+/// previous cycle if that crystallite was not a descendant and contributes more grains than are
+/// remembered. The followed crystallite has merged if there is no descendant, and at least half of
+/// the grains of the last descendants are in one crystallite that continues another crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.
@@ -53,7 +53,7 @@ struct Ending {
 };
 
 /// The first event decides: a descendant has `grown_size` grains (grown), or no descendant exists
-/// for `cycles_without` consecutive cycles (gone). Without these events, Followed::merged decides.
+/// for `cycles_without` consecutive cycles (gone). If neither occurs, Followed::merged decides.
 Ending ending(const Followed& crystallite, std::size_t cycles_without);
 
 }  // namespace shearcell

@@ -22,7 +22,7 @@ constexpr double kReach = 1.5;  // [d]; the 14 nearest neighbours in BCC are wit
 constexpr std::size_t kMost = 14;
 using Bonds = std::array<std::uint32_t, kMost>;  // bit b of entry a: neighbours a and b are bonded
 
-// Longest bond: halfway between the first and second shells of FCC, in units of the first.
+// Longest bond, relative to the radius of the first FCC shell: halfway to the second shell.
 const double kCut = 0.5 * (1 + std::numbers::sqrt2);
 
 struct Neighbour {
@@ -99,7 +99,7 @@ int signature(const Bonds& bonds, std::size_t neighbour) {
          longest_chain(bonds, common);
 }
 
-// Numbers of neighbours with signatures `first` and `second`; {0, 0} if a neighbour has neither.
+// Numbers of neighbours with signatures `first` and `second`; {0, 0} if any neighbour has neither.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);

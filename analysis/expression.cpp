@@ -29,8 +29,8 @@ bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Splits a text into numbers, names and other single characters, without spaces. The end of a text
-/// that is too long is left out, because std::regex recurses for each character.
+/// Splits a text into numbers, names and other single characters, without spaces. A text that is
+/// too long is truncated, because std::regex recurses for each character.
 std::vector<std::string> tokens_of(std::string_view text) {
   text = text.substr(0, longest_expression + 1);
   static const std::regex token("[0-9.][0-9.]*(?:[eE][-+]?[0-9]*)?|[A-Za-z_][A-Za-z_0-9]*|[^ ]");
@@ -72,7 +72,7 @@ std::vector<std::string> names_in(std::string_view text) {
 
 std::string expression_syntax() {
   return fmt::format(
-      "An expression takes numbers, names, + - * / ^ ( ), pi, and the functions {} and {}.",
+      "An expression may contain numbers, names, + - * / ^ ( ), pi, and the functions {} and {}.",
       fmt::join(expression_functions.begin(), expression_functions.end() - 1, ", "),
       expression_functions.back());
 }

@@ -24,7 +24,6 @@ std::string expression_syntax();
 /// or has more than 200 bytes is an error.
 std::string wrong_in_expression(const std::string& text);
 
-/// Returns the number that a name stands for.
 using ValueOf = std::function<double(const std::string& name)>;
 
 /// Makes an evaluator for a name or an expression that wrong_in_expression() accepts. The result is

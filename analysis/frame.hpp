@@ -21,21 +21,19 @@
 
 namespace shearcell {
 
-/// A checkpoint with its measures.
 struct CheckpointMeasures : CheckpointRecord {
   Measures measures = {};
-  /// Names of providers without a result, since this or an earlier checkpoint could not be read.
+  /// Providers that have no result because this or an earlier checkpoint could not be read.
   std::vector<std::string> lacking = {};
 };
 
-/// A run with its measured checkpoints.
 struct FrameRun : Run {
   /// Id of the stage that settled the packing, or SHA-256 of the file that the packing was read
   /// from; "" if there is neither.
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far, even if the frame lacks this checkpoint
+  double end = 0;  ///< last cycle of the run so far; the frame may lack a checkpoint there
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -44,13 +42,14 @@ using RunGroup = std::span<const FrameRun* const>;
 
 struct Frame {
   std::vector<FrameRun> runs;
-  /// Swept values of all variants of the experiments at this scale, also of variants without runs.
+  /// Swept values of all variants of the experiments at this scale, also if a variant has no runs.
   /// They determine the colours of variants. If empty, the variants of `runs` are used.
   std::vector<nlohmann::json> variants;
   /// Planned runs that have not ended. Only their places and parameters are set.
   std::vector<FrameRun> pending = {};
-  /// Seeds of the experiments at this scale, in order. A planned look is stated as a number of
-  /// seeds. Without seeds, each claim is decided from all runs in the frame.
+  /// Seeds of the experiments at this scale, in order. A planned look (an interim analysis) is
+  /// given by the number of seeds that it includes. Without seeds, all runs in the frame decide
+  /// each claim.
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::size_t> looks = {};
 
@@ -114,10 +113,10 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 
 /// Whether the parameters of the run match `where`, such as {"fluid": "still", "amplitude_rad":
 /// [0.04, 0.05], "grains": {"min": 6000}}. A list matches any of its values. A range has `min`,
-/// `max` or both. Numbers match within a relative 1e-6, since a manifest may round them.
+/// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
-/// The runs whose parameters match `where`. Runs that `run --engine` added are left out if the
-/// other runs belong to one variant.
+/// The runs whose parameters match `where`. If these are runs of one variant and runs that
+/// `run --engine` added, the added runs are left out.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.
@@ -127,7 +126,6 @@ std::vector<const FrameRun*> pointers(std::span<const FrameRun> runs);
 /// Groups runs by a parameter, ascending. Runs whose parameter is not a number are left out.
 std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun> runs,
                                                        const std::string& parameter);
-/// The number of variants among the runs.
 std::size_t count_variants(RunGroup runs);
 
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
@@ -136,8 +134,8 @@ const std::string& packing_of(const FrameRun& run);
 /// Groups the runs by packing_of(), in the order of `group`.
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
 PackingGroups by_packing(RunGroup group);
-/// For each packing the mean of the values of its runs. `values` has one value for each run; values
-/// that are not finite are left out. Packings are in the order of the runs.
+/// Returns, for each packing, the mean of the values of its runs. `values` has one value for each
+/// run. Values that are not finite are left out. Packings are in the order of the runs.
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// Mean over runs of the measure at the first checkpoint of each run; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
@@ -145,19 +143,18 @@ double at_start(RunGroup runs, const std::string& measure);
 /// Writes parameters and their values as a text such as "fluid=still, walls=rough".
 std::string words_of(const nlohmann::json& values);
 
-/// Reduces `keys` to the keys that are needed to distinguish all variants. Of keys that change
-/// together only the first is returned. `variants` are objects of swept keys and values.
+/// Reduces `keys` to the keys that are needed to distinguish all variants. If several keys
+/// change together, only the first is kept. `variants` are objects of swept keys and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
 /// The swept keys that distinguish the variants, by keys_telling_apart(). If `first` and other keys
 /// change together, `first` is returned.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
-/// The swept keys that distinguish the variants of the runs.
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
-/// A plot draws one curve for each combination of values of `keys`. Returns a swept key over whose
-/// values a curve would average; "" if there is none.
+/// A plot draws one curve for each combination of values of `keys`. If a curve would average over
+/// the values of another swept key, returns this key, else "".
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
 /// Throws UsageError if averaged_key() finds a key. A key that changes together with `keys` is
 /// allowed. The message ends with `remedy`.

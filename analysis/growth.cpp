@@ -15,7 +15,7 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess of growing crystallites, and the excess summed over this size and larger ones.
+/// the excess of growing crystallites, and the excess summed from the size of the row upwards.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -113,12 +113,12 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   }
   struct Outcome {
     std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
-    std::int32_t most = 0;                           // grains in the crystallite `end`
-    std::size_t end = 0;                             // later crystallite with most of the grains
+    std::int32_t most = 0;                           // grains shared with crystallite `end`
+    std::size_t end = 0;                             // later crystallite with most shared grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {
-    std::int32_t most = 0, size = 0;  // shared grains and size of the main earlier crystallite
+    std::int32_t most = 0, size = 0;  // shared grains, and size of the main earlier crystallite
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {

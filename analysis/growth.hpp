@@ -19,10 +19,10 @@ namespace shearcell {
 /// counted if, for example, most of its grains are in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Like `grew`, but most grains of the larger crystallite come from another, larger crystallite.
+  /// Like `grew`, but the later crystallite has most grains from a larger earlier crystallite.
   std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
-  std::size_t vanished = 0;  ///< not `shrank`; more than half are in smaller ones or in none
+  std::size_t vanished = 0;  ///< like `shrank`, but including grains in no crystallite
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
   std::size_t smaller() const { return shrank + vanished; }  ///< "shrinking" in the supplement
@@ -45,8 +45,9 @@ struct GrowthRate {
   double size = 0;  ///< geometric mean size of the crystallites in the bin [grains]
   GrowthCount count;
   double delta = 0;
-  /// The larger of two standard errors: the bootstrap error over runs and, for n = larger + smaller
-  /// independent crystallites, 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2).
+  /// The larger of two standard errors: the bootstrap error over runs, and the error
+  /// 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2) for independent crystallites, where
+  /// n = larger + smaller.
   double delta_error = 0;
 };
 
@@ -76,12 +77,12 @@ class GrowthCurve {
 
   /// The size at which delta_rho rises through zero. If there are several such sizes, it is the one
   /// above which the excess of growing over shrinking crystallites is largest. Empty for fewer than
-  /// least_bootstrap_runs, or without such a size. The interval comes from the bootstrap. An end is
-  /// infinite if in too many bootstrap selections all sizes grow or no size grows.
+  /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
+  /// An end is infinite if all sizes grow, or no size grows, in too many bootstrap selections.
   std::optional<Estimate> critical_size() const;
   /// The size for which the excess of growing over shrinking crystallites of this size and above is
   /// largest. There the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer
-  /// et al., Ann. Math. Stat. 26, 641 (1955)). This checks critical_size(), with a larger error.
+  /// et al., Ann. Math. Stat. 26, 641 (1955)). A less precise check of critical_size().
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

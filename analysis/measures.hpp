@@ -2,8 +2,8 @@
 // Measures by name, for tables, plots, claims, exports, the report and Python.
 //
 // A provider is one function that computes some measures of a checkpoint or of a whole run. To add
-// measures, write a provider in the file that computes them, and add it to the providers of this
-// file; measures.cpp lists these files. Figures and pages may name the single measures they need.
+// measures, write a provider in the file that computes them, and add it to the list of providers
+// in the same file; measures.cpp joins these lists. Figures and pages may refer to single measures.
 #pragma once
 
 #include <cstddef>
@@ -69,10 +69,10 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< for a measure of each grain
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// The name in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
+  /// The name used in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
-  bool waits = false;           ///< cycle of an event; a run may end before the event
+  bool waits = false;           ///< true for the cycle of an event; a run may end before it
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
@@ -95,7 +95,6 @@ struct RunFacts {
   double number(const char* key) const;
 };
 
-/// The input from which a provider computes measures of a checkpoint.
 struct MeasureInput {
   /// Analysis of the checkpoint's packing; may be null for a provider that simulates.
   const Analysis* analysis = nullptr;
@@ -132,8 +131,8 @@ struct Provider {
 
   /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Results of `record` and `history` are cheap to compute, and
-  /// measures of each grain would need more space than the checkpoint.
+  /// Whether results are stored. Results from `record` and `history` are not, since they are cheap
+  /// to compute. Measures of each grain are not, since they need more space than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
   /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.
@@ -144,9 +143,8 @@ struct Provider {
 std::span<const Provider> all_providers();
 /// The provider with this name, which must exist.
 const Provider& provider(std::string_view name);
-/// The names of the providers for which fits() is true.
 std::vector<std::string> provider_names(bool (*fits)(const Provider&));
-/// Provider of volume fractions and numbers of crystallites. Each measured frame has its results.
+/// Provider of volume fractions and numbers of crystallites, which every measured frame contains.
 inline constexpr const char* scalars_provider = "scalars";
 /// Provider of the computing time, which is read from the log (FrameRun::core_time_s).
 inline constexpr const char* cost_provider = "cost";

@@ -226,7 +226,7 @@ std::vector<Provider> mechanics_providers() {
              "interior grains with fewer than four contacts (rattlers), not counting contacts with "
              "rattlers"},
             {"coordination_without_rattlers", "1",
-             "contacts per interior grain that is not a rattler, without contacts with rattlers"},
+             "contacts per interior grain that is not a rattler, excluding contacts with rattlers"},
             {"force_bottom_x_N", "N", "x component of the force of the grains on the bottom wall"},
             {"force_bottom_y_N", "N", "y component of the force of the grains on the bottom wall"},
             {"force_top_x_N", "N", "x component of the force of the grains on the top wall"},

@@ -13,10 +13,10 @@ namespace shearcell {
 
 /// Units are made of the spring constant k and the mass m and diameter d of a grain;
 /// MechanicalUnits has their SI values. The stress of interior grains is positive in compression:
-/// sigma = 1/V sum_i sum_j f_ij (x) l_ij, with V the volume of their Voronoi cells and l_ij from
-/// the contact to the centre of grain i (Christoffersen, Mehrabadi, Nemat-Nasser, J. Appl. Mech.
-/// 48, 339 (1981)). sigma_xy is negative while the shear strain du_x/dy grows. Means over zero
-/// grains are NaN.
+/// sigma = 1/V sum_i sum_j f_ij (x) l_ij. V is the volume of the Voronoi cells of these grains, and
+/// l_ij points from the contact to the centre of grain i (Christoffersen, Mehrabadi, Nemat-Nasser,
+/// J. Appl. Mech. 48, 339 (1981)). sigma_xy is negative while the shear strain du_x/dy grows. Means
+/// over zero grains are NaN.
 struct Mechanics {
   Eigen::Matrix3d stress;  ///< from contacts [k/d]
   double pressure = 0;     ///< trace / 3 [k/d]
@@ -32,7 +32,7 @@ struct Mechanics {
   double coordination_without_rattlers = 0;
   /// x and y components of the force of all grains on each wall, columns by WallSide [k d].
   Eigen::Matrix<double, 2, 4, Eigen::DontAlign> wall_force;
-  double elastic_energy = 0;  ///< of all contacts, also with walls, per grain [k d^2]
+  double elastic_energy = 0;  ///< of all contacts, including walls, per grain [k d^2]
   double kinetic_energy = 0;  ///< per grain, half a time step before the checkpoint [m d^2/s^2]
   double height = 0;          ///< mean height of grains above the plane of the bottom wall [d]
   /// Pressure of each grain [k/d]: the trace of f (x) l, summed over its contacts with grains and
@@ -44,7 +44,6 @@ struct Mechanics {
 Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_volume,
                     std::span<const std::uint8_t> interior);
 
-/// SI values of the units of Mechanics.
 struct MechanicalUnits {
   double stress_Pa;          ///< k/d
   double kinetic_stress_Pa;  ///< m/(d s^2)

@@ -26,9 +26,9 @@ struct Motion {
   /// Displacement in the frame of the tilted walls [d], with x - (y - y_top) tan(theta) in place of
   /// x. Affine shear of the whole cell displaces no grain.
   Eigen::Matrix3Xd displacement;
-  /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998), as a mean over the neighbours at the
-  /// earlier time [d^2]: their squared relative motion without the best affine deformation. NaN for
-  /// a grain with fewer than four neighbours, or with all neighbours in one plane.
+  /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998) [d^2]: the mean, over the neighbours
+  /// at the earlier time, of the squared relative motion that remains after the best affine
+  /// deformation is subtracted. NaN if there are fewer than four neighbours or all lie in a plane.
   std::vector<double> nonaffine;
 
   double square(std::size_t grain) const {  ///< squared displacement [d^2]
@@ -69,7 +69,6 @@ struct Neighbours {
   }
 };
 
-/// Throws AnalysisError if the checkpoints have different numbers of grains.
 Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   if (earlier.state.position.cols() != later.state.position.cols()) {
     throw AnalysisError("two checkpoints of one run have different numbers of grains");

@@ -46,20 +46,20 @@ struct Share {
 
 using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
-/// 1 / variance of the normal priors on the terms of ln c. The priors of the linear and quadratic
-/// terms have standard deviations of 3 and 0.5 (runs have about 1 and 0.1), so that the likelihood
-/// of a few events has a maximum. [choice]
+/// 1 / variance of the normal priors on the coefficients of ln c. The standard deviation is 3 for
+/// the linear term and 0.5 for the quadratic term. Fits give coefficients of about 1 and 0.1. With
+/// these priors the likelihood has a maximum even for a few events. [choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
   double logarithm = 0;    ///< up to a constant
-  double score = 0;        ///< derivative of `logarithm` by the exponent; falls with the exponent
-  double information = 0;  ///< minus the derivative of the score
+  double score = 0;        ///< d logarithm / d exponent; decreases as the exponent grows
+  double information = 0;  ///< -d score / d exponent
   std::map<std::string, double> score_of;  ///< score of each packing
 };
 
-/// Adds the log-likelihood of one amplitude, maximized over the terms of ln c. It is concave in
-/// these terms. Newton's method halves a step that would lower the log-likelihood.
+/// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c. It is
+/// concave in them. Newton's method halves a step that would lower the log-likelihood.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {
@@ -81,7 +81,7 @@ void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihoo
     return all;
   };
   Eigen::Matrix3d curvature;
-  Eigen::Vector3d slope, with_size;  // with_size: mixed second derivatives by c and the exponent
+  Eigen::Vector3d slope, with_size;  // with_size: -d^2(ln L) / (dc d exponent)
   double reached = logarithm();
   double moved = 1;
   for (int step = 0; step < 100 && moved > 1e-9; ++step) {
@@ -118,9 +118,9 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. For some event there must be a larger cell
-/// at the same amplitude and about the same phi, and for some event a smaller cell. Cells are
-/// compared by N, since the number of interior grains differs slightly between seeds of one N.
+/// Whether the runs show how the rate depends on size. There must be a larger cell and a smaller
+/// cell, each at the amplitude and about the phi of at least one event. Cells are compared by N,
+/// since the number of interior grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {
@@ -136,7 +136,7 @@ bool is_bounded(const Shares& amplitudes) {
   return larger && smaller;
 }
 
-/// Factor for the allowed drop of the log-likelihood if runs share a packing; at least 1.
+/// Ratio of the variance of the score between packings to that of independent runs, at least 1.
 double variance_between_packings(const Likelihood& at) {
   double squares = 0;
   for (const auto& [packing, score] : at.score_of) squares += score * score;

@@ -2,7 +2,7 @@
 // Where in the cell nuclei appear (supplement E), and how often: events per grain and cycle against
 // phi, and how this rate grows with the number of grains. The supplement does not give the rate.
 // The rate tests whether nucleation is homogeneous: nucleation in the bulk is proportional to the
-// volume, nucleation at walls to their area.
+// volume, and nucleation at walls is proportional to the area of the walls.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,8 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
-/// begins d outside the left plane, in units of width + 2 d. y begins at the bottom plane, in units
-/// of the height. Positions are in [0, 1], but above 1 in cells higher than 1.675 L. [choice]
+/// is 0 at 1 d outside the left plane, and its unit is width + 2 d. y is 0 at the bottom plane, and
+/// its unit is the height. Positions are in [0, 1], but `y_nominal` can exceed 1. [choice]
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
@@ -78,13 +78,14 @@ inline constexpr double rate_step = 0.0005;
 
 /// Maximum-likelihood estimate of the exponent a in rate = c(amplitude, phi) n^a, where n is the
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
-/// each amplitude. The interval comes from the profile likelihood, since a run has at most one
-/// event (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). If runs share a packing, the
-/// interval allows a larger drop of the log-likelihood. The drop is multiplied by the ratio of the
-/// variance of the score between packings to the variance between independent runs, if the ratio is
-/// above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129 (2011)). Empty for fewer than
-/// least_runs packings. Also empty unless, for some event, a larger cell (more grains N) had about
-/// the same phi, and for some event a smaller cell.
+/// each amplitude. Since a run has at most one event, the interval comes from the profile
+/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It holds the exponents for
+/// which the log-likelihood is within a limit of its maximum. If runs share a packing, the
+/// limit is multiplied by the ratio of the variance of the score between packings to that of
+/// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
+/// (2011)). Empty for fewer than least_runs packings. Also empty unless a larger cell (more grains
+/// N) and a smaller cell were observed, each at the amplitude and about the phi of at least one
+/// event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -124,7 +124,7 @@ std::vector<Provider> onset_providers() {
             of_run("onset_slope_cycle",
                    "cycle of the onset by method 2, where the logarithm of the size of the largest "
                    "crystallite rises most steeply with phi",
-                   at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by its slope"),
+                   at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by method 2"),
             of_run("onset_slope_phi", "volume fraction at the onset by method 2",
                    at_onset<onset_by_slope, &R::phi>, "phi at the onset")},
        .from = ComputedFrom::history}};

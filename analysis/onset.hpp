@@ -26,9 +26,10 @@ struct RunOnset {
   double cycle = 0;  ///< of the onset; if `never`, of the last checkpoint
 };
 
-/// Method 1: the first time at which the largest crystallite has the critical size. phi and cycle
-/// are interpolated linearly in the size between this checkpoint and the previous one. A run that
-/// begins with a critical crystallite is `before_start`.
+/// Method 1: the time at which the largest crystallite first has the critical size. phi and cycle
+/// are interpolated linearly in the size, between the first checkpoint with at least the critical
+/// size and the checkpoint before it. A run that begins with a critical crystallite is
+/// `before_start`.
 RunOnset onset_by_size(const FrameRun& run);
 
 /// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi

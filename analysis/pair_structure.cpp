@@ -31,9 +31,10 @@ Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
   return found;
 }
 
-// Volume of the set of pairs (r, r + s) with both ends in the region and from <= |s| < to [d^6].
-// The set covariance of the region (width W, height H, depth D), averaged over directions n of s,
-// is D <(W - |s| |a n|)(H - |s| |b n|)>, with a = (1, -tan theta, 0) and b = (0, 1, 0).
+// Volume of the set of pairs (r, r + s) for which r and r + s are in the region and |s| is in the
+// range [from, to) [d^6]. The set covariance of the region (width W, height H, depth D), averaged
+// over the directions n of s, is D <(W - |s| |a n|)(H - |s| |b n|)>. Here a = (1, -tan theta, 0)
+// and b = (0, 1, 0).
 double pair_volume(const InteriorRegion& region, double from, double to) {
   const double a = std::sqrt(1 + region.tan_theta * region.tan_theta);
   const double cosine = -region.tan_theta / a;
@@ -108,7 +109,8 @@ WaveVector largest_components(const InteriorRegion& region) {
 
 constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
-// Calls visit(bin, n) for one of each pair k, -k with |k| < largest_wave_per_d, in lexical order.
+// Calls visit(bin, n) for wave vectors k with |k| < largest_wave_per_d, in lexical order. n are the
+// components of k. Only one of k and -k is visited.
 template <class Visit>
 void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
                           const Visit& visit) {
@@ -162,7 +164,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
-  // For a packing the sum is at most a third of this limit. A forged cell may be far larger.
+  // In a packing the sum of `most` is at most a third of this limit. In a manipulated file the cell
+  // may be far larger.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;
@@ -183,8 +186,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
     ++taken[bin];
     sums.push_back({bin, n, {}});
   });
-  // If the number of sites is odd, the last block has one site. It is added to the total of both
-  // sums.
+  // If the number of sites is odd, the last block has one site. The sums over even and odd indices
+  // are combined before this block is added.
   for (Eigen::Index from = 0, size = 0; from < sites.cols(); from += size) {
     size = std::min(kBlock, sites.cols() - from);
     if (size > 1) size -= size % 2;

@@ -10,8 +10,8 @@
 
 namespace shearcell {
 
-/// Table I: parameters of all simulations, unless a section of the supplement varies them. omega is
-/// pi rad/s.
+/// Table I: parameters of all simulations, except for those that a section of the supplement
+/// varies. omega is pi rad/s.
 inline constexpr double published_mass_kg = 2.0e-5;
 inline constexpr double published_diameter_m = 3.0e-3;
 inline constexpr double published_stiffness_N_per_m = 6.54e2;
@@ -21,12 +21,12 @@ inline constexpr double published_period_s = 2;
 inline constexpr double published_steps_per_cycle = 45600;
 inline constexpr double published_gravity_m_per_s2 = 9.81;
 
-/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used. [choice]
+/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [choice]
 struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;                ///< grains
   std::int64_t n_bin;                  ///< cycles over which a crystallite is followed
-  const char* cannot_be_decided = "";  ///< Claim::cannot_be_decided of the critical size
+  const char* cannot_be_decided = "";  ///< why the claim about critical_size cannot be decided
 };
 inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.04, 10, 300}, PublishedAmplitude{0.05, 10, 300},
@@ -40,13 +40,13 @@ inline constexpr std::array published_amplitudes = {
         "our size, 25.3 grains in 40 runs, is at the upper edge of the margin, 25 "
         "grains, and in 8 runs, about as many as the supplement has, it scatters over "
         "both sides of the edge"}};
-/// Claim::cannot_be_decided of the growth of the critical size with A.
+/// Why the claim that the critical size grows with A cannot be decided.
 inline constexpr const char* growth_cannot_be_decided =
     "whether the size grows with A depends on the cycles that crystallites are followed: followed "
     "over one cycle it grows, over 20 it falls, and over 5 the ratio is near 1, the edge of the "
     "claim";
 
-/// The published amplitude nearest to `amplitude_rad`, whose numbers are then used. [choice]
+/// Returns the published amplitude nearest to `amplitude_rad`. Its numbers are used. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);
@@ -60,9 +60,9 @@ inline constexpr double published_onset_phi = 0.646;
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
-// Margins: two results agree if they differ by less than the margin. Margins of computed figures
-// are stated here, before the runs are made; all others are stated in manifests. The uncertainty of
-// a published critical size is part of the interval, not of the margin (README.md).
+// Margins: two results agree if they differ by less than the margin. Margins of figures that C++
+// code computes are stated here, before the runs are made. Manifests state all other margins. The
+// uncertainty of a published critical size is part of the interval, not of the margin (README.md).
 
 /// Margin of the critical size, relative to the published size. Published sizes of neighbouring
 /// amplitudes differ by a quarter.

@@ -72,7 +72,7 @@ std::vector<Provider> run_providers() {
       {.name = "drive",
        .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
                     {"shear_rate_per_s", "1/s",
-                     "rate of change of shear_strain; after a pause, rate of the next shear"}},
+                     "rate of change of shear_strain; after a pause, the rate of the next shear"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
       // protocols/ledger.hpp defines the energy balance.
@@ -91,7 +91,7 @@ std::vector<Provider> run_providers() {
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
        .cost = "3 to 4 times as long as the cycle"},
-      // Compares protocols whose checkpoints have different shear rates (protocols/rest.hpp).
+      // Makes checkpoints with different shear rates comparable (protocols/rest.hpp).
       {.name = "rest",
        .parameters = {{"rest_s", rest_s}},
        .measures = {{.name = "phi_at_rest",
@@ -120,9 +120,9 @@ std::vector<Provider> run_providers() {
        .measures = {{.name = "core_time_s",
                      .unit = "s",
                      .meaning = "processor time of all steps of the run, over all attempts and "
-                                "machines, without its packing. A run counts in full for each "
-                                "experiment that shares it. If it was not recorded, it is "
-                                "wall-clock time times the number of processes",
+                                "machines, without the time to make the packing. Each experiment "
+                                "that shares a run counts the full time. If no processor time was "
+                                "recorded, wall-clock time times the number of processes is used",
                      .kind = MeasureKind::run,
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",

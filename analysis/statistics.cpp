@@ -44,8 +44,8 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
   return values;
 }
 
-/// The interval without the fraction `tail` of the selections at each end. Selections without a
-/// value widen the interval at both ends.
+/// The interval that leaves out the fraction `tail` of the selections at each end. Selections
+/// without a value widen the interval at both ends.
 Interval percentiles(std::vector<double> values, double tail) {
   const std::size_t missing = bootstrap_selections - values.size();
   values.insert(values.end(), missing, infinite);
@@ -55,7 +55,7 @@ Interval percentiles(std::vector<double> values, double tail) {
           values[bootstrap_selections - 1 - out]};
 }
 
-/// Runs that still wait just before `cycle`, and events at `cycle`.
+/// Number of runs that still wait just before `cycle`, and number of events at `cycle`.
 struct AtRisk {
   double waiting = 0;
   double events = 0;
@@ -227,7 +227,7 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
 }
 
 Estimate ratio(const Estimate& a, const Estimate& b) {
-  const auto log_factor = [](double high, double low) {  // a negative lower end gives infinity
+  const auto log_factor = [](double high, double low) {  // infinite if low is not positive
     return std::log(std::max(high, 0.0) / std::max(low, 0.0));
   };
   const double value = a.value / b.value;

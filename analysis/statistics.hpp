@@ -22,20 +22,20 @@ struct RunStatistics {
 /// Statistics of one value per run. Values that are not finite are not counted.
 RunStatistics over_runs(std::span<const double> values);
 
-/// `mean` is the root mean square. Its error is the error of the mean square over twice the root.
+/// `mean` is the root mean square (rms). Its error is the error of the mean square / (2 rms).
 RunStatistics rms_over_runs(std::span<const double> values);
 
 /// Slope of the least-squares line of y against x; NaN if all x are equal.
 double least_squares_slope(std::span<const std::pair<double, double>> points);
 
 /// Computes a number from a selection of runs, in which a run may occur several times; NaN if the
-/// selection has no such number. The bootstrap draws 1000 selections with replacement. Its
-/// generator is counter-based, so the same input gives the same values.
+/// selection has no such number. The bootstrap draws 1000 selections with replacement. The
+/// random numbers are counter-based, so the same input gives the same values.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
-/// Standard error of a statistic: its standard deviation over the selections times the root of runs
-/// / (runs - 1). For a mean it agrees with over_runs(). Empty for fewer than two runs, or if fewer
-/// than half of the selections have a finite value.
+/// Standard error of a statistic: its standard deviation over the selections, multiplied by
+/// sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer than two runs,
+/// or if fewer than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
 /// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
@@ -46,11 +46,10 @@ inline constexpr double confidence_level = 0.9;
 /// Minimum number of runs, or of pairs of runs, for an estimate. [choice]
 inline constexpr std::size_t least_runs = 3;
 /// Minimum number of runs for the bootstrap. A bootstrap interval of a mean lies between the
-/// smallest and the largest value. These enclose the median with a probability of 1 - 2^(1 - runs):
-/// 75 % for 3 runs, 94 % for 5.
+/// smallest and the largest value. These two values enclose the median with a probability of
+/// 1 - 2^(1 - runs): 75 % for 3 runs, 94 % for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
 
-/// Stands for an end of an interval that has no bound.
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 struct Interval {
@@ -109,23 +108,24 @@ struct SpreadBetween {
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
-/// MSB and MSW are the mean squares between and within groups. n0 is their effective size. F(k - 1,
-/// n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two groups with
-/// values, or if no group has two values.
+/// MSB and MSW are the mean squares between and within groups. n0 is the effective group size.
+/// F(k - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two
+/// groups with values, or if no group has two values.
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
-/// Ratio a / b of two independent estimates of positive quantities. At each end of the interval the
-/// errors of ln a and ln b that move the ratio to this end are added in quadrature: G. Y. Zou and
-/// A. Donner, Stat. Med. 27, 1693 (2008).
+/// Ratio a / b of two independent estimates of positive quantities. The lower error of ln(a / b) is
+/// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is
+/// computed from the other two errors: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
-/// Number of runs per group, or of pairs, for which an interval excludes a value at `distance` from
-/// the truth with 90 % probability. With `both_sides` it excludes the values on both sides of the
-/// truth. Normal theory, with Student's t for errors of both kinds: Chow, Shao and Wang, Sample
-/// Size Calculations in Clinical Research (2008), section 3.2. Empty if the number is more than
-/// 10000. The spread of a few runs is uncertain: the true number is 0.3 to 20 times the number
-/// found from 3 runs, and 0.5 to 4 times the number found from 6 runs.
+/// Number of runs per group, or of pairs, for which an interval excludes, with 90 % probability, a
+/// value that differs from the true value by `distance`. With `both_sides` the interval must
+/// exclude both values at this distance. A normal distribution is assumed, with Student's t for
+/// type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
+/// (2008), section 3.2. Empty if the number is more than 10000. The spread of a few runs is
+/// uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and 0.5 to 4 times
+/// the number found from 6 runs.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
@@ -147,8 +147,8 @@ struct SurvivalStep {
 /// Am. Stat. Assoc. 53, 457 (1958).
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
-/// The first cycle after which fewer than half of the runs still wait. If exactly half of the runs
-/// wait between two cycles, the middle of these cycles. Empty if more than half wait at the end.
+/// Returns the first cycle after which fewer than half of the runs still wait. If exactly half wait
+/// between two events, returns the mean of both cycles. Empty if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
 /// The log-rank statistic: the events of `a`, minus the events expected if both groups wait equally
@@ -157,11 +157,11 @@ std::optional<double> median_wait(std::span<const Waiting> runs);
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
 /// log2 of the factor by which `a` waits longer than `b`. If the waits of `b` are multiplied by
-/// this factor, the log-rank statistic vanishes. The interval holds all factors that the log-rank
+/// this factor, the log-rank statistic is zero. The interval holds all factors that the log-rank
 /// test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test uses Student's t with
 /// n + m - 2 degrees of freedom, since with the normal distribution only 86 to 88 % of the
 /// intervals from 4 to 12 runs per group would hold the true factor. The interval is infinite if
-/// too few events were observed. Empty for fewer than least_runs in a group, or without an event.
+/// too few events were observed. Empty if there is no event, or a group has fewer than least_runs.
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
                                         double level = confidence_level);
 

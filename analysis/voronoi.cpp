@@ -67,12 +67,13 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
 /// even if many sites share a plane or a sphere, and no bounded tetrahedron is flat. Circumcentres
 /// are computed in doubles if an error bound allows it, otherwise in exact arithmetic. Tetrahedra
-/// on one sphere thus have one centre, and the faces between them have no area except rounding.
+/// with the same circumsphere thus have the same centre, and faces between them have no area except
+/// for rounding errors.
 ///
 /// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
-/// meet in a circumcentre use the same coordinates and the same decision whether the circumcentre
-/// is inside a wall, so cells fit together without gaps. The polygon sides on a wall are the
-/// borders of the cells' faces on that wall.
+/// meet in a circumcentre use the same coordinates of the circumcentre and agree on whether it is
+/// inside a wall, so cells fit together without gaps. Polygon sides on a wall are the borders of
+/// the cells' faces on that wall.
 ///
 /// Eight guards at the corners of a large cube bound every cell. They are farther away in z than
 /// any image that a cell may need. So no cell that passes the test in measure() touches a guard.
@@ -104,9 +105,9 @@ class Tessellation {
   }
 
   /// The sphere around a corner of a cell passes through the site of the cell. A cell is correct if
-  /// the spheres around all its corners lie within the margin. More images only make cells smaller,
-  /// so the reach of the spheres is a sufficient margin. A guard may make the reach far too large,
-  /// so each pass at most doubles the margin.
+  /// the spheres around all its corners lie within the margin. Additional images can only make
+  /// cells smaller, so a margin equal to the present reach of the spheres is sufficient. A guard
+  /// may make the reach far too large, so each pass at most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
@@ -123,8 +124,8 @@ class Tessellation {
     std::int32_t value = -1;
   };
   using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Number, Kernel>;
-  // CGAL's cell stores only a number, which fits into the padding of the cell. With the
-  // circumcentre in the cell, the computation would take a tenth longer.
+  // CGAL's tetrahedra store only a number, which fits into their padding. If they also stored the
+  // circumcentre, the computation would take 10 % longer.
   using CellBase =
       CGAL::Triangulation_cell_base_with_info_3<Number, Kernel,
                                                 CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
@@ -244,7 +245,7 @@ class Tessellation {
     const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
 
     // Forward error of Cramer's rule. The errors of numerator and determinant are a few roundoffs
-    // times the sum of the magnitudes of their terms; a count of the operations gives less than 32.
+    // (fewer than 32 by a count of the operations) times the sum of the magnitudes of their terms.
     constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
     const double radius = v.norm();
     const double la = std::sqrt(aa);
@@ -362,7 +363,7 @@ class Tessellation {
     return twice;
   }
 
-  /// Cuts off the part outside a wall (Sutherland and Hodgman, Commun. ACM 17, 32 (1974)).
+  /// Clips polygon_ at a wall (Sutherland and Hodgman, Commun. ACM 17, 32 (1974)).
   void clip(std::size_t wall) {
     clipped_.clear();
     for_each_side(polygon_, [&](const Corner& p, const Corner& q) {

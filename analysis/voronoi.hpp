@@ -14,7 +14,6 @@ namespace shearcell {
 
 enum class NeighbourKind : std::uint8_t { grain, wall_grain, wall_plane };
 
-/// One face of a grain's Voronoi cell.
 struct VoronoiFace {
   /// Vector from the grain to the periodic image of the neighbour across the face [d]. For a wall
   /// plane it ends at the grain's mirror image behind the plane.
