@@ -208,7 +208,7 @@ TEST_F(Faults, SomePointsLeaveNoTrace) {
 }
 
 TEST_F(Faults, SomePointsLeaveNothingOutWithCodeZero) {
-  sweep_output(31);
+  sweep_output(127);
 }
 
 // With the label `sweep`.
