@@ -36,16 +36,16 @@ void speed(bench::SpeedOptions& options, Context& context) {
   print_list("sizes", list_of(bench::measure_speed(options), facts), context);
   if (context.json) return;
   fmt::print(
-      "M/s: million particle-steps per second, median of {} timings. limit: the M/s that no kernel "
-      "can exceed.\nPercentages of one thread's time: search% builds the outer neighbour list, "
-      "prune% the inner neighbour list.\n",
+      "M/s: million particle-steps per second, median of {} timings. limit: upper limit of M/s for "
+      "any kernel.\nThe columns with % are shares of the time of one thread. search%: building the "
+      "outer neighbour lists. prune%: building the inner neighbour lists.\n",
       options.repeats);
 }
 
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure particle-steps per second in a sheared cell, and the time of each part of a step",
+      "Measure the speed in a sheared cell [particle-steps/s] and the share of each part of a step",
       speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();

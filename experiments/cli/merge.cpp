@@ -20,7 +20,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   for (const std::string& source : sources) {  // checks all sources before a store is created
     if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
       continue;
-    throw NotFound(fmt::format("'{}': there is no store here to merge", source));
+    throw NotFound(fmt::format("'{}': there is no store in this folder to merge", source));
   }
   Store store(context.store, Access::create);
   std::set<std::string> known = left_out(store);
@@ -51,7 +51,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     return print_json({{"merged", list_of(reports, facts)}, {"warnings", context.warnings}});
   }
   for (const MergeReport& report : reports) {
-    print_text("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
+    print_text("{}: merged {} new events (of {}) and {} new checkpoints ({})\n", report.source,
                report.events, report.head.seq, report.checkpoints,
                format_bytes(static_cast<double>(report.bytes)));
   }

@@ -67,7 +67,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage stage = store.stage(id);
-    // All experiments that share the run, since each of them loses the files of the run.
+    // Lists all experiments that share the run, since each experiment loses the files.
     std::set<std::string> experiments;
     for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
     // Files that an earlier `prune` recorded as pruned but did not delete before it was killed.
@@ -231,7 +231,7 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // Sorts parent stages first, then earlier steps: each state is recomputed from an earlier state.
+  // Parent stages and earlier steps come first: each state is recomputed from an earlier state.
   std::map<std::string, std::size_t> order;
   for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 // Slurm's default limit on the number of tasks of a job.
 constexpr std::size_t kMostTasks = 1000;
-// Slurm checks time limits every 30 s, so its warning may come this much earlier [s].
+// Slurm checks time limits only every 30 s, so its warning can be early by up to this time [s].
 constexpr double kWarningResolution = 30;
 
 struct SubmitOptions {
@@ -163,8 +163,8 @@ void check_time(const JobOptions& job) {
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
-        "--time", fmt::format("{} s leave no time to compute, since the warning comes up to {} s "
-                              "before the end; increase --time or reduce --warn",
+        "--time", fmt::format("a limit of {} s leaves no time to compute: a task may stop {} s "
+                              "before the limit; increase --time or reduce --warn",
                               *limit, needed));
   }
 }
@@ -223,10 +223,11 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->type_name("HH:MM:SS");
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
-  add_number(command, "--cpus-per-task,-c", job.cpus,
-             "Cores of each task; a task computes as many runs at a time as fit (default: one core "
-             "per run, at most 16)",
-             "C", 1, 1024);
+  add_number(
+      command, "--cpus-per-task,-c", job.cpus,
+      "Cores of each task; the number of runs that a task computes at a time follows from it "
+      "(default: one core per run, at most 16)",
+      "C", 1, 1024);
   add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command
       .add_option("--scratch", job.scratch,
@@ -235,8 +236,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->check(unfit_scratch)
       ->type_name("DIR");
   add_number(command, "--warn", job.warn_seconds,
-             "Time before the time limit [s] at which a task writes checkpoints and queues itself "
-             "again",
+             "How long before the time limit [s] a task writes checkpoints and queues itself again",
              "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")

@@ -65,7 +65,7 @@ void add_table(CLI::App& app, Context& context) {
   }
   command
       ->add_option("--curve", options->curve,
-                   "Write this curve, with one row for each of its points at each checkpoint")
+                   "Write this curve: for each checkpoint, one row for each point of the curve")
       ->check(CLI::IsMember(curves))
       ->excludes(per);
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")
