@@ -132,8 +132,7 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
       "KEY=V");
 }
 
-/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError for an invalid
-/// list.
+/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
 void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
   const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
   for (std::size_t begin = 0; begin <= list.size();) {
@@ -243,8 +242,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that each run comes after the run from which it starts. Manifests without
-// `start` come first, since a `start` can name a run by its id alone, without the experiment.
+// Sorts the manifests so that each run comes after the run from which it starts. Manifests that
+// start from no run come first, since a `start` can name a run by its id alone (no experiment).
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {

@@ -171,7 +171,6 @@ struct Fact {
 };
 using Facts = std::vector<Fact>;  ///< all values of one table row or one object
 
-/// The facts as one JSON object.
 nlohmann::json to_json(const Facts& facts);
 nlohmann::json to_json(const std::vector<Facts>& rows);
 

@@ -84,8 +84,7 @@ Check writing(const std::string& store, const fs::path& place) {
   const int file = mkstemp(name.data());
   if (file < 0) {
     return {"writing", fmt::format("not possible in {} ({})", place.string(), std::strerror(errno)),
-            "missing",
-            "a store cannot be written in this folder; name another folder with --store"};
+            "missing", "the program cannot write to this folder; name another with --store"};
   }
   constexpr int count = 10;
   const Stopwatch watch;
@@ -170,7 +169,7 @@ void add_doctor(CLI::App& app, Context& context) {
   command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (5 seconds)");
   add_common_options(
       *command, context,
-      "The exit code is 1 if no store can be written at the path given by --store.\n"
+      "The exit code is 1 if the program cannot write to the folder given by --store.\n"
       "Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
 }
 

@@ -93,9 +93,8 @@ CycleRange parse_cycles(const std::string& text) {
     }
     *values[k] = *value;
     if (range.last < range.first) {
-      throw std::invalid_argument(
-          fmt::format("--cycles {}: the first cycle is after the last cycle; write {}:{}", text,
-                      part, range.first));
+      throw std::invalid_argument(fmt::format(
+          "--cycles {}: the first cycle is after the last; write {}:{}", text, part, range.first));
     }
   }
   if (k == 1 && text.find(':') == std::string::npos) range.last = range.first;
@@ -206,11 +205,10 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
   return files_of(out);
 }
 
-/// Writes the run to `out` and returns the names of the files. `out` must not exist, unless
-/// it is an earlier crate of the run. A measure that needs an unreadable earlier checkpoint is
-/// written as NaN, and `unread` reports that checkpoint. Throws std::invalid_argument if the run
-/// cannot be exported, and FilePruned if the end of the run cannot be determined without a pruned
-/// checkpoint.
+/// Writes the run to `out` and returns the names of the files. `out` must not exist, unless it is
+/// an earlier crate of the run. A measure that needs an unreadable earlier checkpoint is NaN, and
+/// `unread` reports that checkpoint. Throws std::invalid_argument if the run cannot be exported,
+/// and FilePruned if the end of the run cannot be determined without a pruned checkpoint.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out, MeasureOutcome& unread) {
@@ -220,8 +218,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
     try {
       return write_records(store, run, records, format, options, out, unread);
     } catch (const FilePruned&) {
-      // Another program has just pruned a chosen checkpoint. The next attempt omits that
-      // checkpoint.
+      // Another program has just pruned a chosen checkpoint. The next attempt is without it.
       if (!fs::exists(out / kCrateMetadata)) fs::remove_all(out);
     }
   }
@@ -388,8 +385,7 @@ void add_export(CLI::App& app, Context& context) {
           "Only checkpoints of these cycles (default: all that the experiments request; not with "
           "ro-crate)")
       ->type_name("A[:B[:STEP]]");
-  command->add_flag("--metres", options->metres,
-                    "Write extended XYZ in SI units instead of diameters");
+  command->add_flag("--metres", options->metres, "Write extended XYZ in SI units, not diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);

@@ -128,10 +128,8 @@ void figures(FigureArguments& options, Context& context) {
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
-    throw NotFound(
-        fmt::format("no experiment of the store lists {}; choose an experiment with "
-                    "--experiment",
-                    fmt::join(options.names, " or ")));
+    throw NotFound(fmt::format("no experiment lists {}; choose an experiment with --experiment",
+                               fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) {
     print_stderr("{} lists a figure.\n", options.how.runs.experiments.empty()

@@ -142,9 +142,8 @@ std::string describe_extras(const CLI::App& app) {
   return words.empty() ? problem : with_nearest(problem, words.front(), names);
 }
 
-// Corrects settings inherited from the parent process. If a standard stream were closed, the next
-// opened file would get the descriptor of that stream. If SIGCHLD were ignored, waiting for a child
-// process would fail.
+// Corrects inherited settings. If a standard stream were closed, the next opened file would get the
+// descriptor of that stream. If SIGCHLD were ignored, waiting for a child process would fail.
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
@@ -163,15 +162,14 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname() is not used, since all subcommands would read the variable and replace
-  // --store.
+  // CLI11's envname() is not used, since each subcommand would replace --store by the variable.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
   app.formatter(std::make_shared<HelpFormatter>());  // set first, since new commands copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // 0, so that our error names an unknown command
+  app.require_subcommand(0, 1);  // 0: describe_extras() reports unknown commands
   for (const auto& [group, commands] : kCommands) {
     for (AddCommand* const add : commands) add(app, context);
     for (CLI::App* command : app.get_subcommands({})) {

@@ -97,7 +97,7 @@ can also be used in `until`. `critical_size` and all columns below it need `--pe
 std::string estimator_reference() {
   std::string text =
       "\n## Estimators\n\n"
-      "Values of `estimator` in a claim, and the key that the claim must then also have.\n\n"
+      "Values of `estimator` in a claim, and the other key that each value requires.\n\n"
       "| estimator | key | number |\n|---|---|---|\n";
   for (const Estimator& one : all_estimators()) {
     const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);

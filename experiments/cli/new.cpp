@@ -36,7 +36,7 @@ std::string commented(const std::string& text) {
   return lines + line + "\n";
 }
 
-/// Returns comment lines: the meaning of the key, then the key with its default value.
+/// Returns comment lines: the meaning of the key, and below it the key with its default value.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);

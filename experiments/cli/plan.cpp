@@ -31,7 +31,7 @@ std::string state_of(const Line& line) {
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
-// The most cycles that the stage can have when it is done.
+// Number of cycles of the completed stage, if no `until` ends it earlier.
 double cycles_of(const Line& line) {
   return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
@@ -87,14 +87,10 @@ void print_numerics(const std::vector<Line>& lines) {
 
 const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. This program settles the packings of all runs.",
-    "The results of LAMMPS and this program differ by rounding errors. The rounding errors of "
-    "LAMMPS "
-    "depend on its number of processes.",
-    "Runs by LAMMPS have other ids than runs by this program. verify --replay, regenerate and "
-    "prune "
-    "skip runs by LAMMPS.",
-    "In runs by LAMMPS, the watchdog checks only the checkpoints, not every 1024th step. These "
-    "runs "
+    "The results of LAMMPS differ from those of this program by rounding errors, which depend on "
+    "the number of processes.",
+    "Runs by LAMMPS have their own ids. verify --replay, regenerate and prune skip these runs.",
+    "In runs by LAMMPS, the watchdog checks only checkpoints, not every 1024th step. These runs "
     "fail if the centre of a grain reaches the plane of a wall."};
 
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
@@ -142,15 +138,14 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
           "{}: the next planned look (interim analysis) uses {} of {} seeds and needs {:.3g} more "
-          "particle-steps. The notes of each verdict state how likely this look is to decide the "
-          "claim",
+          "particle-steps. The notes of each verdict give its chance to decide the claim",
           plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
     }
   }
 }
 
 // Returns the particle-steps that are left if each run ends at the mean cycle at which its `until`
-// ended earlier runs. Null if no run has an `until`, or if one of them has not ended any run yet.
+// ended earlier runs. Null if no run has an `until`, or if an `until` has not ended any run yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected cycle of the end; cached, since expected_end() reads all runs
@@ -183,11 +178,10 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print(
-        "fewer particle-steps; the number can be estimated when this `until` has ended a run\n");
+    fmt::print("fewer particle-steps; an estimate needs a run that this `until` ended\n");
   } else {
     fmt::print(
-        "about {:.3g} particle-steps ({:.0f} %) if runs end when earlier runs ended, on average\n",
+        "about {:.3g} particle-steps ({:.0f} %) if runs end at the mean end of earlier runs\n",
         left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }

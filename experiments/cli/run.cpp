@@ -66,8 +66,7 @@ void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) t
                      ". `--variant engine=shearcell` computes only runs that do not need LAMMPS");
 }
 
-// Number of runs to compute at a time. By default, the threads or processes of the runs fill all
-// cores.
+// Number of runs to compute at a time. By default, all cores are used.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
@@ -129,8 +128,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
       fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
     }
     if (result.damaged > 0) {
-      fmt::print("{} stopped, since files in the store are damaged\n",
-                 counted(result.damaged, "stage"));
+      fmt::print("{} stopped by damaged files in the store\n", counted(result.damaged, "stage"));
     }
   }
   if (interrupted) {

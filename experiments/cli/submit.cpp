@@ -225,8 +225,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(
       command, "--cpus-per-task,-c", job.cpus,
-      "Cores of each task; the number of runs that a task computes at a time follows from it "
-      "(default: one core per run, at most 16)",
+      "Cores of each task, which limit the number of runs that it computes at a time (default: one "
+      "core per run, at most 16)",
       "C", 1, 1024);
   add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command

@@ -127,7 +127,7 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
   }
   EXPECT_TRUE(listing().empty()) << "it left something behind";
   const Outcome nowhere = expect(1, {"doctor", "--no-speed", "--store", "/proc/x"},
-                                 {"a store cannot be written in this folder"});
+                                 {"the program cannot write to this folder"});
   EXPECT_FALSE(has(nowhere.out, "room for"));
   write("plain", "");
   expect(1, {"doctor", "--no-speed", "--store", "plain"}, {"plain is a file"});
@@ -234,7 +234,7 @@ TEST_F(Convenience, ExportsTheRequestedCycles) {
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "99"},
                  {"shearcell: run ", " has no stored checkpoint in cycles 99"});
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "20:0"},
-                 {"--cycles 20:0: the first cycle is after the last cycle; write 0:20"});
+                 {"--cycles 20:0: the first cycle is after the last; write 0:20"});
   for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
                                  "h5md --license https://x.org"}) {
     expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),
