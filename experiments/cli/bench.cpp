@@ -45,11 +45,10 @@ void speed(bench::SpeedOptions& options, Context& context) {
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure the speed in a sheared cell [particle-steps/s] and the share of each part of a step",
-      speed);
+      "Measure the speed in a sheared cell, and the share of time of each part of a step", speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
-  add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024)
+  add_number(*command, "--threads", options->threads, "Numbers of threads in one run", "T", 1, 1024)
       ->capture_default_str();
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)

@@ -84,7 +84,7 @@ bool is_stdout(const std::string& out) {
 bool is_stream(const std::string& out) {
   std::error_code missing;
   const std::filesystem::file_type type = std::filesystem::status(out, missing).type();
-  // Accepts only pipes made by the shell, such as `>(gzip)`. Opening others waits for a reader.
+  // Accepts pipes of the shell, such as `>(gzip)`. Opening other pipes would wait for a reader.
   const bool pipe = type == std::filesystem::file_type::fifo && out.starts_with("/dev/fd/");
   return is_stdout(out) || pipe || type == std::filesystem::file_type::character;
 }
@@ -127,8 +127,8 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(
       command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or with this label from `status`. With "
-      "several values, a run must have one of the given values of each given key",
+      "Only runs with this swept value, such as fluid=cell, or with this label from `status`. If "
+      "this option is repeated, a run must have, for each key, one of the given values",
       "KEY=V");
 }
 
@@ -242,8 +242,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that each run comes after the run from which it starts. Manifests that
-// start from no run come first, since a `start` can name a run by its id alone (no experiment).
+// Sorts the manifests so that each run comes after the run from which it starts. A `start` need
+// not name the experiment of that run, so manifests that start from no run come first.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -266,8 +266,8 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   }
 }
 
-// Warns if figures will omit runs of the store. If several versions of a manifest have runs at the
-// scale, figures show only the newest version.
+// Warns if figures will omit runs of the store when this plan has been run, since figures show only
+// the runs of the newest manifest of each experiment and scale.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;

@@ -42,7 +42,7 @@ struct Context {
 /// Prints a warning to standard error and appends it to `context.warnings` for JSON output.
 void warn(Context& context, const std::string& warning);
 
-/// Sets the exit code, unless it is already more serious. Most serious first: 4, 3, 2, 1, 85.
+/// Sets the exit code unless a more serious code is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
 
 /// Opens the store for reading. Returns nothing if the folder does not exist or is empty.
@@ -128,7 +128,6 @@ std::string unfit(const std::string& text, Number low, Number high);
 template <class Value>
 using NumberOf = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
 
-/// Adds an option that takes a number from `low` to `high`.
 template <class Value>
 CLI::Option* add_number(CLI::App& command, const std::string& names, Value& value,
                         const std::string& help, const std::string& type_name = "N",
@@ -150,7 +149,6 @@ void add_engine_option(CLI::App& command, ExpandOptions& options);
 /// Returns the folder of the store if it exists, else its nearest parent folder that exists.
 std::filesystem::path existing_folder(const std::string& store);
 
-/// Prints one JSON value, indented by two spaces.
 void print_json(const nlohmann::json& facts);
 
 auto list_of(const auto& items, const auto& facts) {

@@ -101,8 +101,8 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// Returns what experiments request from this run (cycles, `until`, checkpoints): all experiments if
-// the user named the run by its id, else only the selected experiments.
+// Returns the requests (cycles, `until`, checkpoints) of experiments for this run: of all
+// experiments if the user named the run by its id, else only of the selected experiments.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
@@ -218,7 +218,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
     try {
       return write_records(store, run, records, format, options, out, unread);
     } catch (const FilePruned&) {
-      // Another program has just pruned a chosen checkpoint. The next attempt is without it.
+      // Another program has just pruned a chosen checkpoint. Retries without this checkpoint.
       if (!fs::exists(out / kCrateMetadata)) fs::remove_all(out);
     }
   }
@@ -261,7 +261,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   return runs;
 }
 
-/// Name of a run's file in the folder PATH, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
+/// Name of a run's file or folder in PATH, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   const Place place = shown_place(run);
   std::string name =
@@ -279,7 +279,7 @@ std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
 
 struct Exported {
   std::string run;  ///< id of the run
-  fs::path out;     ///< PATH, or the file or folder of the run in PATH
+  fs::path out;     ///< where the run was written: PATH, or a file or folder in PATH
   std::vector<std::string> files;
 };
 
@@ -363,7 +363,7 @@ void add_export(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
-      "run", options->runs, "Run ids, or unique beginnings of run ids (default: all selected)");
+      "run", options->runs, "Run ids, or unique beginnings of run ids (default: selected runs)");
   add_selection_options(*command, options->selection);
   for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));

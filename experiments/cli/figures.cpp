@@ -107,7 +107,7 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
       };
       if (std::ranges::any_of(said, is_it)) continue;
       print_stderr("warning: {}: {}\n", experiment,
-                   with_nearest(fmt::format("primary: no claim is '{}'", claim), claim, said));
+                   with_nearest(fmt::format("primary: unknown claim '{}'", claim), claim, said));
     }
   }
 }

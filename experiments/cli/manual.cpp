@@ -145,7 +145,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   return text;
 }
 
-/// The text of experiments/REFERENCE.md. The test docs.reference compares text and file.
+/// The text of experiments/REFERENCE.md. The test docs.reference compares the text with this file.
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"

@@ -71,7 +71,7 @@ void add_merge(CLI::App& app, Context& context) {
 two stores record different states of one run at the same step. The sources do not change, and
 merging a source again has no effect. If the stores have different versions of a manifest, figures
 show the version that was registered last, and this command names the runs that figures leave out.
-To show all runs, run one manifest that lists the runs of both; only missing runs are computed.
+To show all runs, run one manifest that lists all of them; only missing runs are computed.
 Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
 values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:

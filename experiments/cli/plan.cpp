@@ -138,7 +138,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
           "{}: the next planned look (interim analysis) uses {} of {} seeds and needs {:.3g} more "
-          "particle-steps. The notes of each verdict give its chance to decide the claim",
+          "particle-steps. The notes of a verdict say how likely this look is to decide the claim",
           plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
     }
   }
@@ -148,7 +148,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
 // ended earlier runs. Null if no run has an `until`, or if an `until` has not ended any run yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
-      ends;  // `until` -> expected cycle of the end; cached, since expected_end() reads all runs
+      ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
@@ -178,11 +178,10 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer particle-steps; an estimate needs a run that this `until` ended\n");
+    fmt::print("fewer particle-steps; an estimate needs a run that this `until` has ended\n");
   } else {
-    fmt::print(
-        "about {:.3g} particle-steps ({:.0f} %) if runs end at the mean end of earlier runs\n",
-        left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
+    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end like earlier runs\n",
+               left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
 

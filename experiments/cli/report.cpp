@@ -44,7 +44,7 @@ void report(ReportCommand& command, Context& context) {
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
-        "Figures are static drawings and packings are left out, since this program was built "
+        "Packings are left out and figures are static drawings, since this program was built "
         "without Node.\n");
   }
   if (is_stream(command.out)) return;
@@ -106,7 +106,7 @@ void add_report(CLI::App& app, Context& context) {
       ->excludes("--run");
   add_common_options(
       *sub, context,
-      R"(The file works without a network. It shows figures that can be zoomed, verdicts, runs, lineage,
+      R"(The file works without a network. It shows verdicts, runs, lineage, figures that can be zoomed,
 and packings in 3D with positions rounded to 16 bits per axis. The store does not change, except
 for its cache of measures.
 Examples:

@@ -40,9 +40,9 @@ Facts facts_of(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// Facts of the checkpoints. `asked_by` has the indices in `memberships` of the experiments whose
-/// figures and tables use the checkpoint. It is empty for a checkpoint that no experiment uses, for
-/// example one that was stored when the run was interrupted.
+/// Facts of the checkpoints. `asked_by` lists the experiments whose figures and tables use the
+/// checkpoint, as indices in `memberships`. It is empty if no experiment uses the checkpoint, for
+/// example if the checkpoint was stored because the run was interrupted.
 std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -173,8 +173,8 @@ void show_run(const Store& store, const Stage& stage, Context& context) {
   }
 }
 
-/// Prints the checkpoint and its measures. If the file was pruned, prints the observables that the
-/// log recorded instead.
+/// Prints the checkpoint and its measures. If the file was pruned, prints the recorded
+/// observables instead of the measures.
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   const bool pruned = record.state == CheckpointState::pruned;
   Facts more, measures;

@@ -150,7 +150,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether a run is being computed; if not, assumes all cores
+  bool running = false;       ///< whether a run is being computed; if not, all cores are assumed
   bool at_most = false;       ///< whether the time is an upper limit, since `until` may end runs
 
   double seconds() const { return work.seconds(at_a_time); }
@@ -201,7 +201,7 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 
 void print(const Estimate& left) {
   print_text(
-      "left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
+      "left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
       counted(left.work.stages, "stage"), left.work.particle_steps,
       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
       left.running ? ", until " + local_time(left.seconds()) : "; no program computes them now");
