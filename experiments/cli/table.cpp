@@ -39,7 +39,7 @@ void table(const TableOptions& options, Context& context) {
                  options.out);
   }
   for (const std::string& note : made.notes) print_stderr("{}\n", note);
-  if (made.table.rows.empty()) print_stderr("no checkpoint matches all of these options\n");
+  if (made.table.rows.empty()) print_stderr("no checkpoint matches all given options\n");
   print_problems(made, "not measured", context);
 }
 
