@@ -36,20 +36,19 @@ void speed(bench::SpeedOptions& options, Context& context) {
   print_list("sizes", list_of(bench::measure_speed(options), facts), context);
   if (context.json) return;
   fmt::print(
-      "M/s: million particle-steps per second, median of {} timings. limit: the M/s that no kernel "
-      "can exceed.\nPercentages of one thread's time: search% builds the outer neighbour list, "
-      "prune% the inner neighbour list.\n",
+      "M/s: million particle-steps per second, median of {} timings. limit: upper limit of M/s for "
+      "any kernel.\nThe columns with % are shares of the time of one thread. search%: building the "
+      "outer neighbour lists. prune%: building the inner neighbour lists.\n",
       options.repeats);
 }
 
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure particle-steps per second in a sheared cell, and the time of each part of a step",
-      speed);
+      "Measure the speed in a sheared cell, and the share of time of each part of a step", speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
-  add_number(*command, "--threads", options->threads, "Threads inside one run", "T", 1, 1024)
+  add_number(*command, "--threads", options->threads, "Numbers of threads in one run", "T", 1, 1024)
       ->capture_default_str();
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)

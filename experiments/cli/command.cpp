@@ -58,7 +58,7 @@ std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "is empty; name a file or folder";
   std::error_code ignored;
-  // `verify` would report a file in such a folder as a leftover of a crash.
+  // `verify` would report a file in a store's `objects` folder as a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";
@@ -84,7 +84,7 @@ bool is_stdout(const std::string& out) {
 bool is_stream(const std::string& out) {
   std::error_code missing;
   const std::filesystem::file_type type = std::filesystem::status(out, missing).type();
-  // Only pipes made by the shell, such as `>(gzip)`. Opening other pipes would wait for a reader.
+  // Accepts pipes of the shell, such as `>(gzip)`. Opening other pipes would wait for a reader.
   const bool pipe = type == std::filesystem::file_type::fifo && out.starts_with("/dev/fd/");
   return is_stdout(out) || pipe || type == std::filesystem::file_type::character;
 }
@@ -127,12 +127,12 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(
       command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` shows "
-      "it. Several values of one key are alternatives. Values of different keys must all match",
+      "Only runs with this swept value, such as fluid=cell, or with this label from `status`. If "
+      "this option is repeated, a run must have, for each key, one of the given values",
       "KEY=V");
 }
 
-/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if it is invalid.
+/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
 void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
   const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
   for (std::size_t begin = 0; begin <= list.size();) {
@@ -168,7 +168,7 @@ void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
 
 std::filesystem::path existing_folder(const std::string& store) {
   std::filesystem::path place = std::filesystem::absolute(store);
-  std::error_code ignored;  // a folder that cannot be entered counts as missing
+  std::error_code ignored;  // a folder without access permission is treated as missing
   while (!is_directory(place, ignored) && place.has_relative_path()) place = place.parent_path();
   return place;
 }
@@ -199,7 +199,7 @@ void add_selection_options(CLI::App& command, RunSelection& selection, bool stat
 
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected) {
   std::vector<PlacedRun> runs;
-  std::map<std::string, std::size_t> known;  // index in `runs` for each id
+  std::map<std::string, std::size_t> known;  // run id -> index in `runs`
   for (const Run& run : selected) {
     const auto [at, fresh] = known.try_emplace(run.stage.id, runs.size());
     if (fresh) runs.push_back({run.stage, {}});
@@ -222,7 +222,7 @@ void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& contex
     if (first.text == manifest.text) continue;
     warn(context,
          fmt::format("{} and {} are different manifests of one experiment, {}. Figures show only "
-                     "the manifest that is run last. Give one of them another `experiment`.",
+                     "the manifest that is run last. Change `experiment` in one manifest.",
                      first.file, manifest.file, manifest.experiment));
   }
 }
@@ -242,8 +242,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that runs come before the runs that start from them. Manifests without
-// such a `start` come first, since a `start` may name any of their runs by the id of the run alone.
+// Sorts the manifests so that each run comes after the run from which it starts. A `start` need
+// not name the experiment of that run, so manifests that start from no run come first.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -258,16 +258,16 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
     });
     if (ready == manifests.end()) {
       return warn(context,
-                  fmt::format("{}: the manifests start from each other's runs in a circle. The "
-                              "store must already have the runs that this manifest starts from",
+                  fmt::format("{}: the `start` keys of the manifests form a loop. The runs from "
+                              "which this manifest starts must already be in the store",
                               next->file));
     }
     std::rotate(next, ready, ready + 1);
   }
 }
 
-// Warns if figures will omit runs of the store. If several versions of a manifest have runs at the
-// scale, figures show only the newest version.
+// Warns if figures will omit runs of the store when this plan has been run, since figures show only
+// the runs of the newest manifest of each experiment and scale.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;

@@ -42,14 +42,14 @@ struct Context {
 /// Prints a warning to standard error and appends it to `context.warnings` for JSON output.
 void warn(Context& context, const std::string& warning);
 
-/// Sets the exit code, unless a more serious one is set. Most serious first: 4, 3, 2, 1, 85.
+/// Sets the exit code unless a more serious code is set. Most serious first: 4, 3, 2, 1, 85.
 void fail(Context& context, ExitCode code);
 
 /// Opens the store for reading. Returns nothing if the folder does not exist or is empty.
 std::optional<Store> open_if_there(const std::string& folder);
 
-/// Prints the problems found while measuring. Each line on a checkpoint begins with `left_out`.
-/// Damaged files set exit code 4.
+/// Prints the problems found while measuring. Each line about a checkpoint begins with
+/// `left_out`. Damaged files set exit code 4.
 void print_problems(const MeasureOutcome& outcome, const char* left_out, Context& context);
 
 // Each function adds one subcommand to the parser. add_run also adds `resume`.
@@ -63,8 +63,8 @@ struct Freed {
   std::uint64_t bytes = 0;
 };
 
-/// Measures the checkpoints with keep_measures(), then deletes their files. Checkpoints that cannot
-/// be measured keep their files; they are reported on standard error and removed from `records`.
+/// Measures the checkpoints with keep_measures(), then deletes their files. A checkpoint that
+/// cannot be measured keeps its file, is reported on standard error, and is removed from `records`.
 /// Sets exit code 4 if a file is damaged, and 1 if measures cannot be cached. Thread-safe.
 Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
                  const MeasureOptions& options, bool last_too, Context& context);
@@ -79,8 +79,8 @@ std::string unfit_folder(const std::string& path);
 /// as /dev/null.
 bool is_stream(const std::string& out);
 
-/// Writes `text` to the stream `out`, or with write_output() to the file `out`. Control characters
-/// are escaped on a terminal.
+/// Writes `text` to `out`, a stream or the path of a file (see write_output()). If `out` is a
+/// terminal, control characters are escaped.
 void write_result(const std::string& out, const std::string& text);
 void add_json_option(CLI::App& command, Context& context);
 
@@ -102,8 +102,8 @@ void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
 /// comes before B in the result. Passes all warnings to warn(). Also warns if two manifests of one
-/// experiment differ, or if the store has runs of another version of a manifest. With `brief`, more
-/// than three warnings of one manifest are replaced by the first warning and a count.
+/// experiment differ, or if the store has runs of another version of a manifest. If `brief` is true
+/// and a manifest has more than three warnings, prints the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 
@@ -111,7 +111,7 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
 /// can be repeated.
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states = false);
 
-/// A stage with its selected places. A place is the position of a stage in an experiment.
+/// A stage and its selected places (experiments, variants and seeds that need the stage).
 struct PlacedRun {
   Stage stage;
   std::vector<Membership> places;
@@ -128,7 +128,6 @@ std::string unfit(const std::string& text, Number low, Number high);
 template <class Value>
 using NumberOf = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
 
-/// Adds an option that takes a number from `low` to `high`.
 template <class Value>
 CLI::Option* add_number(CLI::App& command, const std::string& names, Value& value,
                         const std::string& help, const std::string& type_name = "N",
@@ -150,7 +149,6 @@ void add_engine_option(CLI::App& command, ExpandOptions& options);
 /// Returns the folder of the store if it exists, else its nearest parent folder that exists.
 std::filesystem::path existing_folder(const std::string& store);
 
-/// Prints one JSON value, indented by two spaces.
 void print_json(const nlohmann::json& facts);
 
 auto list_of(const auto& items, const auto& facts) {
@@ -171,7 +169,6 @@ struct Fact {
 };
 using Facts = std::vector<Fact>;  ///< all values of one table row or one object
 
-/// The facts as one JSON object.
 nlohmann::json to_json(const Facts& facts);
 nlohmann::json to_json(const std::vector<Facts>& rows);
 

@@ -46,12 +46,12 @@ Check memory() {
     if (word == "MemAvailable:" && facts >> kib) bytes = std::min(bytes, 1024 * kib);
   }
   return {"memory", format_bytes(bytes) + " free", "ok",
-          fmt::format("enough for {:.1e} grains in all runs together", bytes / kRunBytesPerGrain)};
+          fmt::format("enough for {:.1e} grains, summed over all runs", bytes / kRunBytesPerGrain)};
 }
 
 Check disk(const fs::path& place) {
   const double free = static_cast<double>(fs::space(place).available);
-  Geometry shape;  // has rough walls, the default
+  Geometry shape;  // by default, the walls are rough
   shape.grains = 5200;
   return {"disk", fmt::format("{} free in {}", format_bytes(free), place.string()),
           free > 1e9 ? "ok" : "low",
@@ -84,7 +84,7 @@ Check writing(const std::string& store, const fs::path& place) {
   const int file = mkstemp(name.data());
   if (file < 0) {
     return {"writing", fmt::format("not possible in {} ({})", place.string(), std::strerror(errno)),
-            "missing", "a store cannot be written there; name another folder with --store"};
+            "missing", "the program cannot write to this folder; name another with --store"};
   }
   constexpr int count = 10;
   const Stopwatch watch;
@@ -169,7 +169,7 @@ void add_doctor(CLI::App& app, Context& context) {
   command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (5 seconds)");
   add_common_options(
       *command, context,
-      "The exit code is 1 if a store cannot be written in the folder of --store.\n"
+      "The exit code is 1 if the program cannot write to the folder given by --store.\n"
       "Examples:\n  shearcell doctor\n  shearcell doctor --store /data/store --json");
 }
 

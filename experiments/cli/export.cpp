@@ -40,8 +40,8 @@ struct ExportOptions {
 struct ExportFormat {
   const char* name;
   const char* title;
-  const char* ending;  ///< ending of the file's name; "" if the format is a folder
-  /// Returns a writer of `frames` frames to `out`. Null for an RO-Crate, which has no frames.
+  const char* ending;  ///< extension of the file name; "" if the format is a folder
+  /// Returns a function that writes `frames` frames to `out`. Null for an RO-Crate (no frames).
   FrameWriter (*writer)(const fs::path& out, std::size_t frames, LengthUnit unit);
 };
 
@@ -52,8 +52,9 @@ bool is_folder(const ExportFormat& format) {
 const std::array kFormats = {
     ExportFormat{"h5md", "H5MD 1.1, one file for MDAnalysis, h5py and VMD; lengths in nm", ".h5md",
                  [](const auto& out, auto frames, auto) { return h5md_writer(out, frames); }},
-    ExportFormat{"extxyz", "extended XYZ, one file for OVITO, ASE, MDAnalysis; lengths in d",
-                 ".xyz", [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
+    ExportFormat{"extxyz",
+                 "extended XYZ, one file for OVITO, ASE, MDAnalysis; lengths in diameters", ".xyz",
+                 [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder for ParaView; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
     ExportFormat{"lammps", "LAMMPS data and scripts, a folder for LAMMPS and OVITO; SI units", "",
@@ -68,8 +69,8 @@ struct CycleRange {
   double last = std::numeric_limits<double>::infinity();
   double every = 0;  ///< step [cycles]; 0 selects all checkpoints
 
-  /// Whether `cycle` is selected. `near` is half a time step [cycles], so that the cycle 3.3
-  /// selects the time step nearest to 3.3.
+  /// Whether `cycle` is selected. `near`: half a time step [cycles]. Thus 3.3 selects the
+  /// checkpoint at the time step nearest to cycle 3.3.
   bool holds(double cycle, double near) const {
     return cycle >= first - near && cycle <= last + near &&
            (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
@@ -100,8 +101,8 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// Returns what experiments ask of this run (cycles, `until`, checkpoints). All experiments count if
-// the run was named by its id, else only the selected experiments.
+// Returns the requests (cycles, `until`, checkpoints) of experiments for this run: of all
+// experiments if the user named the run by its id, else only of the selected experiments.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }
@@ -204,10 +205,10 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
   return files_of(out);
 }
 
-/// Writes the run to `out` and returns the names of the files. `out` must not exist, except as an
-/// earlier crate of the run. Measures that need an unreadable earlier checkpoint are written as
-/// NaN, with a line in `unread`. Throws std::invalid_argument if the run cannot be exported, and
-/// FilePruned if the end of the run cannot be determined without a pruned checkpoint.
+/// Writes the run to `out` and returns the names of the files. `out` must not exist, unless it is
+/// an earlier crate of the run. A measure that needs an unreadable earlier checkpoint is NaN, and
+/// `unread` reports that checkpoint. Throws std::invalid_argument if the run cannot be exported,
+/// and FilePruned if the end of the run cannot be determined without a pruned checkpoint.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out, MeasureOutcome& unread) {
@@ -217,7 +218,7 @@ std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
     try {
       return write_records(store, run, records, format, options, out, unread);
     } catch (const FilePruned&) {
-      // Another program has just pruned a chosen checkpoint. The next attempt leaves it out.
+      // Another program has just pruned a chosen checkpoint. Retries without this checkpoint.
       if (!fs::exists(out / kCrateMetadata)) fs::remove_all(out);
     }
   }
@@ -260,7 +261,7 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   return runs;
 }
 
-/// File name of one of several exported runs, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
+/// Name of a run's file or folder in PATH, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   const Place place = shown_place(run);
   std::string name =
@@ -278,13 +279,13 @@ std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
 
 struct Exported {
   std::string run;  ///< id of the run
-  fs::path out;     ///< the PATH that was given, or a file or folder in PATH
+  fs::path out;     ///< where the run was written: PATH, or a file or folder in PATH
   std::vector<std::string> files;
 };
 
 /// Writes one run to PATH if `single` is true, else all runs into the folder PATH. Writes into a
-/// temporary folder first and renames the complete folder, so an export that is killed or fills the
-/// disk leaves nothing at PATH.
+/// temporary folder first and moves the complete result to PATH. An export that is killed or fills
+/// the disk thus leaves nothing at PATH.
 std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
                                 bool single, MeasureOutcome& unread) {
@@ -311,7 +312,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name, unread);
       done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
-    } catch (const std::invalid_argument& problem) {  // no checkpoint in these cycles
+    } catch (const std::invalid_argument& problem) {  // the run has no checkpoint in these cycles
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());
     }
@@ -362,7 +363,7 @@ void add_export(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "export", "Write runs in the formats of other programs", export_runs);
   CLI::Option* named = command->add_option(
-      "run", options->runs, "Run ids, or unique beginnings of run ids (default: all selected)");
+      "run", options->runs, "Run ids, or unique beginnings of run ids (default: selected runs)");
   add_selection_options(*command, options->selection);
   for (const char* filter : {"--experiment", "--scale", "--variant", "--seed"}) {
     named->excludes(command->get_option(filter));
@@ -381,7 +382,7 @@ void add_export(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--cycles", options->cycles,
-          "Only checkpoints of these cycles (default: all that the experiments ask for; not with "
+          "Only checkpoints of these cycles (default: all that the experiments request; not with "
           "ro-crate)")
       ->type_name("A[:B[:STEP]]");
   command->add_flag("--metres", options->metres, "Write extended XYZ in SI units, not diameters");

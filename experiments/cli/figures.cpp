@@ -55,8 +55,8 @@ void print_verdicts(const ComputedFigure& result) {
   }
 }
 
-/// Prints the files and verdicts of the figure, unless --json is given. Prints what is missing in
-/// the figure to standard error, except messages in `told`. `path`: see WantedFigure::path().
+/// Prints the files and verdicts of the figure, unless --json is given. Prints to standard error
+/// what the figure lacks, but no message that is in `told`. `path`: see WantedFigure::path().
 void print(const ComputedFigure& result, const std::string& path, std::set<std::string>& told,
            Context& context) {
   const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
@@ -80,8 +80,8 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
-/// Warns of primary claims that no figure contains. Checks only experiments of which all figures
-/// were drawn from all runs.
+/// Warns if `primary` of a manifest names a claim that no figure contains. Checks an experiment
+/// only if all its figures were drawn from all its runs.
 void warn_of_primary(const Store& store, const RunSelection& runs,
                      const std::map<std::string, std::vector<ComputedFigure>>& drawn) {
   if (!runs.variants.empty() || !runs.seeds.empty()) return;
@@ -107,12 +107,12 @@ void warn_of_primary(const Store& store, const RunSelection& runs,
       };
       if (std::ranges::any_of(said, is_it)) continue;
       print_stderr("warning: {}: {}\n", experiment,
-                   with_nearest(fmt::format("primary: no claim is '{}'", claim), claim, said));
+                   with_nearest(fmt::format("primary: unknown claim '{}'", claim), claim, said));
     }
   }
 }
 
-/// Opens the store, only for reading if this user cannot write to the store (such as an archive).
+/// Opens the store; read-only if this user cannot write to the store (for example, an archive).
 Store open_store(const std::string& folder, FigureOptions& how) {
   try {
     return Store(folder, Access::write);
@@ -128,7 +128,7 @@ void figures(FigureArguments& options, Context& context) {
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
-    throw NotFound(fmt::format("no experiment of the store lists {}; choose one with --experiment",
+    throw NotFound(fmt::format("no experiment lists {}; choose an experiment with --experiment",
                                fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) {
@@ -225,7 +225,7 @@ void add_figures(CLI::App& app, Context& context) {
   add_common_options(*command, context,
                      "Examples:\n  shearcell figures S2 --out figures\n"
                      "  shearcell figures S2 --experiment drag\n  shearcell figures --all");
-  command->footer(about_figures);  // called only for --help, since it reads the shipped manifests
+  command->footer(about_figures);  // computed on demand, since it reads the shipped manifests
 }
 
 }  // namespace shearcell::cli

@@ -17,7 +17,7 @@ std::string gist(const nlohmann::json& body) {
   return "";
 }
 
-/// Returns the stream with its id shortened to eight digits.
+/// Returns the name of the stream. An id in the name is shortened to eight digits.
 std::string shown_stream(const std::string& stream) {
   const bool has_id = stream.starts_with("run/") || stream.starts_with("manifest/");
   return has_id ? stream.substr(0, stream.find('/') + 9) : stream;

@@ -77,8 +77,8 @@ constexpr const char* kNoMemory =
     "out of memory; close other programs, raise the limit (ulimit -v), or use fewer threads, "
     "fewer runs at a time or fewer grains";
 
-// Ends the program at once, which is as safe for the store as a kill. Throwing an exception would
-// need memory, and in a thread the exception would abort the program.
+// Ends the program at once. The store stays intact, as after a kill. Throwing an exception would
+// need memory, and an exception in a thread would abort the program.
 [[noreturn]] void end_without_memory() {
   for (const char* text : {"shearcell: ", kNoMemory, "\n"}) {
     (void)!write(STDERR_FILENO, text, std::strlen(text));
@@ -115,7 +115,7 @@ int complain(int code, const char* what) {
   return code;
 }
 
-/// Returns the error message for an unknown command or argument, with the most similar known word.
+/// Returns the error message for an unknown command or argument. Suggests the most similar word.
 std::string describe_extras(const CLI::App& app) {
   const CLI::App* at = &app;
   while (at->remaining().empty() && !at->get_subcommands().empty()) {
@@ -142,12 +142,12 @@ std::string describe_extras(const CLI::App& app) {
   return words.empty() ? problem : with_nearest(problem, words.front(), names);
 }
 
-// Corrects inherited settings. If a standard stream were closed, the next file that is opened would
-// get its number. If SIGCHLD were ignored, waiting for a child process would fail.
+// Corrects inherited settings. If a standard stream were closed, the next opened file would get the
+// descriptor of that stream. If SIGCHLD were ignored, waiting for a child process would fail.
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // /dev/null gets the number of the closed stream. In this mode, any use of the stream fails.
+    // Gets the descriptor of the closed stream. In this mode, any use of the stream fails.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);
@@ -162,14 +162,14 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname() is not used, since every subcommand would read it and overwrite --store.
+  // CLI11's envname() is not used, since each subcommand would replace --store by the variable.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
-  app.formatter(std::make_shared<HelpFormatter>());  // set before commands copy it
+  app.formatter(std::make_shared<HelpFormatter>());  // set first, since new commands copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // 0 allowed, so that the error names an unknown subcommand
+  app.require_subcommand(0, 1);  // 0: describe_extras() reports unknown commands
   for (const auto& [group, commands] : kCommands) {
     for (AddCommand* const add : commands) add(app, context);
     for (CLI::App* command : app.get_subcommands({})) {
@@ -193,7 +193,7 @@ int run(int argc, char** argv) {
         context.store, error.what());
     return complain(exit_code_of(error), why.c_str());
   } catch (const std::exception& error) {
-    // An exit code that the command has set already takes precedence over the code of this error.
+    // An exit code that was set earlier takes precedence over the code of this error.
     const bool known = context.exit_code != kDone;
     return complain(known ? context.exit_code : exit_code_of(error), message_of(error).c_str());
   }

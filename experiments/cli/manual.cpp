@@ -97,7 +97,7 @@ can also be used in `until`. `critical_size` and all columns below it need `--pe
 std::string estimator_reference() {
   std::string text =
       "\n## Estimators\n\n"
-      "Values of `estimator` in a claim, each with the key that the claim must also have.\n\n"
+      "Values of `estimator` in a claim, and the other key that each value requires.\n\n"
       "| estimator | key | number |\n|---|---|---|\n";
   for (const Estimator& one : all_estimators()) {
     const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);
@@ -110,7 +110,7 @@ std::string figure_reference() {
   std::string text =
       "\n## Figures\n\n"
       "[How figures are made](../analysis/README.md#figures).\n\n"
-      "| figure | shows | keys that its experiment varies |\n|---|---|---|\n";
+      "| figure | shows | keys that the experiment varies |\n|---|---|---|\n";
   for (const Figure& figure : all_figures()) {
     text += fmt::format("| `{}` | {} | {} |\n", figure.name, cell(figure.title),
                         cell(fmt::format("{}", fmt::join(figure.keys, ", "))));
@@ -134,7 +134,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   if (const std::string rows = positionals + options; !rows.empty()) {
     text += "\n| argument | meaning |\n|---|---|\n" + rows;
   }
-  // The help texts of `table` and `figures` are left out, since their lists are printed above.
+  // The help texts of `table` and `figures` are left out: the manual already has their lists.
   const bool listed = command.get_name() == "table" || command.get_name() == "figures";
   if (!command.get_footer().empty() && !listed) {
     text += fmt::format("\n```text\n{}\n```\n", command.get_footer());
@@ -145,7 +145,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   return text;
 }
 
-/// The text of experiments/REFERENCE.md. The test docs.reference compares text and file.
+/// The text of experiments/REFERENCE.md. The test docs.reference compares the text with this file.
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"

@@ -20,7 +20,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   for (const std::string& source : sources) {  // checks all sources before a store is created
     if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
       continue;
-    throw NotFound(fmt::format("'{}': there is no store here to merge", source));
+    throw NotFound(fmt::format("'{}': there is no store in this folder to merge", source));
   }
   Store store(context.store, Access::create);
   std::set<std::string> known = left_out(store);
@@ -51,7 +51,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     return print_json({{"merged", list_of(reports, facts)}, {"warnings", context.warnings}});
   }
   for (const MergeReport& report : reports) {
-    print_text("{}: {} of {} events and {} checkpoints ({}) were new\n", report.source,
+    print_text("{}: merged {} new events (of {}) and {} new checkpoints ({})\n", report.source,
                report.events, report.head.seq, report.checkpoints,
                format_bytes(static_cast<double>(report.bytes)));
   }
@@ -71,7 +71,7 @@ void add_merge(CLI::App& app, Context& context) {
 two stores record different states of one run at the same step. The sources do not change, and
 merging a source again has no effect. If the stores have different versions of a manifest, figures
 show the version that was registered last, and this command names the runs that figures leave out.
-To show all runs, run one manifest that lists the runs of both; only missing runs are computed.
+To show all runs, run one manifest that lists all of them; only missing runs are computed.
 Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
 values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:

@@ -36,7 +36,7 @@ std::string commented(const std::string& text) {
   return lines + line + "\n";
 }
 
-/// A comment with the meaning of the key, then the key and its default, commented out.
+/// Returns comment lines: the meaning of the key, and below it the key with its default value.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
@@ -45,7 +45,7 @@ std::string entry(const Field& field) {
 }
 
 std::string figure_comments() {
-  std::string text = "# Figures, with the keys that an experiment must vary:\n";
+  std::string text = "# Figures, and (in parentheses) the keys that the experiment must vary:\n";
   for (const Figure& figure : all_figures()) {
     if (figure.keys.empty()) continue;
     text += fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title,
@@ -115,7 +115,7 @@ void write_new(const std::filesystem::path& file, const std::string& text) {
     write_output(whole, text);
     std::filesystem::create_hard_link(whole, file, failed);
     std::filesystem::remove(whole, ignored);
-    // Either the file exists, and NewFile throws, or the file system has no hard links.
+    // The link failed: the file exists (NewFile throws), or hard links are not supported.
     if (failed) NewFile(file).add(text);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::file_exists) {

@@ -27,11 +27,11 @@ std::string state_of(const Line& line) {
   if (line.look.done) return "done";
   if (line.stage.attempts == 0) return "to do";
   if (line.stage.state != StageState::completed) return std::string(name_of(line.stage.state));
-  // A completed stage can lack cycles, or checkpoints that were requested later.
+  // More cycles, or checkpoints between the existing ones, were requested after completion.
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
-// Largest number of cycles that the stage will have.
+// Number of cycles of the completed stage, if no `until` ends it earlier.
 double cycles_of(const Line& line) {
   return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
@@ -87,9 +87,10 @@ void print_numerics(const std::vector<Line>& lines) {
 
 const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. This program settles the packings of all runs.",
-    "Results of both programs differ by rounding errors, which depend on the number of processes.",
-    "Runs by LAMMPS have different ids. verify --replay, regenerate and prune skip these runs.",
-    "The watchdog checks only the checkpoints of runs by LAMMPS, not every 1024th step. These runs "
+    "The results of LAMMPS differ from those of this program by rounding errors, which depend on "
+    "the number of processes.",
+    "Runs by LAMMPS have their own ids. verify --replay, regenerate and prune skip these runs.",
+    "In runs by LAMMPS, the watchdog checks only checkpoints, not every 1024th step. These runs "
     "fail if the centre of a grain reaches the plane of a wall."};
 
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
@@ -115,7 +116,7 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// Adds a note for each experiment on the work that is left until its next planned look.
+// For each experiment, adds a note on the work until the next planned look (interim analysis).
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
                 std::vector<std::string>& notes) {
   for (const Plan& plan : plans) {
@@ -136,18 +137,18 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
           std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
-          "{}: the next planned look is at {} of {} seeds, after {:.3g} more particle-steps. The "
-          "notes of each verdict state how likely this look is to decide the claim",
+          "{}: the next planned look (interim analysis) uses {} of {} seeds and needs {:.3g} more "
+          "particle-steps. The notes of a verdict say how likely this look is to decide the claim",
           plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
     }
   }
 }
 
-// Returns the particle-steps that are left if each run ends at the mean end of earlier runs with
-// the same `until`. Null if no run has an `until`, or if for some `until` no run has ended yet.
+// Returns the particle-steps that are left if each run ends at the mean cycle at which its `until`
+// ended earlier runs. Null if no run has an `until`, or if an `until` has not ended any run yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
-      ends;  // expected cycle at which each `until` ends runs; computing the cycle reads all runs
+      ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs
   double sum = 0;
   bool asked = false;
   for (const Line& line : lines) {
@@ -177,9 +178,9 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer; an estimate is possible after a run with this `until` has ended\n");
+    fmt::print("fewer particle-steps; an estimate needs a run that this `until` has ended\n");
   } else {
-    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end as early as earlier runs\n",
+    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end like earlier runs\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }

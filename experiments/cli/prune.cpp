@@ -67,7 +67,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage stage = store.stage(id);
-    // All experiments that share the run, since each of them loses the files of the run.
+    // Lists all experiments that share the run, since each experiment loses the files.
     std::set<std::string> experiments;
     for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
     // Files that an earlier `prune` recorded as pruned but did not delete before it was killed.
@@ -231,7 +231,7 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   std::vector<CheckpointRecord> records =
       named ? named_checkpoints(store, options) : without_file(store, options.selection);
   if (records.empty() && !context.json) fmt::print("every file is intact\n");
-  // Sorts parent stages first, then earlier steps: each state is recomputed from an earlier state.
+  // Parent stages and earlier steps come first: each state is recomputed from an earlier state.
   std::map<std::string, std::size_t> order;
   for (const Stage& stage : store.stages()) order.emplace(stage.id, order.size());
   std::ranges::sort(records, {}, [&](const auto& c) { return std::pair(order.at(c.run), c.step); });
@@ -293,7 +293,7 @@ Before a file is deleted, missing measures are computed: all measures that table
 and the simulated measures that the store's figures need. The measures are cached in derived.sqlite,
 so tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run
 is continued later, its new cycles lack measures that need a pruned checkpoint, such as
-msd_10_cycles_d2. `run` and `resume` recompute pruned files that they need, `regenerate` others.
+msd_10_cycles_d2. `regenerate` recomputes pruned files; `run` and `resume` do so if they need them.
 Examples:
   shearcell prune --keep-every 10
   shearcell prune --last-too
@@ -312,8 +312,8 @@ void add_regenerate(CLI::App& app, Context& context) {
   add_threads_option(*command, options->threads, "Number of threads; useful for large cells");
   add_common_options(
       *command, context,
-      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is none in the
-stage, also recomputes the file of the state that the stage begins with. If a state or a file does
+      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If the stage has none,
+also recomputes the file of the state with which the stage begins. If a state or a file does
 not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
 Examples:
   shearcell regenerate 2a2c47ca

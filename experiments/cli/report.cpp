@@ -44,7 +44,7 @@ void report(ReportCommand& command, Context& context) {
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
-        "Figures are static drawings and packings are left out, since this program was built "
+        "Packings are left out and figures are static drawings, since this program was built "
         "without Node.\n");
   }
   if (is_stream(command.out)) return;
@@ -86,7 +86,7 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: all; figures show the scale of the run added last)");
+      "Only runs of this scale (default: all; figures show only the scale of the run added last)");
   sub->add_option("--run", packings.runs,
                   "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
@@ -94,7 +94,7 @@ void add_report(CLI::App& app, Context& context) {
              "Largest number of runs shown in 3D for each experiment")
       ->capture_default_str();
   add_number(*sub, "--frames", packings.frames,
-             "Largest number of checkpoints of each run in 3D, evenly spaced", "N", 1, 100000)
+             "Largest number of checkpoints (evenly spaced) of each run in 3D", "N", 1, 100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
              "Largest total size of packings in 3D; checkpoints that do not fit are left out", "MB",
@@ -106,7 +106,7 @@ void add_report(CLI::App& app, Context& context) {
       ->excludes("--run");
   add_common_options(
       *sub, context,
-      R"(The file works without a network. It shows figures that can be zoomed, verdicts, runs, lineage,
+      R"(The file works without a network. It shows verdicts, runs, lineage, figures that can be zoomed,
 and packings in 3D with positions rounded to 16 bits per axis. The store does not change, except
 for its cache of measures.
 Examples:

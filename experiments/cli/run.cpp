@@ -42,7 +42,7 @@ struct RunOptions {
 };
 
 // Intervals between progress reports of a task, and between copies from a node's own disk to the
-// store of the task. A node that fails loses what it computed since the last copy.
+// store of the task. If a node fails, its work since the last copy is lost.
 constexpr std::chrono::seconds kReportEvery{10};
 constexpr std::chrono::seconds kSaveEvery{300};
 
@@ -66,7 +66,7 @@ void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) t
                      ". `--variant engine=shearcell` computes only runs that do not need LAMMPS");
 }
 
-// Number of runs to compute at a time. By default, their threads or processes fill the cores.
+// Number of runs to compute at a time. By default, all cores are used.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
   const std::size_t each = std::max(options.parallel.threads, options.parallel.ranks);
@@ -92,7 +92,7 @@ CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const Ru
   return result;
 }
 
-// Prints the result and sets the exit code. `failed_before`: whether --leave-failed left out runs.
+// Prints the result and sets the exit code. `failed_before`: whether --leave-failed skipped a run.
 void print_result(const CampaignResult& result, bool failed_before, Context& context) {
   const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
   fail(context, result.damaged > 0   ? kStoreDamaged
@@ -128,7 +128,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
       fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
     }
     if (result.damaged > 0) {
-      fmt::print("{} stopped at damaged files in the store\n", counted(result.damaged, "stage"));
+      fmt::print("{} stopped by damaged files in the store\n", counted(result.damaged, "stage"));
     }
   }
   if (interrupted) {
@@ -166,7 +166,7 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   return !left.empty();
 }
 
-// Computes the unfinished stages. Sets `failed_before` to whether --leave-failed left out runs.
+// Computes the unfinished stages. Sets `failed_before` to whether --leave-failed skipped a run.
 CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before,
                             Context& context) {
   std::vector<StageJob> jobs = stages_to_resume(store, options.inputs);
@@ -178,7 +178,7 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, bool& faile
   return compute(store, jobs, options, context);
 }
 
-// Wraps an action for Repeated. Errors are printed, and the next repetition tries again.
+// Wraps an action for Repeated: errors are printed, and the next repetition tries again.
 std::function<void()> tried(std::function<void()> action, std::chrono::seconds interval) {
   return [interval, action = std::move(action)] {
     try {
@@ -189,8 +189,8 @@ std::function<void()> tried(std::function<void()> action, std::chrono::seconds i
   };
 }
 
-// Returns the folder in which the task computes: its store, or with `scratch` a copy on the node's
-// disk. The copy is named after submission and task, so that a restarted task finds its copy.
+// Returns the folder in which the task computes: its store, or if `scratch` is set, a copy on the
+// node's disk. The copy's name contains submission and task, so that a restarted task finds it.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
   if (scratch.empty()) return task;
   const Store sound(task, Access::write);  // throws before copying if the store is unusable
@@ -233,7 +233,7 @@ void resume_task(const RunOptions& options, Context& context) {
     fs::remove_all(folder);
   }
   print_result(result, failed_before, context);
-  // If the task was stopped with work left, it continues later, even if runs have failed.
+  // A task that was stopped before its end is restarted later, even if some runs have failed.
   if (stop_requested() && result.interrupted + result.blocked > 0) {
     context.exit_code = kInterrupted;
   }
@@ -296,8 +296,8 @@ can share the work on one store. To use several machines, select different runs 
                        "Work as a task of a job that `submit` queued; --store is the task's store");
   resume
       ->add_option("--scratch", resume_options->scratch,
-                   "Folder on the node's own disk for a copy of the store to work on; $NAME and "
-                   "${NAME} are variables of the node")
+                   "Work on a copy of the store in this folder on the node's own disk; $NAME and "
+                   "${NAME} are environment variables of the node")
       ->needs(task)
       ->type_name("DIR");
   add_common_options(

@@ -40,9 +40,9 @@ Facts facts_of(const CheckpointRecord& c) {
           {"observables", c.observables}};
 }
 
-/// Facts of the checkpoints. `asked_by` lists the entries of `memberships` (as indices) whose
-/// figures and tables use the checkpoint. It is empty if no experiment uses the checkpoint, for
-/// example because an interruption stored it.
+/// Facts of the checkpoints. `asked_by` lists the experiments whose figures and tables use the
+/// checkpoint, as indices in `memberships`. It is empty if no experiment uses the checkpoint, for
+/// example if the checkpoint was stored because the run was interrupted.
 std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
                                 const std::vector<CheckpointRecord>& checkpoints) {
   std::map<std::uint64_t, std::vector<std::size_t>> asked_by;
@@ -84,7 +84,7 @@ Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& c
   return {};
 }
 
-/// The engine recorded by the latest attempt; null if this program computed the run.
+/// The engine that the latest attempt recorded; null if this program computed the run.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   const RunLineage stage = run_lineage(store, run).back();
@@ -173,8 +173,8 @@ void show_run(const Store& store, const Stage& stage, Context& context) {
   }
 }
 
-/// Prints the checkpoint and its measures. If the file was pruned, prints the observables that the
-/// log recorded instead.
+/// Prints the checkpoint and its measures. If the file was pruned, prints the recorded
+/// observables instead of the measures.
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   const bool pruned = record.state == CheckpointState::pruned;
   Facts more, measures;
@@ -304,7 +304,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   for (const std::string& given : describe(input.overrides)) say("", "{}", given);
   say("  cycles", "{}: {}, {}", to_text(input.states.cycles),
       counted(input.checkpoints.size(), "checkpoint"),
-      input.fault.empty() ? "with the states that the figure names" : input.fault);
+      input.fault.empty() ? "with the states recorded for the figure" : input.fault);
   say("  last state", "{}", input.states.state_hash);
   print_stage(run, input.checkpoints, list, makers);
 }
@@ -442,7 +442,7 @@ void require_no_experiment(const std::string& name, const std::vector<Stage>& st
   if (std::ranges::none_of(stages, is_of)) return;
   throw NotFound(fmt::format(
       "{0} is an experiment, but `show` needs a run, checkpoint or figure. Use `shearcell status "
-      "--experiment {0}` to list its runs, or `table` or `figures` with --experiment {0}",
+      "--experiment {0}` to list its runs, or pass --experiment {0} to `table` or `figures`",
       name));
 }
 
@@ -466,7 +466,7 @@ void show(const ShowOptions& options, Context& context) {
   const auto checkpoint = name.size() < 4 ? std::nullopt : store.find_checkpoint(name);
   if (checkpoint && run != stages.end()) {
     throw NotFound(fmt::format(
-        "the ids of a run and of a checkpoint begin with '{}'; give more digits of one id\n  run "
+        "the id of a run and the hash of a checkpoint begin with '{}'; give more digits\n  run "
         "{}\n  checkpoint {}",
         name, run->id, checkpoint->sha256));
   }

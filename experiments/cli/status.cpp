@@ -23,7 +23,7 @@ namespace {
 struct View {
   Store store;
   std::vector<PlacedRun> runs;
-  std::map<std::string, Lease> holders;  // leases of the runs that are being computed, by id
+  std::map<std::string, Lease> holders;  // run id -> lease, for runs that are being computed
   QueueView queue;
   VariantNames names;
 
@@ -64,9 +64,9 @@ std::string describe(const QueuedTask& task) {
   return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-/// State and cycle of the run. They are from the progress report of the run's cluster task if the
-/// report is ahead of the store, else from the store. A run whose program was killed counts as
-/// interrupted.
+/// Returns state and cycle of the run: those that its cluster task reports, if the reported cycle
+/// is at least the stored cycle, else those in the store. A run whose program was killed is
+/// returned as interrupted.
 std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
   const QueuedRun* queued = view.queued(stage);
   const bool reported =
@@ -146,11 +146,11 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
   return all;
 }
 
-/// The work that is left, and the time that this work will take at the present speed.
+/// The remaining work, and the time that this work will take at the mean speed so far.
 struct Estimate {
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether any run is being computed; if not, assumes all cores
+  bool running = false;       ///< whether a run is being computed; if not, all cores are assumed
   bool at_most = false;       ///< whether the time is an upper limit, since `until` may end runs
 
   double seconds() const { return work.seconds(at_a_time); }
@@ -201,7 +201,7 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 
 void print(const Estimate& left) {
   print_text(
-      "left: {}, {:.3g} particle-steps, {} {} with {} at a time{}\n",
+      "left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
       counted(left.work.stages, "stage"), left.work.particle_steps,
       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
       left.running ? ", until " + local_time(left.seconds()) : "; no program computes them now");
@@ -240,7 +240,7 @@ void print(const View& view) {
     return one.stage.state != StageState::failed && has_failed(view.store, one.stage);
   });
   if (waiting > 0) {
-    print_text("{} cannot start, since the packing has failed\n",
+    print_text("{} cannot start, since a required stage has failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
   }
   for (const auto& [run, lease] : view.holders) {

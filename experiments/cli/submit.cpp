@@ -21,7 +21,7 @@ using nlohmann::json;
 
 // Slurm's default limit on the number of tasks of a job.
 constexpr std::size_t kMostTasks = 1000;
-// Slurm checks time limits every 30 s, so its warning may come this much earlier [s].
+// Slurm checks time limits only every 30 s, so its warning can be early by up to this time [s].
 constexpr double kWarningResolution = 30;
 
 struct SubmitOptions {
@@ -163,8 +163,8 @@ void check_time(const JobOptions& job) {
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
-        "--time", fmt::format("{} s leave no time to compute, since the warning comes up to {} s "
-                              "before the end; increase --time or reduce --warn",
+        "--time", fmt::format("a limit of {} s leaves no time to compute: a task may stop {} s "
+                              "before the limit; increase --time or reduce --warn",
                               *limit, needed));
   }
 }
@@ -183,7 +183,7 @@ void submit(const SubmitOptions& options, Context& context) {
   const QueueView queue = store ? view_queue(*store) : QueueView();
   if (!queue.problem.empty()) {
     if (!options.dry_run) throw ProgramError(queue.problem);
-    warn(context, "runs that are already queued are not left out: " + queue.problem);
+    warn(context, "runs that are already queued are included: " + queue.problem);
   }
   if (!options.dry_run) prepare(*store, queue.submissions, plans);
   const auto busy = store ? busy_runs(*store, queue.submissions) : std::set<std::string>();
@@ -224,8 +224,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
   add_number(command, "--cpus-per-task,-c", job.cpus,
-             "Cores of each task; a task computes as many runs at a time as fit (default: one core "
-             "per run, at most 16)",
+             "Cores of each task; more cores compute more runs at a time (default: one core per "
+             "run, at most 16)",
              "C", 1, 1024);
   add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
   command
@@ -235,8 +235,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->check(unfit_scratch)
       ->type_name("DIR");
   add_number(command, "--warn", job.warn_seconds,
-             "Time before the time limit [s] at which a task writes checkpoints and queues itself "
-             "again",
+             "Time [s] before the limit at which a task writes checkpoints and queues itself again",
              "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
@@ -260,8 +259,8 @@ void add_submit(CLI::App& app, Context& context) {
       R"(Each task computes the runs of some packings in a separate store under STORE/submissions. A second
 job then merges these stores into STORE. Near its time limit, a task writes checkpoints and queues
 itself again. Runs that are done or queued are left out, so you can submit again at any time. STORE
-must be on a disk that all nodes can access. Variables such as $TMPDIR or ${USER} in --scratch have
-their values on the node. Environment variables such as SBATCH_ACCOUNT, SBATCH_PARTITION and
+must be on a disk that all nodes can access. Variables such as $TMPDIR or ${USER} in --scratch are
+expanded on the node. Environment variables such as SBATCH_ACCOUNT, SBATCH_PARTITION and
 SBATCH_QOS are respected, except those that contradict `submit` (experiments/cluster/README.md).
 Examples:
   shearcell submit experiments/drag.yaml --scale paper --partition long --time 24:00:00

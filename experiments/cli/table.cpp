@@ -39,7 +39,7 @@ void table(const TableOptions& options, Context& context) {
                  options.out);
   }
   for (const std::string& note : made.notes) print_stderr("{}\n", note);
-  if (made.table.rows.empty()) print_stderr("no checkpoint matches all of these options\n");
+  if (made.table.rows.empty()) print_stderr("no checkpoint matches all given options\n");
   print_problems(made, "not measured", context);
 }
 
@@ -65,7 +65,7 @@ void add_table(CLI::App& app, Context& context) {
   }
   command
       ->add_option("--curve", options->curve,
-                   "Write this curve, with one row for each of its points at each checkpoint")
+                   "Write this curve: for each checkpoint, one row for each point of the curve")
       ->check(CLI::IsMember(curves))
       ->excludes(per);
   CLI::Option* format = command->add_option("--format", options->format, "csv or json")

@@ -30,7 +30,7 @@ const char* name_of_severity(const Finding& finding) {
   return finding.severity == error ? "error" : finding.severity == note ? "note" : "not checked";
 }
 
-// Reads a head: "16 ab12..." as one or two arguments, or "16:ab12...".
+// Reads a head (number and hash of an event): "16 ab12...", "16" and "ab12...", or "16:ab12...".
 std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
   const std::string text = fmt::format("{}", fmt::join(words, " "));
@@ -64,7 +64,7 @@ std::string describe(const Replay& replay) {
     where = fmt::format("; largest difference in {}{}, {} ulp", d.field,
                         d.grain < 0 ? "" : fmt::format(" of grain {}", d.grain), d.ulp);
   }
-  return fmt::format("{}: DIVERGED after step {}, at step {} or earlier: {}{}", what, d.same_step,
+  return fmt::format("{}: DIVERGED: same at step {}, different at step {}: {}{}", what, d.same_step,
                      d.first_step, d.message, where);
 }
 
@@ -77,8 +77,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
     left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
   }
   left_out -= all.size();
-  // Replaying the first checkpoint of a stage needs no steps and proves little, so these
-  // checkpoints are used only if there are no others.
+  // The replay of a checkpoint at step 0 computes no steps and proves little. Such checkpoints are
+  // used only if there are no others.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
   if (!std::ranges::all_of(all, is_beginning)) std::erase_if(all, is_beginning);
   const std::size_t count = std::min(options.replay, all.size());
@@ -161,7 +161,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
                                                            : "nothing was changed",
              report.head.seq, report.head.hash);
   if (measures.cached > 0) {
-    print_text("recomputed the measures of {} of {} checkpoints\n", measures.computed,
+    print_text("recomputed the cached measures of {} of {} checkpoints\n", measures.computed,
                measures.cached);
   }
   if (measures.absent + measures.not_covered > 0) {

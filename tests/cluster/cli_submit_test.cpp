@@ -101,7 +101,7 @@ TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
         Arguments{"--cpus-per-task", "-1"}}) {
     expect(2, joined({"submit", manifest_, "--dry-run"}, words));
   }
-  expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leave no time"});
+  expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leaves no time"});
   expect(0, {"submit", manifest_, "--dry-run", "--time", "0"}, {"--time=0"});
 }
 

@@ -86,7 +86,7 @@ TEST_F(Commands, ShowRejectsAPrefixOfARunAndACheckpoint) {
           "step + 1, sha256 = '" +
           brief + std::string(56, '0') + "'; INSERT INTO checkpoints SELECT * FROM more");
   expect_refused({"show", brief},
-                 {"the ids of a run and of a checkpoint begin with '" + brief, run});
+                 {"the id of a run and the hash of a checkpoint begin with '" + brief, run});
   expect(0, {"show", run});
 }
 
@@ -120,8 +120,8 @@ TEST_F(Commands, MergeRejectsConflicts) {
   expect(2, {"merge", "all", "--store", "all"});
   expect(2, {"merge", "nowhere", "--store", "all"});
   expect_refused({"merge", "a", "nowhere", "--store", "new"},
-                 {"nowhere", "no store here to merge"});
-  expect_refused({"merge", "", "--store", "new"}, {"no store here to merge"});
+                 {"nowhere", "no store in this folder to merge"});
+  expect_refused({"merge", "", "--store", "new"}, {"no store in this folder to merge"});
   expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "is empty; name a file or folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
@@ -163,7 +163,7 @@ TEST_F(Commands, AnExperimentHasOneManifestAtATime) {
   write("comment.yaml", "# a comment\n" + tiny_manifest("  pressure_Pa: 700\n"));
   expect(0, {"plan", "m.yaml", "other.yaml"},
          {"m.yaml and other.yaml are different manifests of one experiment, tiny",
-          "Give one of them another `experiment`."});
+          "Change `experiment` in one manifest."});
   expect(0, {"plan", "m.yaml", "same.yaml"}, {"1 run,"});
   const std::string warning =
       "newest manifest of experiment tiny differs from this file and has 1 run that this plan "
@@ -254,10 +254,10 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
 TEST_F(Commands, PlanSaysWhatTheNextLookTakes) {
   write("m.yaml", tiny_manifest("", "seeds: 4\nlooks: [3, 4]\n"));
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
-         {"tiny: the next planned look is at 3 of 4 seeds, "});
+         {"tiny: the next planned look (interim analysis) uses 3 of 4 seeds "});
   expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
-         {"tiny: the next planned look is at 4 of 4 seeds, "});
+         {"tiny: the next planned look (interim analysis) uses 4 of 4 seeds "});
 }
 
 /// A manifest may start from runs of one that is named after it.
@@ -272,7 +272,7 @@ TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
   write("b.yaml", after("b", "a"));
   expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
-         {"warning: a.yaml: the manifests start from each other's runs in a circle",
+         {"warning: a.yaml: the `start` keys of the manifests form a loop",
           "the store has no run of b"});
 }
 

@@ -127,7 +127,7 @@ TEST_F(Convenience, DoctorReportsTheMachine) {
   }
   EXPECT_TRUE(listing().empty()) << "it left something behind";
   const Outcome nowhere = expect(1, {"doctor", "--no-speed", "--store", "/proc/x"},
-                                 {"a store cannot be written there"});
+                                 {"the program cannot write to this folder"});
   EXPECT_FALSE(has(nowhere.out, "room for"));
   write("plain", "");
   expect(1, {"doctor", "--no-speed", "--store", "plain"}, {"plain is a file"});

@@ -141,7 +141,7 @@ TEST_F(CommandLine, PrintsFactsAsJson) {
 
 TEST_F(CommandLine, MakesAllFigures) {
   campaign(tiny_manifest("", kBothFluids + "primary: [one of no figure]\n"));
-  const std::string warning = "warning: tiny: primary: no claim is 'one of no figure'";
+  const std::string warning = "warning: tiny: primary: unknown claim 'one of no figure'";
   expect(0, {"figures", "--all", "--out", "all"}, {warning});
   expect(0, {"figures", "S2", "--out", "all"}, {warning});
   EXPECT_FALSE(has(run({"figures", "table1", "--out", "all"}).err, warning)) << "not all figures";

@@ -128,7 +128,7 @@ std::vector<Case> damaged_events() {
             Store(s, Access::write).rebuild();
           },
           "the id is not the hash of the recorded parameters",
-          "stopped at damaged files in the store"),
+          "stopped by damaged files in the store"),
   };
 }
 
