@@ -205,7 +205,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   if (scalar.relative) {
     quantity += fmt::format(", relative difference from {:.6g}", published);
   } else if (published != 0) {
-    quantity += fmt::format(" less {:.6g}", published);
+    quantity += fmt::format(" minus {:.6g}", published);
   }
   return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
                   "", false);

@@ -56,8 +56,8 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
 
 /// Adds to each run the checkpoints that the figure needs, up to the end of the run. Removes runs
 /// without a checkpoint that the figure needs. Adds notes on removed runs, on unfinished runs, and
-/// on checkpoints that the manifest asks for and the run did not record. A table needs only the
-/// last checkpoint of each run; for a table, no run is removed and no note is added.
+/// on checkpoints that the manifest asks for and the run did not record. FigureForm::table needs
+/// only the last checkpoint of each run: no run is removed and no note is added.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =
@@ -398,8 +398,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.runs = frame_runs(std::move(selected), collected.notes);
   if (collected.runs.empty()) {
     throw NotFound(fmt::format(
-        "the runs selected for figure {} belong to an older version of the manifest; `shearcell "
-        "run` this version again to make it the newest version (this computes nothing)",
+        "the runs selected for figure {} belong to an older version of the manifest; to make that "
+        "version the newest, `shearcell run` that version again (this computes nothing)",
         wanted.path()));
   }
   std::map<std::string, std::string> packings;  // by id of the parent stage

@@ -53,11 +53,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// - NAME.caption.txt, if something is drawn
 /// - NAME.verdict.json, and NAME.verdict.csv with the numbers of each run, if there are claims
 /// - NAME.lineage.json
-/// If the figure has no caption or no claims, deletes the caption or verdict of an older figure.
+/// Deletes an older caption if the figure has no caption, and older verdicts if it has no claims.
 /// Records a FigureGenerated event with host and build. Records no event if options.recorded is
-/// false, if the newest event of this figure says the same, or if a drawing failed although gnuplot
-/// is installed. The same checkpoints give the same bytes. Throws as compute_figure() and
-/// require_own_files().
+/// false, if the newest event of this figure has the same content, or if a drawing failed although
+/// gnuplot is installed. The same checkpoints give the same bytes. Throws the errors of
+/// compute_figure() and require_own_files().
 ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

@@ -40,8 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
   return {run.place.experiment, run.place.scale};
 }
 
-/// The places of the stage in the newest manifest version of each experiment, at each scale. If the
-/// newest version does not have the stage, the place that was declared last is returned instead.
+/// For each experiment and scale: the places of the stage (variant and seed) in the newest manifest
+/// version. If that version does not have the stage, the place that was declared last.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {
