@@ -58,7 +58,7 @@ struct ClaimSpec {
   bool listed = false;
 };
 
-/// Whether the claim has one group of runs: with a published number or with Estimator::one_side.
+/// Whether the claim has only one group of runs (a published number, or Estimator::one_side).
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if stated, otherwise the id up to its first dot.

@@ -266,7 +266,7 @@ std::string plain_field(std::string variant) {
 
 /// Runs that share a curve.
 struct Group {
-  json key;             ///< the keys that distinguish curves, and the values of the runs
+  json key;             ///< the keys that distinguish curves, and their values in this group
   std::string variant;  ///< `key` as text
   std::vector<const Selected*> runs = {};
 };

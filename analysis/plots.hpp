@@ -54,7 +54,7 @@ struct MarkSpec {
 struct PlotSpec {
   std::string name;
   /// A measure of a checkpoint (a number or a curve), a measure of the whole run, or an expression
-  /// of parameters and measures. An expression cannot combine measures of both kinds, or curves.
+  /// of parameters and measures. An expression cannot contain curves or combine both kinds.
   std::string y;
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
@@ -80,7 +80,7 @@ struct PlotSpec {
   /// The cycle that is drawn if y is a curve, or if x has one value for each run. If empty, the
   /// last cycle that all runs have.
   std::optional<std::uint64_t> cycle = {};
-  /// First and last cycle to draw. All checkpoints between are drawn. Only for traces and scatter.
+  /// First and last cycle to draw, for traces and scatter. All checkpoints in between are drawn.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter

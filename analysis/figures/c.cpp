@@ -28,7 +28,7 @@ std::set<std::int64_t> cycles_to_follow() {
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// Number of cycles followed when critical sizes of amplitudes are compared. [choice]: errors are
+/// Number of cycles followed to compare critical sizes between amplitudes. [choice]: errors are
 /// smallest, since crystallites hardly change in one cycle and most have grown after ten cycles.
 constexpr std::int64_t cycles_compared = 5;
 

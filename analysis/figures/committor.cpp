@@ -25,14 +25,14 @@ namespace {
 /// cycles_gone. The other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
-/// No critical size is defined if the fraction of controls that grow exceeds this value and is at
-/// least the fraction of the smallest crystallites that grow. [choice]
+/// No critical size is defined if the fraction of growing controls (Subject) exceeds this value and
+/// is at least the fraction of growing crystallites of the smallest size. [choice]
 constexpr double rare = 0.1;
 
 /// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< clones in which it was gone and later grew
+  std::size_t revived = 0;                 ///< clones in which it was gone, then a descendant grew
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -249,7 +249,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   }
   table.chart = {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
-      .y = {.name = "size at which half grow", .unit = "grains", .low = 0, .high = 25}};
+      .y = {.name = "crystallite size at which half grow", .unit = "grains", .low = 0, .high = 25}};
   for (const Amplitude& one : all) {
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});

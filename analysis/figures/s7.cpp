@@ -45,7 +45,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   return places;
 }
 
-/// The width [d] of the narrowest cell. Inaccessible layers take the largest share of this cell.
+/// The width [d] of the narrowest cell, which has the largest share of inaccessible layers.
 double smallest_width(RunGroup runs) {
   double width = infinite;
   for (const FrameRun* run : runs) {

@@ -398,8 +398,8 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   collected.runs = frame_runs(std::move(selected), collected.notes);
   if (collected.runs.empty()) {
     throw NotFound(fmt::format(
-        "the runs selected for figure {} belong to an older version of the manifest; to make that "
-        "version the newest, `shearcell run` that version again (this computes nothing)",
+        "the runs selected for figure {} belong to an older version of the manifest; `shearcell "
+        "run` with that version makes it the newest version again (this computes nothing)",
         wanted.path()));
   }
   std::map<std::string, std::string> packings;  // by id of the parent stage

@@ -122,8 +122,8 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether the table has no value of a run that can be drawn. A series holds published points, not
-/// runs, if it is not `thin` and has no columns of the table, unless this is true for all series.
+/// Whether the table has no value of a run that can be drawn. Checks only the
+/// series that have columns of the table or are traces (`thin`). If there are none, checks all.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };

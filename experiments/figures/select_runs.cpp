@@ -40,8 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
   return {run.place.experiment, run.place.scale};
 }
 
-/// For each experiment and scale: the places of the stage (variant and seed) in the newest manifest
-/// version. If that version does not have the stage, the place that was declared last.
+/// Returns, for each experiment and scale, the places (variant and seed) of the stage in the newest
+/// manifest version, or the place that was declared last if this version does not have the stage.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {

@@ -351,8 +351,8 @@ json workflow(const Content& content, const Experiment& experiment) {
           figures};
 }
 
-/// The columns that the page shows at first: identifiers, swept parameters,
-/// states and results of the runs. `at` is the index of a column in the experiment's table.
+/// The columns that the page shows at first: identifiers, swept parameters, states and results of
+/// the runs. `at` is the index of a column in the experiment's table.
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();

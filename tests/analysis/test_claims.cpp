@@ -240,8 +240,8 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_EQ(pooled.ruling, Ruling::agrees);
   EXPECT_EQ(pooled.runs, 8U);
   EXPECT_EQ(pooled.note,
-            "8 and 8 runs in 2 of 3 groups with equal other parameters; a group needs at least 3 "
-            "numbers on each side");
+            "8 and 8 runs in 2 of 3 groups with equal values of all other parameters; a group "
+            "needs at least 3 numbers on each side");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.
