@@ -161,8 +161,8 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
-    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next interim analysis "
-                                       "is at {} seeds",
+    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look (interim "
+                                       "analysis) is at {} seeds",
                                        ended, seeds.size(), *next));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);

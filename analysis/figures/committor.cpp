@@ -181,8 +181,7 @@ std::string why_undefined(const Amplitude& one) {
   if (*q <= rare || !smallest || *smallest > *q) return "";
   return fmt::format(
       "no critical size is defined: a fraction {:.2g} of clones that begin without crystallites "
-      "form "
-      "one of {} grains, but only a fraction {:.2g} of crystallites of {} and {} grains grow",
+      "form one of {} grains, but only a fraction {:.2g} of crystallites of {} and {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
@@ -278,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The rows that enter a verdict: for each rule, one row for each crystallite and each control.
+/// The rows that enter a verdict, for each crystallite, control and element of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});

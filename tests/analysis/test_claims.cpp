@@ -372,14 +372,16 @@ TEST(PlannedLooks, GiveNoVerdictBetweenThem) {
   const Verdict early = at_looks(planned({1, 2}, 0.6, {3, 6}));
   EXPECT_EQ(early.ruling, Ruling::undecided);
   EXPECT_EQ(early.look, 0U);
-  EXPECT_TRUE(has(early.note, "2 of 6 seeds have ended; the next interim analysis is at 3 seeds"));
+  EXPECT_TRUE(
+      has(early.note, "2 of 6 seeds have ended; the next look (interim analysis) is at 3 seeds"));
   const Verdict gap = at_looks(planned({1, 3, 4, 5, 6}, 0.6, {3, 6}));
   EXPECT_EQ(gap.ruling, Ruling::undecided) << "never the first that finished";
-  EXPECT_TRUE(has(gap.note, "1 of 6 seeds have ended; the next interim analysis is at 3 seeds"));
+  EXPECT_TRUE(
+      has(gap.note, "1 of 6 seeds have ended; the next look (interim analysis) is at 3 seeds"));
   const Verdict between = at_looks(planned({1, 2, 3, 4}, 0.601, {3, 6}));
   EXPECT_EQ(between.ruling, Ruling::undecided);
   EXPECT_EQ(between.runs, 4U) << "numbers of all that have ended";
-  EXPECT_TRUE(has(between.note, "the next interim analysis is at 6 seeds"));
+  EXPECT_TRUE(has(between.note, "the next look (interim analysis) is at 6 seeds"));
   EXPECT_TRUE(has(between.note, "with probability 0."));
 }
 
