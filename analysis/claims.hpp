@@ -76,7 +76,7 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 /// no `for_each`, or if no run has a value.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// The claim with its sentence and signed margin. `sides`: ClaimSides::names.
+/// Returns the claim with its sentence and a signed margin. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: the sides hold planned

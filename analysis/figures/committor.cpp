@@ -32,7 +32,7 @@ constexpr double rare = 0.1;
 /// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< clones in which it was gone, then a descendant grew
+  std::size_t revived = 0;                 ///< clones in which a descendant grew after `gone`
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {

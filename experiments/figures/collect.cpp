@@ -163,8 +163,8 @@ PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
   return planned;
 }
 
-/// Sets Frame::seeds and Frame::looks. Adds the planned runs that are not declared to
-/// Frame::pending.
+/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
+/// declared.
 void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
   if (fresh) known->second = plan_runs(manifest.content, collected.scale);

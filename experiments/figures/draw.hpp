@@ -39,7 +39,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::vector<std::string> undrawn;          ///< a line for each drawing that failed, with reason
 };
 
-/// Computes the tables, verdicts and lineage of a figure. Writes nothing but measures into
+/// Computes the tables, verdicts and lineage of a figure. Writes only measures, into
 /// derived.sqlite, and does not use options.folder. Reads no checkpoint whose measures are cached.
 /// The result leaves out a damaged or pruned checkpoint without cached measures, and names it.
 /// Throws NotFound if the store has no run for the figure, and UsageError if the figure would

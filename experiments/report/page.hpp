@@ -37,7 +37,7 @@ struct Report : MeasureOutcome {
 };
 
 /// Makes the report. The same program, store and options give the same bytes; drawings also need
-/// the same gnuplot. Writes nothing but measures into derived.sqlite. Throws NotFound if the store
+/// the same gnuplot. Writes only measures, into derived.sqlite. Throws NotFound if the store
 /// has no experiment or a run of `packings.runs` is unknown.
 Report make_report(const Store& store, const ReportOptions& options);
 
