@@ -34,18 +34,18 @@ void add_size(const std::optional<Estimate>& size, TableRow& row);
 /// A quantity with the columns NAME_mean_UNIT (or NAME_rms_UNIT) and NAME_standard_error_UNIT.
 struct MeasureColumn {
   std::string name;
-  std::string unit;  ///< as in the columns' names: "d", "percent" or ""
+  std::string unit;  ///< as in the names of the columns: "d", "percent" or ""
   bool rms = false;  ///< root mean square over runs instead of the mean
 
   RunStatistics over(std::span<const double> values) const;  ///< `values`: one per run
 };
 
-/// Name of the column of a statistic, which is "mean" or "standard_error". With MeasureColumn::rms,
-/// "rms" replaces "mean".
+/// Name of the column for `statistic`, which is "mean" or "standard_error". If MeasureColumn::rms
+/// is true, "rms" replaces "mean".
 std::string column_name(const MeasureColumn& measure, const char* statistic);
 void add_columns(const MeasureColumn& measure, std::vector<TableColumn>& columns);
 void add_values(const RunStatistics& statistics, TableRow& row);
-/// The columns to draw: x, the measure's mean with its error, and the number of runs.
+/// The columns to draw: x, the mean of the measure `y`, its standard error, and the number of runs.
 SeriesColumns columns_against(std::string x, const MeasureColumn& y);
 
 }  // namespace shearcell

@@ -229,7 +229,7 @@ std::vector<ChartPoint> points_of(const Table& table, const Series& series) {
 
 void name_run_counts(Table& table) {
   std::vector<Series*> means;
-  std::vector<std::string> counts;  // of each mean; "" if no run is missing
+  std::vector<std::string> counts;  // text for each mean; "" if no run is missing
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const ChartPoint& point : points_of(table, series)) {
@@ -279,8 +279,8 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
   std::string text = title + (title.ends_with('?') ? "" : ".");
   bool bars = false, bands = false, own_errors = false;
   std::vector<std::string> lines, sources;
-  std::vector<std::pair<std::string, std::string>> panels;  // names of panels, with a sentence
-  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // each note, with its panels
+  std::vector<std::pair<std::string, std::string>> panels;  // {names of panels, sentence}
+  nlohmann::ordered_map<std::string, std::vector<std::string>> notes;  // note -> letters of panels
   std::size_t charts = 0;
   const auto add_once = [](std::vector<std::string>& list, const std::string& one) {
     if (!one.empty() && std::ranges::find(list, one) == list.end()) list.push_back(one);

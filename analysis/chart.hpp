@@ -80,8 +80,8 @@ struct ChartPoint {
   std::optional<double> runs = std::nullopt;  ///< number of runs averaged in y
 };
 
-/// Names of the columns with the data of a series. The names of errors and of `runs` may be empty.
-/// If `x_high` is named, a point lies in the middle between the columns `x` and `x_high`.
+/// Names of the columns with the data of a series. All names except `x` and `y` may be empty. If
+/// `x_high` is not empty, x of a point is the mean of the columns `x` and `x_high`.
 struct SeriesColumns {
   std::string x = {};
   std::string y = {};
@@ -100,10 +100,10 @@ struct RowFilter {
 enum class Join { none, line, dashes };
 
 struct Series {
-  Text title = {};          ///< in the key; a series without title has no entry
+  Text title = {};          ///< in the legend; a series without a title has no entry
   std::string colour = {};  ///< "#rrggbb"
   int point = 7;            ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
-                            ///< 12 diamond; one more is the filled symbol
+                            ///< 12 diamond; add 1 for the filled symbol
   Join join = Join::none;   ///< points are joined in their order
   bool band = false;        ///< errors of y are drawn as a band; errors of x are not drawn
   bool thin = false;        ///< a thin line, for one run of many
@@ -181,21 +181,21 @@ nlohmann::ordered_json to_json(const Table& table);
 /// The points of one series that have finite x and y, without the series' shift.
 std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 
-/// Adds the numbers of runs per point, such as "(3 to 5 runs)", to the title of each series in
-/// which they differ between points or are less than Series::runs. Readers need them, since a mean
-/// may change along a curve only because other runs enter it. If the numbers are equal for all
-/// series, the caption states them once.
+/// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
+/// this number varies or is less than Series::runs. Readers need this number, since a mean may
+/// change along a curve only because it includes other runs. If all series have the same numbers,
+/// the caption states them once.
 void name_run_counts(Table& table);
 
-/// Number of significant digits for values from `low` to `high`: nine, or as many as show the
-/// spread high - low with five digits. A spread below 1e-11 of the values counts as rounding error.
+/// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to
+/// show high - low with five digits. A difference below 1e-11 of the values is rounding error.
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 
 /// The text without styles. A subscript becomes "v_fluid".
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point or line. A logarithmic axis has only positive values.
+/// Whether the chart can draw the point or line. A logarithmic axis shows only positive values.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
 bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 

@@ -20,7 +20,6 @@
 namespace shearcell {
 namespace {
 
-/// Whether the run belongs to a side of the claim.
 bool is_of(const ClaimSpec& claim, const FrameRun& run) {
   return has_parameters(run, claim.where) &&
          (has_parameters(run, claim.between[0]) ||
@@ -33,8 +32,8 @@ std::string words_of(const ClaimSpec& claim) {
   return estimator.words != nullptr ? estimator.words(claim) : estimator.scalar(claim).name;
 }
 
-/// Crystallization changes a mean over cycles. Adds to the note how many runs begin to crystallize
-/// before the last of `cycles`.
+/// Adds to the note how many runs begin to crystallize before the last cycle of ClaimSpec::cycles,
+/// since crystallization changes a mean over these cycles.
 void note_early_onsets(const ClaimSpec& claim, std::initializer_list<RunGroup> groups,
                        Verdict& verdict) {
   if (!claim.cycles || claim.cycles->at(0) == claim.cycles->at(1)) return;
@@ -115,10 +114,10 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   return verdict;
 }
 
-/// The verdict of the first planned look that decides the claim. A look at n seeds uses the runs of
-/// the first n seeds, and is made when all these runs have ended. Without stated looks there is one
-/// look, at all seeds. Between looks the verdict is undecided and shows the numbers of the first
-/// seeds that have ended. Runs of other seeds only enter the note.
+/// A look (interim analysis) at n seeds uses the runs of the first n seeds, after these have ended.
+/// Returns the verdict of the first look that decides the claim. If no looks are planned, there is
+/// one look, at all seeds. Until the next look the verdict is undecided, and its numbers are for
+/// the seeds before the first unfinished seed. Only the note includes runs of unplanned seeds.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
@@ -162,14 +161,15 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
-    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look is at {} seeds",
+    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look (interim "
+                                       "analysis) is at {} seeds",
                                        ended, seeds.size(), *next));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
       add_note(verdict.note,
-               fmt::format("if this estimate is the true value, that look or an earlier one "
-                           "decides the claim with probability {:.2f}",
+               fmt::format("if this estimate is the true value, the claim is decided by then "
+                           "with probability {:.2f}",
                            there.as_claimed + there.against));
     }
   }
@@ -177,7 +177,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  add_note(verdict.note, fmt::format("unplanned look with {} beyond the plan: {}",
+  add_note(verdict.note, fmt::format("an unplanned look, with {} beyond the plan, gives: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }

@@ -16,7 +16,7 @@ namespace shearcell {
 
 /// Published numbers: one value, or points.
 struct PublishedSpec {
-  std::string label = {};  ///< its text in the key of a plot
+  std::string label = {};  ///< text in the legend of a plot
   std::string source = {};
   std::optional<double> value = {};
   double error = 0;                              ///< uncertainty of `value`; 0: not stated
@@ -27,16 +27,16 @@ struct PublishedSpec {
 struct ClaimSpec {
   std::string id;            ///< "S2.phi"; the same in every manifest that lists its figure
   std::string figure = {};   ///< like PlotSpec::figure
-  std::string compare = {};  ///< like PlotSpec::y, but not a curve
+  std::string compare = {};  ///< what is compared: like PlotSpec::y, but not a curve
   /// The estimator's name; "": the other keys imply the estimator (estimator_of()).
   std::string estimator = {};
-  /// Each claim has at most one of the next four: first and last cycle, lower and upper end of a
-  /// range of phi, a value to be reached, or the name of another column.
+  /// A claim states at most one of the next four members: `cycles` (first and last), `phi` (lower
+  /// and upper end of a range), `reaches` (a value of the measure), or `against` (another column).
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::optional<std::array<double, 2>> phi = {};
   std::optional<double> reaches = {};
   std::string against = {};
-  /// Both sides have only runs with these parameters (has_parameters()).
+  /// Both sides use only runs that have these parameters (has_parameters()).
   nlohmann::json where = nlohmann::json::object();
   /// A parameter. Each of its values gives a claim with an id like "S5a.onset@amplitude_rad=0.05".
   std::string for_each = {};
@@ -53,12 +53,12 @@ struct ClaimSpec {
   Relation is = Relation::same;
   bool optional = false;               ///< no verdict if a side has no runs
   std::string cannot_be_decided = {};  ///< like Claim::cannot_be_decided
-  /// Like PlotSpec::listed. If problems_of_sides() finds a problem, a listed claim is judged
-  /// without runs; for other claims the problem is an error.
+  /// Like PlotSpec::listed. If problems_of_sides() finds a problem, the verdict on a listed claim
+  /// uses no runs. For any other claim the problem is an error.
   bool listed = false;
 };
 
-/// Whether the claim has one group of runs, due to a published number or Estimator::one_side.
+/// Whether the claim has only one group of runs (a published number, or Estimator::one_side).
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if stated, otherwise the id up to its first dot.
@@ -76,17 +76,17 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 /// no `for_each`, or if no run has a value.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// The claim with its sentence and signed margin. `sides`: ClaimSides::names.
+/// Returns the claim with its sentence and a signed margin. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
-/// One sentence for each reason why the sides cannot be compared. With `planned`, the sides have
-/// the planned runs, and a side without runs is also a reason.
+/// One sentence for each reason why the sides cannot be compared. `planned`: the sides hold planned
+/// runs. In this case a side without runs is also a reason.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 
-/// A figure without panels, with the verdicts of the claim. A verdict is undecided if a side has no
-/// runs. For a claim that is not listed, Figure::make throws UsageError with the first problem of
-/// problems_of_sides().
+/// A figure that has no panels, only the verdicts on the claim. A verdict is undecided if a side
+/// has no runs. For a claim that is not listed, Figure::make throws UsageError with the first
+/// problem of problems_of_sides().
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

@@ -106,7 +106,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
 /// For each packing that occurs in both groups: the mean over its runs in each group.
 struct Pairs {
   std::vector<CensoredValue> a, b;
-  bool any = false;    ///< runs of the two groups share a packing, with or without numbers
+  bool any = false;    ///< some runs of the two groups share a packing
   bool enough = true;  ///< at least three quarters of each group's packings form pairs
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values) {
@@ -205,7 +205,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
   if (scalar.relative) {
     quantity += fmt::format(", relative difference from {:.6g}", published);
   } else if (published != 0) {
-    quantity += fmt::format(" less {:.6g}", published);
+    quantity += fmt::format(" minus {:.6g}", published);
   }
   return conclude(claim, quantity, censored_mean(values, claim.level), values.size(), all, scalar,
                   "", false);

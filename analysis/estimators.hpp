@@ -29,12 +29,12 @@ struct Estimator {
   std::string_view name;      ///< its name in manifests
   std::string_view meaning;   ///< its description in REFERENCE.md
   std::string_view key = {};  ///< a key that its claims must state; "": no such key
-  /// Whether its claims compare numbers of whole runs, not of checkpoints; empty: both kinds.
+  /// Whether its claims compare measures of whole runs (true) or of checkpoints; empty: either.
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   bool one_side = false;       ///< its claims have one group, even without a published number
-  /// Returns the number of each run. The mean over runs, or the difference of two means, is then
-  /// estimated. If null, `decide` gives the verdict.
+  /// Gives the number of each run. The mean over runs, or the difference between the means of two
+  /// groups, is then estimated. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Returns the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
@@ -57,8 +57,8 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times for an event. A run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
-/// `statistic` of the points (cycle, value) of a column at the whole cycles first .. last. A run
-/// that lacks one of these cycles has no value.
+/// Applies `statistic` to the points (cycle, value) of a column at the whole cycles first .. last.
+/// A run that lacks one of these cycles has no value.
 using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
                    PointStatistic statistic);
@@ -74,8 +74,8 @@ Scalar over_phi(const std::string& name, const std::string& column, double low, 
 /// Decides on the mean of `a` minus the mean of `b`. Runs of `a` and `b` that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
-/// verdict needs least_runs runs or pairs. At least three quarters of each group must have the
-/// number (and a partner, if there are pairs), since missing runs may bias the verdict. [choice]
+/// verdict needs least_runs runs or pairs. At least three quarters of each group must have
+/// the number and, if there are pairs, a partner. Missing runs may bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides on the mean over runs minus the published number.

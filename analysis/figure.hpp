@@ -42,14 +42,14 @@ struct Figure {
   std::vector<std::string> claims = {};  ///< ids of its claims, without the part after '@'
   /// Names of the providers (measures.hpp) that the figure needs besides scalars_provider.
   std::vector<std::string> needs = {};
-  /// First and last cycle that the figure uses, with all checkpoints within these cycles. If empty,
-  /// the figure uses all cycles, but only the checkpoints at whole cycles.
+  /// First and last cycle that the figure uses. It uses all checkpoints within these cycles. If
+  /// empty, the figure uses all cycles, but only the checkpoints at whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
   /// First and last cycle for which the figure needs simulated measures; empty: all cycles.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
   /// The experiments whose runs the figure uses; empty: the experiment of its manifest.
   std::vector<std::string> of = {};
-  /// Whether the figure uses a run. Called before checkpoints are read. Empty: it uses all runs.
+  /// Whether the figure uses a run. Called before checkpoints are read. Empty: uses all runs.
   std::function<bool(const FrameRun& run)> uses = {};
 };
 

@@ -27,7 +27,7 @@ constexpr std::string_view style =
     "set mytics 2\n"
     // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
     "set autoscale noextend\n"
-    // The key is above the frame, since inside the frame it could hide data.
+    // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
 /// A single-quoted gnuplot string, in which each quote must be doubled. gnuplot misreads two quotes
@@ -105,16 +105,16 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   return ticks;
 }
 
-/// Width and height of a drawing with its key [px], and the number of columns of the key.
+/// Width and height of a drawing and its legend [px], and the number of columns of the legend.
 struct Layout {
   int width = column_width;
   int height = chart_height;
   std::size_t columns = 1;
-  std::size_t longest = 0;  ///< letters of the longest title in the key
+  std::size_t longest = 0;  ///< letters of the longest title in the legend
 };
 
-/// The drawing has the width of two journal columns if the chart is wide, if a title in the key is
-/// too long for one journal column, or if the key would have more than eight rows.
+/// The drawing has the width of two journal columns if the chart is wide, if a title in the legend
+/// is too long for one journal column, or if the legend would have more than eight rows.
 Layout layout_of(const Chart& chart) {
   constexpr double letter = 5.2, symbol = 32;  // [px]
   constexpr std::size_t most_letters = 42;
@@ -140,7 +140,7 @@ Layout layout_of(const Chart& chart) {
   return layout;
 }
 
-/// The commands for one chart, with the data that they draw.
+/// The commands for one chart, including the data that they draw.
 class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
@@ -182,7 +182,7 @@ class Script {
       if (is_on_log_axes(chart_, line)) reference(line);
     }
     for (std::size_t k = 0; k < points_.size(); ++k) data(k);
-    // The key lists the series in their order. Curves are drawn in reverse: the first is on top.
+    // The legend lists the series in order. The first curve is drawn last, on top of the others.
     std::vector<std::string> plots;
     for (const Series& series : chart_.series) plots.push_back(key_entry(series));
     for (const bool bands : {true, false}) {
@@ -234,8 +234,8 @@ class Script {
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
-  /// Sets the ranges of both axes. gnuplot chooses each end that is not fixed, a little beyond the
-  /// data. gnuplot ignores horizontal lines; with such lines, the script states the ends of y.
+  /// Sets the ranges of both axes. gnuplot places each end that is not fixed a little beyond the
+  /// data. It ignores horizontal lines. If there are such lines, the script fixes both ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {

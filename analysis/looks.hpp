@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A look is a verdict at a planned number of runs. Computes the confidence level of each look, and
-// the probability that the looks decide a claim.
+// A look (interim analysis) is a verdict at a planned number of runs. Computes the confidence level
+// of each look, and the probability that the looks decide a claim.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace shearcell {
 
-/// The confidence level that each look needs so that, with probability `level`, the intervals of
-/// all looks contain the true value: S. J. Pocock, Biometrika 64, 191 (1977). The level is the same
-/// at each look. The interval of a look uses Student's quantile for the number of runs at this look
-/// (C. Jennison and B. W. Turnbull, Group Sequential Methods (2000), section 11.4.4). `looks`:
+/// The confidence level of each look (interim analysis), equal for all looks, such that the
+/// intervals of all looks contain the true value with probability `level` (S. J. Pocock, Biometrika
+/// 64, 191 (1977)). The interval of a look uses Student's quantile for the number of runs at this
+/// look (C. Jennison and B. W. Turnbull, Group Sequential Methods (2000), section 11.4.4). `looks`:
 /// numbers of runs, ascending. Estimates at n and m > n runs have the correlation sqrt(n / m).
 /// Their joint probability is integrated from look to look: P. Armitage, C. K. McPherson and B. C.
 /// Rowe, J. R. Stat. Soc. A 132, 235 (1969).
 double look_level(std::span<const std::size_t> looks, double level = confidence_level);
 
-/// Probabilities that the claim is decided at this look or before. The first decision is final.
+/// Probabilities that this look or an earlier look decides the claim. The first decision is final.
 struct LookPower {
   std::size_t runs = 0;
   double as_claimed = 0;  ///< agrees, or supported
@@ -30,7 +30,7 @@ struct LookPower {
 
 /// The power at each look if the true value is `truth` and the runs are normally distributed with
 /// `spread` (Estimate::spread). `groups`: 1 for one group or for pairs, 2 for two groups of equal
-/// size. The same 4000 campaigns are simulated in every call; standard errors are at most 0.008.
+/// size. Every call simulates the same 4000 studies. Standard errors are at most 0.008.
 std::vector<LookPower> power_of(const Claim& claim, double truth, double spread, std::size_t groups,
                                 std::span<const std::size_t> looks);
 

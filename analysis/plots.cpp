@@ -36,7 +36,7 @@ const Measure* find_curve(std::string_view name) {
   return find_measure(name, MeasureKind::curve);
 }
 
-/// The quantity on the x axis. Runs are averaged at equal values of this quantity.
+/// The kind of quantity on the x axis. It decides which values are averaged over runs.
 enum class Against { cycle, phi, measure, number_of_run, curve };
 
 Against against(const PlotSpec& plot) {
@@ -156,7 +156,7 @@ struct Sample {
 struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< why a measure y of the whole run is missing
+  Missing missing = Missing::nothing;  ///< why y is missing, if it is a measure of the whole run
   /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
@@ -266,14 +266,14 @@ std::string plain_field(std::string variant) {
 
 /// Runs that share a curve.
 struct Group {
-  json key;             ///< the keys that distinguish curves, with the values of these runs
+  json key;             ///< the keys that distinguish curves, and their values in this group
   std::string variant;  ///< `key` as text
   std::vector<const Selected*> runs = {};
 };
 
-/// The curves of a panel. With PlotSpec::by, runs with equal values of `by` share a curve. Without
-/// it, each variant has a curve; if x is a number of the run, or the plot has panels, runs that
-/// differ only in x or in the panel's parameter share a curve.
+/// The curves of a panel. If PlotSpec::by is stated, runs with equal values of `by` share a curve.
+/// Otherwise each variant has a curve. In a plot with panels, or with one value of x for each run,
+/// runs that differ only in x or in the panel's parameter share a curve.
 std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -299,7 +299,7 @@ std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> run
   return found;
 }
 
-/// The titles of the curves: the variant's name if a curve has one variant, otherwise its values.
+/// The titles of the curves: the name of the variant if there is only one, otherwise Group::key.
 std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
                                    const NameVariants& name) {
   std::vector<json> keys;
@@ -319,7 +319,7 @@ std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> 
 
 /// For each group, the index of its style in PlotSpec::series. The index is the number of styles if
 /// no style fits, or if the style fits another group too. The styles of a listed plot are used only
-/// if the runs differ in no other parameters.
+/// if PlotSpec::series contains every parameter in which the groups differ.
 std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group> groups) {
   std::vector<json> keys;
   for (const Group& group : groups) keys.push_back(group.key);
@@ -431,7 +431,7 @@ struct Bin {
   RunStatistics x = {};
   std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
-  std::map<Missing, std::size_t> missing = {};  ///< runs that lack a y of the whole run
+  std::map<Missing, std::size_t> missing = {};  ///< number of runs without y, by reason
 };
 
 /// Averages over independent runs. Runs of one packing count as one run. In a bin of phi, the value
@@ -487,7 +487,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
     const auto over = [&](std::size_t k, const auto& statistics) {
       std::vector<double> values;
       for (const std::vector<double>& of_run : members.values) values.push_back(of_run[k]);
-      // Against a measure, only runs with both x and y count.
+      // If x is a measure of checkpoints, only runs that have x and y are averaged.
       for (std::size_t r = 0; what == Against::measure && r < values.size(); ++r) {
         const auto& of_run = members.values[r];
         if (!std::isfinite(of_run[0]) || !std::isfinite(of_run[1])) values[r] = std::nan("");
@@ -529,7 +529,7 @@ MeasureColumn column_of(std::string_view measure, std::string_view of) {
   return {std::move(name), std::move(unit)};
 }
 
-/// Finds a number of checkpoints, a number of a whole run or a curve; null if no measure fits.
+/// Finds a measure of checkpoints (a number or a curve) or of whole runs; null if no measure fits.
 const Measure* find_plotted(std::string_view text) {
   const Measure* measure = find_measure(text);
   if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
@@ -544,7 +544,6 @@ MeasureColumn column_for(const std::string& text, const std::string& name = {}) 
   return column;
 }
 
-/// The columns of y and of PlotSpec::also.
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   std::vector<MeasureColumn> columns = {column_for(plot.y, plot.column)};
   if (!plot.minus.empty()) columns[0].name += "_difference";
@@ -624,7 +623,7 @@ void leave_out_symbol(const Curve& curve, Series& series) {
 std::vector<Series> series_of_runs(const Panel& panel) {
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
-    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used if x is a number of the run
+    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used if x has one value per run
     std::vector<std::vector<ChartPoint>> traces;
     for (const Trace& trace : curve.traces) {
       std::vector<ChartPoint>& points = traces.emplace_back();
@@ -867,11 +866,11 @@ Table draw(const Panel& panel) {
     series.band = what != Against::number_of_run;
     if (what == Against::phi) series.columns.x_error = "phi_standard_error";
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // If x is a number of the run, points at different x come from different runs.
+    // If x has one value for each run, points at different x come from different runs.
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, from where the first run of a curve has ended";
+      table.chart.note = "Thin lines: single runs, after the first run of a curve has ended";
     }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
@@ -898,8 +897,8 @@ Table draw(const Panel& panel) {
   return table;
 }
 
-/// Adds the published numbers. A value is a dashed line, or two lines at the ends of its error.
-/// Points have open symbols. The key has the labels, and the caption has the sources.
+/// Adds the published numbers. A value is drawn as a dashed line, or as two lines at value ± error.
+/// Points have open symbols. The legend has the labels, and the caption has the sources.
 void add_published(const PlotSpec& plot, Chart& chart) {
   std::vector<std::string> sources;
   int point = 6;

@@ -25,7 +25,6 @@ enum class Show : std::uint8_t { mean, rms, traces, scatter };
 template <>
 inline constexpr auto kNames<Show> = names_in_order<Show>("mean", "rms", "traces", "scatter");
 
-/// The axes of a plot that are logarithmic.
 enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
@@ -54,16 +53,16 @@ struct MarkSpec {
 
 struct PlotSpec {
   std::string name;
-  /// A measure of a checkpoint (a number or a curve), a measure of a run, or an expression. An
-  /// expression has parameters and either numbers of a checkpoint or measures of a run.
+  /// A measure of a checkpoint (a number or a curve), a measure of the whole run, or an expression
+  /// of parameters and measures. An expression cannot contain curves or combine both kinds.
   std::string y;
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
   /// Parameters and their values that select one variant. The plot then shows `y` minus the `y` of
   /// this variant's run with the same packing at the same cycle. If empty, the plot shows `y`.
   nlohmann::json minus = nlohmann::json::object();
-  /// "cycle", a number of a checkpoint, a parameter, a number of the whole run, or an expression of
-  /// these. A number of the whole run is averaged over the runs of each variant. Curves ignore x.
+  /// "cycle", a parameter, a measure (of a checkpoint or of the run), or an expression of these. A
+  /// measure of the run is averaged over the runs of each variant. Ignored if y is a curve.
   std::string x = "cycle";
   std::string by = {};      ///< one curve for each value of this parameter; "": for each variant
   std::string figure = {};  ///< the figure to which the plot belongs; "": `name`
@@ -73,21 +72,21 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV. If y is a number of the run, measures of checkpoints have their
-  /// values at the run's first checkpoint. The first `drawn` of these columns are drawn as curves.
+  /// Further columns of the CSV; the first `drawn` of them are also drawn. If x and y have one
+  /// value for each run, measures of checkpoints are taken at the first checkpoint of the run.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
-  /// The cycle at which a curve measure, or `y` against a parameter, is drawn. If empty, the last
-  /// cycle that all runs have.
+  /// The cycle that is drawn if y is a curve, or if x has one value for each run. If empty, the
+  /// last cycle that all runs have.
   std::optional<std::uint64_t> cycle = {};
-  /// First and last cycle to draw, with all checkpoints within them; only for traces and scatter.
+  /// First and last cycle to draw, for traces and scatter. All checkpoints in between are drawn.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
-  /// The plot belongs to a shipped manifest, and the user's manifest lists its figure. Labels of
-  /// the user's manifest then replace the labels of `series`. The styles of `series` are used only
-  /// if the runs differ in no parameters other than those in `series`.
+  /// The plot belongs to a shipped manifest, and the user's manifest lists the plot's figure.
+  /// Labels of the user's manifest then replace the labels of `series`. The styles of `series` are
+  /// used only if `series` contains every parameter in which the curves differ.
   bool listed = false;
 };
 
@@ -107,9 +106,9 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
 
 /// The figure of a plot. It has one panel NAME; with PlotSpec::panel it has panels NAME_1, NAME_2,
-/// ... with equal ranges. Against phi, runs are averaged in bins of phi; against another measure,
-/// at each cycle; against a parameter, at one cycle. A curve measure is drawn at one cycle. `names`
-/// gives the titles of curves; without it a title has the form "fluid=still".
+/// ... with equal ranges. Runs are averaged in bins of phi if x is phi, at each cycle if x is
+/// another measure, and at one cycle if x is a parameter. A curve measure is drawn at one cycle.
+/// `names` gives the titles of curves; without it a title has the form "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
 /// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".

@@ -36,7 +36,7 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< of a curve without symbols; dashes if its colour repeats
+  Join join = Join::line;   ///< line of a curve without symbols; dashes if the colour repeats
 };
 
 /// The look of a curve of one amplitude. Each amplitude of the supplement has the same look in all
@@ -51,7 +51,7 @@ class Looks {
   explicit Looks(const Frame& frame);
 
   /// The look of a curve. If all its runs belong to one variant, the variant's swept values decide
-  /// the look. Otherwise `key` decides, which has the values that all runs of the curve share.
+  /// the look. Otherwise `key` decides; it has the values that all runs of the curve share.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

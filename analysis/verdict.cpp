@@ -26,8 +26,8 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // The spread averages both sides of the interval. If one side is much longer, the computed number
-  // may be too small, but it must exceed the present number.
+  // Estimate::spread averages both sides of the interval. If one side is much longer, `needed` may
+  // be too small. An undecided claim needs more runs than it has.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 

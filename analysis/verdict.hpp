@@ -32,12 +32,12 @@ template <>
 inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
 
 struct Claim {
-  std::string text;  ///< the claim in words, after its section of the supplement
+  std::string text;  ///< the claim in words: "C: the critical size grows with A"
   double margin = 0;
   Relation claimed = Relation::same;
   std::string id = {};  ///< "S5a.onset@amplitude_rad=0.05"
   double level = confidence_level;
-  std::string cannot_be_decided = {};  ///< the reason; "": more runs may decide it
+  std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
 };
 
 /// The unit in which a verdict counts its runs.
@@ -54,18 +54,18 @@ struct Verdict {
   Interval interval;               ///< undefined without an estimate
   double level = confidence_level;
   /// The event of a claim on waiting times; "" for other claims. With an event, `estimate`,
-  /// `interval` and `margin` are log2 of the first group's waiting time over the second group's.
+  /// `interval` and `margin` are log2 of a ratio of waiting times (first group / second group).
   std::string waits_for = {};
   double margin = 0;
   Ruling ruling = Ruling::undecided;
   std::size_t runs = 0;  ///< in units of `counted`
   Counted counted = Counted::runs;
-  std::size_t censored = 0;                ///< entered runs that ended before the event
+  std::size_t censored = 0;                ///< runs that ended before the event
   std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown
   double spread = 0;                       ///< Estimate::spread
   std::size_t groups = 1;                  ///< Estimate::groups
-  std::vector<std::size_t> looks = {};     ///< seeds at each planned look; empty: no plan
-  std::size_t look = 0;                    ///< seeds at the last look so far; 0: no look yet
+  std::vector<std::size_t> looks = {};     ///< seeds at each planned look (interim analysis)
+  std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
   std::string note;                        ///< how the runs were compared, and which are missing
   bool primary = false;                    ///< the runs were made to decide this claim
   Table entered = {};                      ///< rows with the numbers that the verdict uses
@@ -77,9 +77,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim states why it cannot be decided, the verdict is undecidable and the note has the reason.
-/// `runs_needed` runs would decide with 90 % probability if the true value is 0 or twice the
-/// margin. If the interval excludes 0, or that many runs exist already, the true value is assumed
-/// to be the estimate. `runs_needed` is always more than the runs of the estimate.
+/// `runs_needed` runs would decide the claim with 90 % probability if the true value is 0 (for
+/// Relation::same) or twice the margin. If the interval excludes 0, or if that many runs exist
+/// already, the true value is assumed to be the estimate. `runs_needed` exceeds Estimate::runs.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

@@ -27,7 +27,7 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
 const Estimator number_of_the_run = {
     .name = "number_of_run",
     .meaning =
-        "a number of the whole run, such as `onset_size_phi`, or an expression of such numbers",
+        "a measure of the whole run, such as `onset_size_phi`, or an expression of such measures",
     .of_run = true,
     .scalar = scalar_of_run};
 

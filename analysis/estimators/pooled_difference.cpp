@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The difference between two sides whose runs also differ in other parameters, such as the
-// amplitude. Runs with equal other parameters form a stratum. The two sides are compared within
-// each stratum, and the differences of all strata are averaged.
+// amplitude. Runs with equal values of these parameters form a stratum. The two sides are compared
+// within each stratum, and the differences of all strata are averaged.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,8 +88,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
       stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
       strata.empty()
           ? std::string(no_group)
-          : fmt::format("{} and {} runs in {} of {} with equal parameters; the others "
-                        "lack {} numbers on a side",
+          : fmt::format("{} and {} runs in {} of {} with equal values of all other "
+                        "parameters; a group needs at least {} numbers on each side",
                         runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
       std::move(entered), Counted::runs_per_variant);
   verdict.censored = censored;
@@ -101,8 +101,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
 const Estimator pooled_difference = {
     .name = "pooled_difference",
     .meaning =
-        "difference between the sides of `between` for runs with equal other parameters, averaged "
-        "over these parameters; each side may have several variants",
+        "difference between the sides of `between`, compared among runs whose other parameters are "
+        "equal, and averaged over these parameters; each side may have several variants",
     .of_run = std::nullopt,
     .over_variants = true,
     .decide = decide_pooled,

@@ -36,11 +36,11 @@ Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup ru
   const double published = claim.published ? claim.published->value.value_or(0) : 0;
   std::optional<Estimate> estimate = size_exponent(runs, region, stated.level);
   if (estimate) estimate = mapped(*estimate, [&](double exponent) { return exponent - published; });
-  return decide(stated, fmt::format("{} less {}", words_of_exponent(claim), published), estimate,
+  return decide(stated, fmt::format("{} minus {}", words_of_exponent(claim), published), estimate,
                 estimate ? estimate->runs : runs.size(),
                 estimate ? fmt::format("maximum likelihood, {} onsets", onsets)
-                         : "at least three runs are needed, and cells of two sizes with onsets "
-                           "at the same phi",
+                         : "too few data: at least three runs, and onsets at equal phi in cells of "
+                           "two sizes, are needed",
                 std::move(entered));
 }
 
@@ -48,8 +48,8 @@ Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup ru
 
 const Estimator rate_exponent = {.name = "rate_exponent",
                                  .meaning =
-                                     "exponent a of rate ~ n^a, for the rate of onsets at equal "
-                                     "phi and amplitude; `against` names "
+                                     "exponent a of the rate of onsets, which is proportional to "
+                                     "n^a at equal phi and amplitude; `against` names "
                                      "n, which is interior_grains or core_grains",
                                  .key = "against",
                                  .of_run = true,

@@ -39,10 +39,11 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   }
   std::optional<Estimate> estimate;
   if (variants.size() > 1) estimate = censored_slope(values, at, stated.level);
-  Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(),
-                           fmt::format("{} of {} runs have it, in {}", values.size() - censored,
-                                       runs.size(), counted(variants.size(), "variant")),
-                           std::move(entered));
+  Verdict verdict =
+      decide(stated, words_of_slope(claim), estimate, values.size(),
+             fmt::format("{} of {} runs, in {}, have the number", values.size() - censored,
+                         runs.size(), counted(variants.size(), "variant")),
+             std::move(entered));
   verdict.censored = censored;
   return verdict;
 }
@@ -51,7 +52,7 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 
 const Estimator slope_against = {
     .name = "slope",
-    .meaning = "slope of the number against the value of `against` at each run's first checkpoint",
+    .meaning = "slope of the number against the first value of `against` in each run",
     .key = "against",
     .of_run = true,
     .over_variants = true,

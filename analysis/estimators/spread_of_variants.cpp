@@ -34,17 +34,18 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
     with_number += values.size();
     if (!values.empty()) groups.push_back(std::move(values));
   }
-  std::string note = runs.empty() ? std::string(no_group)
-                                  : fmt::format("{} of {} runs have it, in {}", with_number,
-                                                runs.size(), counted(groups.size(), "variant"));
+  std::string note = runs.empty()
+                         ? std::string(no_group)
+                         : fmt::format("{} independent numbers from {} runs, in {}", with_number,
+                                       runs.size(), counted(groups.size(), "variant"));
   std::optional<Estimate> estimate;
   if (const auto found = variance_between(groups, stated.level)) {
     estimate = Estimate{.value = found->value,
                         .interval = {0, found->upper_limit},
                         .runs = with_number / groups.size()};
     add_note(note,
-             fmt::format("variance ratio F = {:.3g}; the interval is from 0 to the upper {:.3g} % "
-                         "limit",
+             fmt::format("variance ratio F = {:.3g}; the interval extends from 0 to the upper "
+                         "{:.3g} % confidence limit",
                          found->f, 50 * (1 + stated.level)));
   }
   return decide(stated, words_of_spread(claim), estimate,

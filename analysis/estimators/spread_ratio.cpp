@@ -54,7 +54,7 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
     estimate = mapped(estimate_with(log_ratio, {log_ratio - half, log_ratio + half}, t, with_both),
                       [](double log) { return std::expm1(log); });
   }
-  return decide(stated, words_of_ratio(claim) + ", less 1", estimate, with_both,
+  return decide(stated, words_of_ratio(claim) + ", minus 1", estimate, with_both,
                 fmt::format("{} of {} runs have both numbers, in {}; test of Pitman and Morgan",
                             with_both, runs.size(), counted(variants.size(), "variant")),
                 std::move(entered));

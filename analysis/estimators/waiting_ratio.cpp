@@ -13,7 +13,7 @@ namespace {
 
 std::string wait_in_words(std::span<const Waiting> runs) {
   const auto median = median_wait(runs);
-  return fmt::format("median cycle {} ({} of {} runs end before theirs)",
+  return fmt::format("median cycle {} ({} of {} runs end before the event)",
                      median ? fmt::format("{:.3g}", *median) : "unknown",
                      std::ranges::count(runs, false, &Waiting::observed), runs.size());
 }
@@ -76,8 +76,8 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
   } else if (runs < least_runs) {
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   } else if (!estimate) {
-    add_note(note, fmt::format("no ratio: {} is at cycle 0 in every run of one group, or in no run",
-                               event));
+    add_note(note,
+             fmt::format("no ratio: {} occurs in no run, or at cycle 0 in a whole group", event));
   }
   Table entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {

@@ -22,14 +22,14 @@ namespace shearcell {
 namespace {
 
 /// Numbers of cycles over which crystallites are followed. The critical size depends on this
-/// number. The supplement's n_bin of every amplitude is among the numbers.
+/// number. The supplement's n_bin of each amplitude is included.
 std::set<std::int64_t> cycles_to_follow() {
   std::set<std::int64_t> cycles = {1, 2, 5, 10, 20};
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// Number of cycles for comparing the critical sizes of amplitudes. [choice]: it gives the smallest
-/// errors, since crystallites hardly change in one cycle and most have grown after ten cycles.
+/// Number of cycles followed to compare critical sizes between amplitudes. [choice]: errors are
+/// smallest, since crystallites hardly change in one cycle and most have grown after ten cycles.
 constexpr std::int64_t cycles_compared = 5;
 
 /// Each critical size of the supplement comes from "usually 6 to 10" simulations.
@@ -49,7 +49,7 @@ std::vector<GrowthBySize> followed(RunGroup runs, std::int64_t cycles) {
   return all;
 }
 
-/// The critical size if crystallites of one fate are left out.
+/// The critical size if crystallites with one outcome (`fate`) are left out.
 std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
                                               std::vector<GrowthBySize> runs) {
   for (GrowthBySize& run : runs) {
@@ -75,7 +75,7 @@ struct AmplitudeGrowth {
   GrowthCurve curve;
   std::optional<Estimate> without_absorbed;
   std::optional<Estimate> without_vanished;
-  Interval repeated;  ///< 90 % interval of critical sizes from published_runs runs
+  Interval repeated;  ///< 90 % interval of the critical size in studies with published_runs runs
 
   /// Growth over the supplement's n_bin cycles.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
@@ -203,9 +203,9 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
   table.columns.insert(table.columns.end(), {"supplement_grains", "runs"});
-  table.chart = {.x = {.name = "cycles that crystallites are followed", .log = true},
+  table.chart = {.x = {.name = "cycles over which crystallites are followed", .log = true},
                  .y = {.name = "critical size", .unit = "grains", .log = true},
-                 .note = "large open symbols are the supplement's"};
+                 .note = "large open symbols are critical sizes of the supplement"};
   for (const AmplitudeGrowth& one : all) {
     for (const auto& [cycles, after] : one.after) {
       const bool is_published = cycles == one.published->n_bin;
@@ -283,8 +283,8 @@ std::string in_grains(const std::optional<Estimate>& size) {
   return size ? in_grains(size->value) : "none";
 }
 
-/// The supplement's critical size comes from few runs. It is assumed to scatter as our critical
-/// size does in repetitions with published_runs runs.
+/// The supplement's critical size comes from few runs. It is assumed to scatter like our critical
+/// size in repeated studies with published_runs runs.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const auto& [runs, critical] = one.published_bin();
   const double published = one.published->critical_size;
@@ -295,10 +295,10 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   std::optional<Estimate> relative;
   if (critical) {
     const double size = critical->value;
-    note += fmt::format("; {:.3g} grains, {} if delta_rho may only rise with size", size,
+    note += fmt::format("; critical size {:.3g} grains, or {} by a monotone fit of delta_rho", size,
                         in_grains(one.curve.monotone_critical_size()));
-    note += fmt::format("; with {} runs 90 % of repetitions would give {} to {}", published_runs,
-                        in_grains(low), in_grains(high));
+    note += fmt::format("; in repeated studies with {} runs, 90 % would give {} to {}",
+                        published_runs, in_grains(low), in_grains(high));
     relative = ratio(*critical, {.value = published,
                                  .interval = {published * size / high, published * size / low},
                                  .runs = critical->runs});
@@ -314,8 +314,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
     }
   }
   note += fmt::format(
-      "; {} without the {} of {} that grow by being absorbed, {} without the {} of {} "
-      "that shrink by vanishing",
+      "; critical size {} without the {} of {} growing crystallites that are absorbed, and {} "
+      "without the {} of {} shrinking crystallites that vanish",
       in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
       all.vanished, all.smaller());
   const AmplitudeGrowth* const alone = &one;
@@ -354,8 +354,8 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
                  .claimed = Relation::higher,
                  .id = "C.growth",
                  .cannot_be_decided = growth_cannot_be_decided},
-                "critical size at the largest amplitude relative to that at the smallest, "
-                "less 1",
+                "critical size at the largest amplitude divided by that at the smallest, "
+                "minus 1",
                 growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
                 Counted::runs_per_variant);
 }

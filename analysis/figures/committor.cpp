@@ -21,18 +21,18 @@
 namespace shearcell {
 namespace {
 
-/// A crystallite is gone after this many cycles without a descendant. Verdicts use cycles_gone. The
-/// other numbers show how much the results depend on this choice.
+/// A crystallite counts as gone after this number of cycles without a descendant. Verdicts use
+/// cycles_gone. The other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
-/// No critical size is defined if the fraction of controls that grow exceeds this value and is at
-/// least the fraction of the smallest crystallites that grow. [choice]
+/// No critical size is defined if the fraction of growing controls (Subject) exceeds this value and
+/// is at least the fraction of growing crystallites of the smallest size. [choice]
 constexpr double rare = 0.1;
 
-/// Numbers of clones, by the fate of a crystallite in them.
+/// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< gone at first, but a descendant grew later
+  std::size_t revived = 0;                 ///< clones in which a descendant grew after `gone`
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -46,10 +46,10 @@ struct Fates {
   }
 };
 
-/// The fates under each rule, one entry for each element of cycles_without.
+/// The outcomes for each element of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
-/// A crystallite of a recorded state, with its fates in the clones of this state. Size 0 means a
+/// A crystallite of a recorded state, and its outcomes in the clones of this state. Size 0 means a
 /// control: a state without a crystallite of at least least_descendant grains.
 struct Subject {
   const FrameRun* run;  ///< the first clone
@@ -82,7 +82,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
   return map.size.empty() ? 0 : std::ranges::max(map.size);
 }
 
-/// Adds the crystallites of one state, or the state as a control, with the fates in its clones.
+/// Adds the outcomes in the clones of one state: of its crystallites, or of the state as a control.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -131,7 +131,7 @@ std::vector<Amplitude> amplitudes_of(std::span<const FrameRun> runs) {
   return all;
 }
 
-/// Sum of the fates of all subjects that have from `low` to `high` - 1 grains.
+/// Sum of the outcomes of all subjects that have from `low` to `high` - 1 grains.
 Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t low = 0,
              std::int32_t high = grown_size) {
   Fates sum;
@@ -153,9 +153,9 @@ std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }
 
-/// For each packing, the numbers of clones whose crystallite grew or was gone, by size. Merged
-/// crystallites do not count. Undecided clones count as grown or gone if `undecided` has that
-/// value; otherwise they do not count.
+/// For each packing and size, the number of clones whose crystallite grew and the number whose
+/// crystallite was gone. Merged and undecided clones are left out. With `undecided` = Fate::grown
+/// or Fate::gone, undecided clones are counted as grown or as gone.
 std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
                                               Fate undecided = Fate::undecided) {
   std::map<std::string_view, GrowthBySize> packings;
@@ -180,13 +180,13 @@ std::string why_undefined(const Amplitude& one) {
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
   return fmt::format(
-      "no critical size is defined: {:.2g} of the clones of states without crystallites have one "
-      "of {} grains in time, and no more, {:.2g}, of the crystallites of {} and {} grains grow",
+      "no critical size is defined: a fraction {:.2g} of clones that begin without crystallites "
+      "form one of {} grains, but only a fraction {:.2g} of crystallites of {} and {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
-/// The size at which (p - q) / (1 - q) = 1/2 or, equivalently, delta_rho = 2 p - 1 = q. Empty if no
-/// critical size is defined.
+/// The size at which (p - q) / (1 - q) = 1/2 or, equivalently, delta_rho = 2 p - 1 = q, where p is
+/// the fraction that grows and q is background(). Empty if no critical size is defined.
 std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   if (!why_undefined(one).empty()) return std::nullopt;
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
@@ -248,7 +248,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   }
   table.chart = {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
-      .y = {.name = "size of which half grow", .unit = "grains", .low = 0, .high = 25}};
+      .y = {.name = "crystallite size at which half grow", .unit = "grains", .low = 0, .high = 25}};
   for (const Amplitude& one : all) {
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});
@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The rows that enter a verdict: for each rule, one row for each crystallite and each control.
+/// The rows that enter a verdict, for each crystallite, control and element of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -302,14 +302,14 @@ std::string note_on(const Amplitude& one, const std::optional<Estimate>& size) {
   const std::string why = why_undefined(one);
   return size           ? fmt::format("{:.3g} grains at A = {} rad", size->value, one.amplitude)
          : !why.empty() ? why
-                        : "too few packings, or no size of which half grow";
+                        : "too few packings, or no size at which half of the crystallites grow";
 }
 
 Verdict size_is_published(const Amplitude& one) {
   std::optional<Estimate> size = half_size(one, chosen_rule);
   const std::size_t packings = by_packing_and_size(one, chosen_rule).size();
   const std::string note = fmt::format(
-      "{} and {} in {}; {} left out, which begin with {} grains; {}",
+      "{} and {} in {}; {} left out, since they begin with a crystallite of {} grains or more; {}",
       counted(one.crystallites.size(), "crystallite"), counted(one.controls.size(), "control"),
       counted(packings, "packing"), counted(one.left_out, "state"), grown_size, note_on(one, size));
   if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
@@ -319,7 +319,7 @@ Verdict size_is_published(const Amplitude& one) {
                    one.published),
        margin_critical_size, Relation::same,
        fmt::format("committor.size@amplitude_rad={}", one.amplitude)},
-      fmt::format("size of which half grow, relative difference from {} grains", one.published),
+      fmt::format("size at which half grow, relative difference from {} grains", one.published),
       size, packings, note, fates_of({&one}));
 }
 

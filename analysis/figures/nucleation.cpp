@@ -39,7 +39,7 @@ std::string name_of(const Group& group) {
 
 /// One curve for each group, whose name is in the table's column "group". If there are several
 /// amplitudes, colours show the amplitude, as in all figures; otherwise colours show the cell size.
-/// Within a bin of phi, the points of the groups are shifted to stand side by side.
+/// Within a bin of phi, the points of the groups are shifted so that they do not overlap.
 std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
   std::vector<Series> series;
   std::set<double> amplitudes;
@@ -115,14 +115,14 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
                                       .y_error = "rate_standard_error",
                                       .x_high = "phi_high"},
                                      Join::none),
-                 .note = fmt::format("points of a bin of {} in phi stand side by side", phi_bin),
-                 .errors = "bars are standard errors of Poisson counts, none for one onset"};
+                 .note = fmt::format("points in a bin of phi ({} wide) are shifted apart", phi_bin),
+                 .errors = "bars are standard errors of Poisson counts; a single onset has no bar"};
   return table;
 }
 
-/// The exponent a of rate ~ n^a, with n the grains of the region, if the rate is proportional to
-/// the area of the walls, N^(2/3). The smallest and the largest cells determine a, which is less
-/// than 2/3, since the fraction n / N grows with N. Not a number unless n > 0 and n grows with N.
+/// The exponent a of rate ~ n^a if the rate is proportional to the area of the walls, N^(2/3). n is
+/// the number of grains in the region. The smallest and the largest cells determine a. It is less
+/// than 2/3, since the fraction n / N grows with N. NaN unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
@@ -134,7 +134,7 @@ double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
 }
 
 /// The verdict on the claim that the exponent is 1. The margin is half of the distance between 1
-/// and exponent_of_walls(). Empty if all cells have one size or that exponent is not below 1.
+/// and exponent_of_walls(). Empty if all cells have one size or exponent_of_walls() >= 1.
 std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
                                          const std::string& id, const std::string& text) {
   if (runs_by(runs, "grains").size() < 2) return {};
@@ -144,7 +144,7 @@ std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region 
       .id = id, .against = grains_of(region), .published = PublishedSpec{.value = 1}};
   Verdict verdict = rate_exponent.decide(claim, {.text = text, .margin = (1 - walls) / 2, .id = id},
                                          pointers(runs), {});
-  if (verdict.estimate) verdict.note += fmt::format("; walls would give {:.2f}", walls - 1);
+  if (verdict.estimate) verdict.note += fmt::format("; walls alone would give {:.2f}", walls - 1);
   return {std::move(verdict)};
 }
 

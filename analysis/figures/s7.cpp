@@ -20,14 +20,14 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t density_bins = 8;
-/// Centres of crystallites near the critical size are at least this far from a plane [d]: interior
-/// grains are 1.875 d or more inside a rough plane, and a crystallite has a radius. [choice]
+/// Smallest distance [d] from a wall to the centre of a crystallite of critical size: interior
+/// grains are at least 1.875 d from a rough plane, and a crystallite has a radius. [choice]
 constexpr double inaccessible = 4;
 
 struct Places {
   std::vector<std::vector<double>> packings;  ///< one list for each packing with nuclei
-  std::size_t runs = 0;                       ///< runs with nuclei
-  std::size_t count = 0;                      ///< places in all packings
+  std::size_t runs = 0;                       ///< number of runs with nuclei
+  std::size_t count = 0;                      ///< number of nuclei in all packings
 };
 
 Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
@@ -45,7 +45,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   return places;
 }
 
-/// The width [d] of the narrowest cell, in which the inaccessible layers are the largest share.
+/// The width [d] of the narrowest cell, which has the largest share of inaccessible layers.
 double smallest_width(RunGroup runs) {
   double width = infinite;
   for (const FrameRun* run : runs) {
@@ -57,7 +57,6 @@ double smallest_width(RunGroup runs) {
   return width;
 }
 
-/// One curve of a panel.
 struct Profile {
   TableCell key;  ///< value in the first column
   Text title;
@@ -94,7 +93,7 @@ Table density_table(std::string name, std::string first_column, Text x,
 
 /// Decides on the share of nuclei in one part of the cell minus the share in another part, over all
 /// runs. `side` returns 1 in the first part, -1 in the second part, 0 elsewhere, and nothing if
-/// nuclei at this place do not count. The bootstrap draws packings, each with all its runs.
+/// nuclei at this place are left out. The bootstrap draws packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
@@ -110,8 +109,8 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
                                  nucleus_smallest, nucleus_largest, places.runs, runs.size());
   if (packings < places.runs) {
-    note +=
-        fmt::format("; {}, and runs of one packing count together", counted(packings, "packing"));
+    note += fmt::format("; {}, and nuclei of all runs of one packing are pooled",
+                        counted(packings, "packing"));
   }
   if (packings < least_bootstrap_runs) {
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
@@ -134,8 +133,8 @@ Verdict uniform_in_the_middle(RunGroup runs) {
   return share_verdict(
       {"E: crystallites are equally probable over the accessible central x", margin_share,
        Relation::same, "S7.inner"},
-      "share of nuclei in the inner half of the accessible width less that in the outer half", runs,
-      CellAxis::x, [half](double x) -> std::optional<int> {
+      "share of nuclei in the inner half of the accessible width minus that in the outer half",
+      runs, CellAxis::x, [half](double x) -> std::optional<int> {
         const double away = std::abs(x - 0.5);
         if (away > half) return std::nullopt;
         return 2 * away < half ? 1 : -1;
@@ -143,7 +142,7 @@ Verdict uniform_in_the_middle(RunGroup runs) {
 }
 
 Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
-  return share_verdict(claim, "share of nuclei in the upper third less that in the lower third",
+  return share_verdict(claim, "share of nuclei in the upper third minus that in the lower third",
                        runs, CellAxis::y,
                        [](double y) { return y > 2.0 / 3 ? 1 : (y < 1.0 / 3 ? -1 : 0); });
 }

@@ -23,7 +23,7 @@ struct Parameter {
   Text symbol;
   const char* unit;
   double published;
-  std::string value;  ///< expression of manifest keys; a sweep of any key varies it
+  std::string value;  ///< expression of manifest keys; it varies if one of these keys is swept
 };
 
 constexpr double pi = std::numbers::pi;

@@ -56,8 +56,8 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
 
 /// Adds to each run the checkpoints that the figure needs, up to the end of the run. Removes runs
 /// without a checkpoint that the figure needs. Adds notes on removed runs, on unfinished runs, and
-/// on checkpoints that the manifest asks for and the run did not record. A table needs only the
-/// last checkpoint of each run; for a table, no run is removed and no note is added.
+/// on checkpoints that the manifest asks for and the run did not record. FigureForm::table needs
+/// only the last checkpoint of each run: no run is removed and no note is added.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =
@@ -163,8 +163,8 @@ PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
   return planned;
 }
 
-/// Sets Frame::seeds and Frame::looks. Adds the planned runs that are not declared to
-/// Frame::pending.
+/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
+/// declared.
 void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
   if (fresh) known->second = plan_runs(manifest.content, collected.scale);
@@ -399,7 +399,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   if (collected.runs.empty()) {
     throw NotFound(fmt::format(
         "the runs selected for figure {} belong to an older version of the manifest; `shearcell "
-        "run` this version again to make it the newest version (this computes nothing)",
+        "run` with that version makes it the newest version again (this computes nothing)",
         wanted.path()));
   }
   std::map<std::string, std::string> packings;  // by id of the parent stage

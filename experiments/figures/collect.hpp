@@ -52,7 +52,7 @@ struct WantedFigures {
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// Returns the figures, plots and claims of the newest manifests that have one of `names` and
+/// Returns figures, plots and claims of the newest manifests: those that have one of `names` and
 /// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, the
 /// manifests need not list the figures in `names`. Throws NotFound for an unknown figure or
 /// experiment; the message proposes the nearest name.
@@ -64,8 +64,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 std::string leave_out_unselected(const Store& store, const RunSelection& runs,
                                  std::vector<WantedFigure>& figures);
 
-/// Returns the newest_runs() of `selected`, without checkpoints. Adds lines on the runs that are
-/// left out to `notes`. In runs on which the key `pressure_at` has no effect, the key is set to
+/// Returns the newest_runs() of `selected`, without checkpoints. Adds to `notes` lines on the
+/// runs that are left out. In runs on which the key `pressure_at` has no effect, the key is set to
 /// `top`.
 std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes);
 
@@ -80,14 +80,14 @@ void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
-  ReadManifests manifests;  ///< WantedFigure::manifests; if those are null, read from the store
+  ReadManifests manifests;  ///< WantedFigure::manifests, or read from the store if null
   std::string scale;        ///< the scale of all runs: a figure never mixes scales
   /// Messages on runs that were left out, on unfinished runs and on missing checkpoints.
   std::vector<std::string> notes;
 };
 
-/// Returns the newest_runs() of the figure's experiment that `selection` selects, at the scale of
-/// the run that was declared last. Each run has its checkpoints up to end_for(). In a figure of all
+/// Returns the newest_runs() of the figure's experiment that match `selection`, at the scale of the
+/// run that was declared last. Each run has its checkpoints up to end_for(). In a figure of all
 /// experiments, a run that belongs to several experiments occurs once for each experiment. Throws
 /// NotFound if no run is selected.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,

@@ -122,8 +122,8 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether the table has no drawable value of a run. A series without columns of the table holds
-/// published points, unless it is a trace (`thin`) or no other series has columns.
+/// Whether the table has no value of a run that can be drawn. Checks only the series
+/// that have columns of the table or are traces (`thin`). If there are none, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };

@@ -39,7 +39,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::vector<std::string> undrawn;          ///< a line for each drawing that failed, with reason
 };
 
-/// Computes the tables, verdicts and lineage of a figure. Writes nothing but measures into
+/// Computes the tables, verdicts and lineage of a figure. Writes only measures, into
 /// derived.sqlite, and does not use options.folder. Reads no checkpoint whose measures are cached.
 /// The result leaves out a damaged or pruned checkpoint without cached measures, and names it.
 /// Throws NotFound if the store has no run for the figure, and UsageError if the figure would
@@ -53,11 +53,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
 /// - NAME.caption.txt, if something is drawn
 /// - NAME.verdict.json, and NAME.verdict.csv with the numbers of each run, if there are claims
 /// - NAME.lineage.json
-/// If the figure has no caption or no claims, deletes the caption or verdict of an older figure.
+/// Deletes an older caption if the figure has no caption, and older verdicts if it has no claims.
 /// Records a FigureGenerated event with host and build. Records no event if options.recorded is
-/// false, if the newest event of this figure says the same, or if a drawing failed although gnuplot
-/// is installed. The same checkpoints give the same bytes. Throws as compute_figure() and
-/// require_own_files().
+/// false, if the newest event of this figure has the same content, or if a drawing failed although
+/// gnuplot is installed. The same checkpoints give the same bytes. Throws the errors of
+/// compute_figure() and require_own_files().
 ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const FigureOptions& options);
 
 }  // namespace shearcell

@@ -9,10 +9,10 @@
 
 namespace shearcell {
 
-/// Computes and caches the measures that tables and figures may need and that need the files of
-/// `records`. These are all derived measures of all checkpoints of the runs, because a measure of a
-/// later checkpoint may need an earlier file. They are computed at each checkpoint cadence that an
-/// experiment asks for. Simulated measures are computed if a figure of a manifest needs them.
+/// Computes and caches the measures for tables and figures that need the files of `records`. These
+/// are all derived measures of all checkpoints of the runs, because a later checkpoint's measure
+/// may need an earlier file. They are computed at each checkpoint cadence that an experiment asks
+/// for. Simulated measures are computed if a figure of a manifest needs them.
 ///
 /// Removes from `records` each checkpoint with a measure that could not be computed; the outcome
 /// gives the reason. A checkpoint stays in `records` if the measure also needs the file of an

@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// Rising cycles as ranges {first, last, every}: {{0, 120, 1}, {133.5, 133.5, 1}}.
+/// Ascending cycles as ranges {first, last, every}: {{0, 120, 1}, {133.5, 133.5, 1}}.
 using Cycles = std::vector<std::array<double, 3>>;
 
 /// "0:120:1, 133.5:133.5:1".

@@ -21,8 +21,8 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 /// A table of runs, and messages on missing values.
 struct RunTable : MeasureOutcome {
   Table table;                      ///< empty cells: the value is unknown or does not apply
-  std::vector<std::string> notes;   ///< NewestRuns::notes, and a note on measures that are lacking
-  std::vector<FrameRun> histories;  ///< for RowPer::run: run of each row, only at whole cycles
+  std::vector<std::string> notes;   ///< NewestRuns::notes, and a note on missing measures
+  std::vector<FrameRun> histories;  ///< for RowPer::run: the run of each row, at whole cycles only
 };
 
 /// Returns the table of the selected newest_runs(), sorted by run and cycle. The checkpoints of a

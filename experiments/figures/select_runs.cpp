@@ -40,8 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
   return {run.place.experiment, run.place.scale};
 }
 
-/// The places of the stage in the newest manifest version of each experiment, at each scale. If the
-/// newest version does not have the stage, the place that was declared last is returned instead.
+/// Returns, for each experiment and scale, the places (variant and seed) of the stage in the newest
+/// manifest version, or the place that was declared last if this version does not have the stage.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {

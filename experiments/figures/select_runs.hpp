@@ -24,7 +24,7 @@ struct RunSelection {
 };
 
 /// Returns the selected runs in the order of declaration. Run::name is empty. Throws NotFound for
-/// an unknown experiment, scale, variant or seed; the message names the known ones.
+/// an unknown experiment, scale, variant or seed; the message names known values.
 std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {

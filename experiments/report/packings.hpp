@@ -21,7 +21,7 @@ struct PackingChoice {
   std::vector<std::string> runs;        ///< ids; empty: the last run of each variant
   std::size_t runs_per_experiment = 6;  ///< largest number of runs if `runs` is empty
   std::size_t frames = 40;              ///< largest number of checkpoints shown per run
-  std::size_t budget = 9'000'000;       ///< largest size of all packings in the page [bytes]
+  std::size_t budget = 9'000'000;       ///< largest total size of the packings in the page [bytes]
 };
 
 struct Packings : MeasureOutcome {
@@ -34,9 +34,9 @@ struct Packings : MeasureOutcome {
 };
 
 /// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed
-/// the budget, each run shows fewer of them, evenly spaced, with the first and the last. If the
-/// last checkpoints of all runs exceed the budget, the last runs are left out. The same store gives
-/// the same result.
+/// the budget, each run shows fewer, evenly spaced checkpoints, including its first and last. If
+/// the last checkpoints of all runs exceed the budget, the last runs are left out. The same store
+/// gives the same result.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers, const ReadProgress& report);

@@ -351,8 +351,8 @@ json workflow(const Content& content, const Experiment& experiment) {
           figures};
 }
 
-/// The columns that the page shows before a reader adds others: identifiers, swept parameters,
-/// states and results of the runs. `at` is the index of a column in the experiment's table.
+/// The columns that the page shows at first: identifiers, swept parameters, states and results of
+/// the runs. `at` is the index of a column in the experiment's table.
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();
@@ -574,7 +574,7 @@ void add_figures(Content& content) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    std::set<std::string>* said = nullptr;  // messages to which the reason is added
+    std::set<std::string>* said = nullptr;  // the set that gets the message
     std::string why;
     try {
       const ComputedFigure made =

@@ -32,12 +32,12 @@ struct Report : MeasureOutcome {
   std::size_t experiments = 0, figures = 0, stages = 0;  ///< numbers in the page
   std::size_t packings = 0, checkpoints = 0;  ///< runs shown in 3D, and their checkpoints
   std::set<std::string> undrawn;   ///< a line for each drawing that failed, with the reason
-  std::set<std::string> problems;  ///< a line for each figure that `figures` rejects with code 2
+  std::set<std::string> problems;  ///< a line for each figure that fails with exit code 2
   std::set<std::string> notes;     ///< lines about runs, figures and tables
 };
 
 /// Makes the report. The same program, store and options give the same bytes; drawings also need
-/// the same gnuplot. Writes nothing but measures into derived.sqlite. Throws NotFound if the store
+/// the same gnuplot. Writes only measures, into derived.sqlite. Throws NotFound if the store
 /// has no experiment or a run of `packings.runs` is unknown.
 Report make_report(const Store& store, const ReportOptions& options);
 

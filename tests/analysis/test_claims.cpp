@@ -162,7 +162,7 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
-            "the claim selects no runs, or its runs differ in another swept parameter too");
+            "the claim selects no runs, or runs that also differ in another swept parameter");
 }
 
 TEST(Compare, PairsMustIncludeMostRuns) {
@@ -240,8 +240,8 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_EQ(pooled.ruling, Ruling::agrees);
   EXPECT_EQ(pooled.runs, 8U);
   EXPECT_EQ(pooled.note,
-            "8 and 8 runs in 2 of 3 groups with equal parameters; the others lack 3 numbers on a "
-            "side");
+            "8 and 8 runs in 2 of 3 groups with equal values of all other parameters; a group "
+            "needs at least 3 numbers on each side");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.
@@ -326,8 +326,8 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   EXPECT_EQ(std::get<std::string>(entered.rows[1].back()), "");
   EXPECT_EQ(
       verdict.note,
-      "first: median cycle 16 (1 of 4 runs end before theirs); second: median cycle 16 (0 of 4 "
-      "runs end before theirs)");
+      "first: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 (0 of 4 "
+      "runs end before the event)");
   const std::vector<Waiting> waits = waits_for(pointers(a), "crystalline_percent", 5);
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);
@@ -372,14 +372,16 @@ TEST(PlannedLooks, GiveNoVerdictBetweenThem) {
   const Verdict early = at_looks(planned({1, 2}, 0.6, {3, 6}));
   EXPECT_EQ(early.ruling, Ruling::undecided);
   EXPECT_EQ(early.look, 0U);
-  EXPECT_TRUE(has(early.note, "2 of 6 seeds have ended; the next look is at 3 seeds"));
+  EXPECT_TRUE(
+      has(early.note, "2 of 6 seeds have ended; the next look (interim analysis) is at 3 seeds"));
   const Verdict gap = at_looks(planned({1, 3, 4, 5, 6}, 0.6, {3, 6}));
   EXPECT_EQ(gap.ruling, Ruling::undecided) << "never the first that finished";
-  EXPECT_TRUE(has(gap.note, "1 of 6 seeds have ended; the next look is at 3 seeds"));
+  EXPECT_TRUE(
+      has(gap.note, "1 of 6 seeds have ended; the next look (interim analysis) is at 3 seeds"));
   const Verdict between = at_looks(planned({1, 2, 3, 4}, 0.601, {3, 6}));
   EXPECT_EQ(between.ruling, Ruling::undecided);
   EXPECT_EQ(between.runs, 4U) << "numbers of all that have ended";
-  EXPECT_TRUE(has(between.note, "the next look is at 6 seeds"));
+  EXPECT_TRUE(has(between.note, "the next look (interim analysis) is at 6 seeds"));
   EXPECT_TRUE(has(between.note, "with probability 0."));
 }
 
@@ -430,7 +432,7 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(has(verdict.note, "unplanned look with 4 seeds beyond the plan: 0.04"));
+  EXPECT_TRUE(has(verdict.note, "an unplanned look, with 4 seeds beyond the plan, gives: 0.04"));
 }
 
 }  // namespace

@@ -354,7 +354,7 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
   EXPECT_EQ(phi.ruling, Ruling::differs);
   claim.compare = "onset_size_cycle";
   const Verdict cycle = claim_figure(claim).make(runs).verdicts.at(0);
-  EXPECT_TRUE(has(cycle.note, "(1 of 5 runs end before theirs)"));
+  EXPECT_TRUE(has(cycle.note, "(1 of 5 runs end before the event)"));
 }
 
 TEST(OwnPlot, NamesTheStepsOfAStiffening) {

@@ -599,10 +599,10 @@ TEST(OwnClaim, ComparesTheCyclesAtWhichALevelIsReached) {
   EXPECT_EQ(verdict.claim,
             "own: the cycle of crystalline_percent >= 5 is later by more than a factor of 1.07 for "
             "fluid=cell than for fluid=still");
-  EXPECT_TRUE(has(verdict.note, "first: median cycle 37.5 (0 of 4 runs end before theirs)"))
+  EXPECT_TRUE(has(verdict.note, "first: median cycle 37.5 (0 of 4 runs end before the event)"))
       << verdict.note;
   claim.reaches = 28;  // from cycle 59 to 62
-  EXPECT_TRUE(has(verdict_of(claim).note, "(2 of 4 runs end before theirs)"));
+  EXPECT_TRUE(has(verdict_of(claim).note, "(2 of 4 runs end before the event)"));
 }
 
 TEST(OwnClaim, WithoutAMarginTakesThePublishedNumberAsABound) {

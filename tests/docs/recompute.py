@@ -168,7 +168,7 @@ def estimate(claim, rows):
     groups = [[row for row in rows if row["group"] == name] for name in dict.fromkeys(row["group"] for row in rows)]
     relative = "relative difference" in claim["quantity"]
     if len(groups) == 1:
-        published = re.search(r"(?: less|relative difference from) (\S+)$", claim["quantity"])
+        published = re.search(r"(?: less| minus|relative difference from) (\S+)$", claim["quantity"])
         off = float(published[1]) if published else 0
         away = lambda value: (value - off) / (abs(off) if relative else 1)
         return one_mean(*columns(by_packing(rows, away).values()), claim["level"])

@@ -52,10 +52,10 @@ FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleat
 
 # How a quantity of a verdict is shown: the pattern of its name, what converts its value, and a unit.
 SHOWN = [
-    (r"relative fall of .* less ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
-    (r"phi at the onset less ([\d.]+)", lambda value, base: value + base, ""),
+    (r"relative fall of .* (?:less|minus) ([\d.]+)", lambda value, base: 100 * (value + base), " %"),
+    (r"phi at the onset (?:less|minus) ([\d.]+)", lambda value, base: value + base, ""),
     (r"relative difference from ([\d.]+)", lambda value, base: base * (1 + value), ""),
-    (r"exponent of the rate against \w+ less ([\d.]+)", lambda value, base: value + base, ""),
+    (r"exponent of the rate against \w+ (?:less|minus) ([\d.]+)", lambda value, base: value + base, ""),
     (r"log2 of the ratio", lambda value, base: 2**value, ""),
     (r"relative difference", lambda value, base: 100 * value, " %"),
     (r"percentage", lambda value, base: value, " points"),

@@ -194,7 +194,7 @@ TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
   EXPECT_EQ(early.at("verdict"), "undecided");
   EXPECT_EQ(early.at("look"), 0);
   EXPECT_TRUE(has(early.at("note").get<std::string>(),
-                  "2 of 4 seeds have ended; the next look is at 3 seeds"));
+                  "2 of 4 seeds have ended; the next look (interim analysis) is at 3 seeds"));
   EXPECT_TRUE(early.at("primary"));
   const nlohmann::json decided = claim(3);
   EXPECT_EQ(decided.at("verdict"), "agrees");
