@@ -32,8 +32,8 @@ struct StageInputs {
   std::optional<StartFile> file = {};  ///< of a packing that begins with a file
 };
 
-/// The stage that fills the cell, or places the grains of the file, and settles. The result has no
-/// memberships; the id of the result is stage_key(resolved). Equal ids mean equal trajectories.
+/// The stage that makes the packing, from loose grains or from the grains of a file. The result has
+/// no memberships; its id is stage_key(resolved). Equal ids mean equal trajectories.
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
                     const std::optional<StartFile>& file = {});
 

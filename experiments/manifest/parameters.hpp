@@ -11,7 +11,6 @@
 
 namespace shearcell {
 
-/// The kind of a stage.
 enum class StageKind : std::uint8_t { prepare, shear, stiffen };
 
 template <>
