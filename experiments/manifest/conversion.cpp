@@ -22,7 +22,7 @@ double auto_steps(double duration, const Parameters& p) {
   return steps >= 1 ? std::min(steps, most) : 1;
 }
 
-// Weight per area of grains up to the nominal height, with 1.2 grains per d^3 [m/(d s^2)].
+// Weight per area of a column of the nominal height with 1.2 grains per d^3 [m/(d s^2)].
 double column_weight(const Parameters& p) {
   constexpr double grains_per_d3 = 1.2;
   const double height = p.height_over_width * cell_width(geometry(p));

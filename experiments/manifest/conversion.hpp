@@ -67,8 +67,9 @@ bool may_differ_in_settling(std::string_view key);
 bool takes_auto(std::string_view key);
 
 /// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I,
-/// rounded to give a whole number of steps in a cycle or in 2 s of settling. With the parameters of
-/// Table I, the time step is exact. The result may be out of range; check it with check_value().
+/// rounded to give a whole number of steps in a cycle or in 2 s of settling. The parameters of
+/// Table I give the time step of Table I. The result may be out of range; check it with
+/// check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a

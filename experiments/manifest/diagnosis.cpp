@@ -339,7 +339,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
-  // [kg/m^3]. No known solid is outside of the range below.
+  // [kg/m^3]. All known solids are within the range below.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
     const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
@@ -617,7 +617,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
 }
 
 /// The plots or claims of the figures that the manifest lists, then the plots or claims of the
-/// manifest itself. Each comes with a prefix for messages, which says where it is stated.
+/// manifest itself. Each comes with a prefix for messages: the place of its statement.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {

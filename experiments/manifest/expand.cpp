@@ -207,7 +207,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
         const PlacedGrains grains =
-            placed(*plan.file, run.packing, seed);  // throws if they do not fit
+            placed(*plan.file, run.packing, seed);  // throws if the grains do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         const Cell& cell = grains.cell;
         const double height = std::fabs(grains.state.wall_height -
@@ -226,9 +226,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
       if (same == run.place.variant || seed != chosen_seeds.front()) continue;
-      plan.warnings.push_back(
-          fmt::format("{}: variants {} and {} have the same runs, which are computed once",
-                      manifest.file, same, run.place.variant));
+      plan.warnings.push_back(fmt::format("{}: variants {} and {} have equal runs, computed once",
+                                          manifest.file, same, run.place.variant));
     }
   }
   if (const std::string* missing = wanted.unfound()) {

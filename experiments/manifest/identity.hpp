@@ -40,8 +40,8 @@ Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
 /// The stage after `parent`: a stiffening if the protocol is `stiffen`, otherwise a shear.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
-/// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. To check a recorded run,
-/// compute it again and compare it with the run's id.
+/// SHA-256 (hex) of a fixed prefix and the canonical form of `resolved`. To check a recorded run,
+/// compute this key from the record and compare the key with the run's id.
 std::string stage_key(const nlohmann::json& resolved);
 
 /// Thrown if the record of a stage is damaged or was written by another version of the program. The

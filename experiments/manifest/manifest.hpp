@@ -132,11 +132,9 @@ struct StatedUntil {
   Position at;
 };
 
-/// The value of `checkpoints` and its position in the text.
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
-  std::vector<double> phases =
-      {};  ///< ascending fractions of a cycle after a checkpoint, in (0, 1)
+  std::vector<double> phases = {};  ///< fractions of the next cycle, ascending, in (0, 1)
   Position at = {};
 };
 
@@ -161,7 +159,7 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};    ///< "" for the scale of the shear
   std::string variant = {};  ///< swept values; "" if the experiment has one variant
-  /// Beginning of the run's id in `checkpoint`, which replaces experiment, scale and variant.
+  /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};

@@ -54,8 +54,8 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"id", kId},
                                  {"wall_side", kWall}};
 
-// The structs below hold what is found in a file. Their texts are constants or parts of the file,
-// so that a message can give the line of a part.
+// The structs below hold what is found in a file. Each string_view is a constant or a part of the
+// file's text. From a part, a message finds the line.
 
 struct Column {
   string_view name;             ///< "" for a column without a name
@@ -77,7 +77,8 @@ struct Box {
   string_view line;            ///< last line that states a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
-  /// Axes along which LAMMPS fits the box to the grains. A dump has this box of an earlier step.
+  /// Axes along which LAMMPS fits the box to the grains. A dump may have the fit of an earlier
+  /// step.
   std::array<bool, 3> follows{};
 };
 
@@ -255,7 +256,7 @@ class PackingReader {
   }
 
   /// Reads the rest of the file, one grain in each line. `count`: the number of grains, if the line
-  /// of `stated_in` states it.
+  /// that contains `stated_in` states it.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);

@@ -131,7 +131,7 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
          .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
-                "of its keys; values of the keys of `zip` advance together",
+                "of its keys; `zip` advances all its keys together",
          .example = "{grid: {fluid: [still, cell]}}"});
   visit(scale.settle, {.name = "settle",
                        .doc = "parameters that have other values while the packing settles. They "
@@ -149,25 +149,25 @@ void fields(Scale& scale, const auto& visit) {
       {.name = "seeds",
        .doc = "`6` means the seeds 1 to 6. `2001-2040` and `[1-6, 9]` state other seeds. Default 1",
        .example = "6"});
-  visit(
-      scale.checkpoints,
-      {.name = "checkpoints",
-       .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-              "always has a checkpoint. `phases`: further checkpoints within the cycle after each "
-              "checkpoint, at these fractions of the cycle (including its pause); default none",
-       .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
-       .wanted = "a map of settings"});
-  visit(scale.until, {.name = "until",
-                      .doc = "ends a run `extra_cycles` after the measure reaches the value at the "
-                             "end of a cycle; default: the run ends at `cycles`",
-                      .besides = ", or `none`",
-                      .example = "{crystalline_percent: 10, extra_cycles: 15}",
-                      .wanted = "a measure with its value"});
+  visit(scale.checkpoints,
+        {.name = "checkpoints",
+         .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
+                "always has a checkpoint. `phases`: more checkpoints in the cycle that follows "
+                "each checkpoint, at these fractions of the cycle and its pause; default none",
+         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
+         .wanted = "a map of settings"});
+  visit(scale.until,
+        {.name = "until",
+         .doc = "ends a run `extra_cycles` cycles after the end of the first cycle at which the "
+                "measure reaches the value. Default: the run ends at `cycles`",
+         .besides = ", or `none`",
+         .example = "{crystalline_percent: 10, extra_cycles: 15}",
+         .wanted = "a measure with its value"});
   visit(scale.looks, {.name = "looks",
                       .range = {least_runs, ManifestLimits::runs},
                       .doc = "planned looks (interim analyses), each given by the number of seeds "
-                             "that it includes. At each look, claims get verdicts. More looks make "
-                             "the intervals wider. Default: one look, with all seeds",
+                             "that it includes. Claims get verdicts at each look. More looks widen "
+                             "the intervals. Default: one look, with all seeds",
                       .example = "[12, 36, 60]"});
   visit(scale.primary, {.name = "primary",
                         .doc = "ids of the claims that these runs are meant to decide; all other "
@@ -233,7 +233,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption counts runs that lack such a partner",
+              "and cycle, is subtracted. The caption counts runs for which no such `y` exists",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
@@ -241,10 +241,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "swept parameter is refused. Default: one curve for each variant or, if `x` is a "
                 "parameter, for each combination of the other swept values",
          .names = can_be_by});
-  visit(plot.figure, {.name = "figure",
-                      .doc = "name of a figure. The plots with the same `figure` are its panels "
-                             "(a), (b), ..., and the claims with the same `figure` are its claims. "
-                             "The figure has one caption. Default: a separate figure"});
+  visit(plot.figure,
+        {.name = "figure",
+         .doc = "name of a figure. Plots with this name are its panels (a), (b), ..., and claims "
+                "with this name are its claims. It has one caption. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
@@ -263,9 +263,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
   visit(plot.series,
         {.name = "series",
-         .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or "
-                "`\"#rrggbb\"`) and marker of curves, in this order. Each key is a value of `by`, "
-                "`\"KEY=VALUE\"` as in `labels`, or the name of one of several `y`",
+         .doc = "styles of curves, in drawing order: label, colour (blue, vermilion, green, "
+                "purple, orange, sky, black or `\"#rrggbb\"`), marker. Each key is a value of "
+                "`by`, `\"KEY=VALUE\"` as in `labels`, or the name of one of several `y`",
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
@@ -278,15 +278,17 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                     .names = can_be_y,
                     .terms = terms,
                     .example = "[phi_uncorrected]"});
-  visit(plot.mark, {.name = "mark",
-                    .doc = "a black point on each curve, at the means of two measures that have "
-                           "one value for each run",
-                    .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
+  visit(
+      plot.mark,
+      {.name = "mark",
+       .doc =
+           "a black point on each curve, at the means of two measures with one value for each run",
+       .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
                      .doc = "the cycle at which a curve measure is drawn, or `y` if `x` has one "
-                            "value for each run. Default: the last cycle that all runs have. The "
-                            "CSV file and the caption state the cycle"});
+                            "value for each run. Default: the last cycle that all runs have, as "
+                            "stated in the CSV file and the caption"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
@@ -326,8 +328,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
        .names = can_be_compared,
        .terms = terms});
   visit(claim.where, {.name = "where",
-                      .doc = "selects the runs that the claim uses, on both sides: values, lists "
-                             "of values, or ranges `{min: 5200}`",
+                      .doc = "selects runs for both sides of the claim: values, lists of values, "
+                             "or ranges `{min: 5200}`",
                       .example = "{amplitude_rad: [0.04, 0.05]}"});
   visit(claim.for_each,
         {.name = "for_each",
@@ -690,7 +692,7 @@ struct Reader {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (field->is_choice() || (end.key != "min" && end.key != "max")) {
-          reject_key(end, "is not an end of a range", "It takes `{min: 1, max: 2}` of a number.");
+          reject_key(end, "is not an end of a range", "A range is `{min: 1, max: 2}` of numbers.");
         } else if (auto read = read_scalar(end, *field)) {
           range[end.key] = std::move(*read);
         }
@@ -1039,7 +1041,7 @@ struct Reader {
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
         reject_key(part, "cannot be swept, since runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
-                   : length ? "Set it in `base` or in a scale, or zip it with a key that does."
+                   : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
                             : "Set it in `base` or in a scale.");
         continue;
       }
@@ -1214,10 +1216,9 @@ struct Reader {
       if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
       if (find_named(known, part.key) == nullptr) continue;  // reported already
       reject_key(part, fmt::format("cannot be used with {}", sources.front()),
-                 part.key == "noise_d"
-                     ? "First run a manifest with this file. Then begin with the state of that "
-                       "run: `{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
-                     : "Leave it out.");
+                 part.key == "noise_d" ? "Run a manifest with this file. Then start from that run: "
+                                         "`{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
+                                       : "Leave it out.");
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
     if (file != nullptr && start.file.empty()) {
@@ -1242,7 +1243,7 @@ struct Reader {
     reject_if(range.from == range.to, &in, "begins and ends with the same value",
               "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
-              "has equal ratios, so both ends must be above 0", "Use `spacing: linear`.");
+              "has logarithmic spacing, so both ends must be above 0", "Use `spacing: linear`.");
   }
 
   void check(const Node&, const Field&, const auto&) {}

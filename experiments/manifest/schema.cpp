@@ -229,8 +229,8 @@ std::span<const Field> schema() {
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "number of shear cycles; a larger value extends a run"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
-                      "program that computes the shear. LAMMPS gives another run, equal up to "
-                      "rounding. This program always computes the settling"),
+                      "program that computes the shear. A run with LAMMPS has another id and other "
+                      "rounding errors. This program always computes the settling"),
       // A shear that begins with a recorded state.
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},

@@ -74,7 +74,7 @@ inline bool has_unit(const Field& field) {
   return !field.unit.empty() && field.unit != "1";
 }
 
-/// Completes the field for a member of type T: names of an enumeration, or whole numbers.
+/// Completes the field for a member of type T: `names` for an enumeration, `whole` for integers.
 template <class T>
 constexpr Field with_type(Field field) {
   if constexpr (std::is_enum_v<T>) field.names = kNames<T>;
