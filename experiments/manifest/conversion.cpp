@@ -13,7 +13,7 @@
 namespace shearcell {
 namespace {
 
-/// Number of time steps in `duration`, with the ratio of time step to stability limit of Table I.
+/// Number (>= 1) of time steps in `duration`, at Table I's ratio of time step to stability limit.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);

@@ -77,8 +77,7 @@ struct Box {
   string_view line;            ///< last line that states a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
-  /// Axes along which LAMMPS fits the box to the grains. A dump may have the fit of an earlier
-  /// step.
+  /// Axes along which LAMMPS fits the box to the grains. A dump may have an earlier box.
   std::array<bool, 3> follows{};
 };
 
