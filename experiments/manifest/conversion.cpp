@@ -13,16 +13,16 @@
 namespace shearcell {
 namespace {
 
-/// Number of time steps in `duration`, if each is Table I's fraction of the stability limit; >= 1.
+/// Number (>= 1) of time steps in `duration`, at Table I's ratio of time step to stability limit.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);
   const double steps = std::nearbyint(duration / (part * stability_limit_s(p)));
-  constexpr double most = 1e15;  // a double holds it exactly; above the allowed range
+  constexpr double most = 1e15;  // exact as a double, and above any allowed number
   return steps >= 1 ? std::min(steps, most) : 1;
 }
 
-// Weight per area of grains that fill the nominal height with 1.2 grains per d^3 [m/(d s^2)].
+// Weight per area of a column of the nominal height with 1.2 grains per d^3 [m/(d s^2)].
 double column_weight(const Parameters& p) {
   constexpr double grains_per_d3 = 1.2;
   const double height = p.height_over_width * cell_width(geometry(p));

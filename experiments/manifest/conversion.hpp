@@ -16,7 +16,7 @@ namespace shearcell {
 
 Units units(const Parameters& parameters);
 
-/// The scene of a shear; its time step is period / steps per cycle.
+/// The scene of a shear. The time step is period_s / steps_per_cycle.
 Scene shear_scene(const Parameters& parameters);
 
 /// The scene of settling: upright walls, a fluid at rest, and the time step settle_time_step_s.
@@ -51,7 +51,6 @@ bool depends_on_pressure_at(const Parameters& parameters);
 /// `pressure_at: top`, where the load on the wall includes the grains' weight.
 bool pressure_lifts_column(const Parameters& parameters);
 
-/// A time step, and its ratios to two other times.
 struct TimeStep {
   double seconds = 0;
   double over_contact_time = 0;     ///< ratio to the duration of a collision, pi/sqrt(2 k/m)
@@ -60,16 +59,17 @@ struct TimeStep {
 
 TimeStep time_step(const Parameters& parameters, double seconds);
 
-/// Whether `settle` may give the parameter another value while the packing settles: true for what
-/// acts on the grains or the moving wall, false for the cell, the grains and their units.
+/// Whether `settle` may change the parameter while the packing settles: true for forces on the
+/// grains, and for pressure, mass and drag of the moving wall; false for the cell and the grains.
 bool may_differ_in_settling(std::string_view key);
 
 /// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
 bool takes_auto(std::string_view key);
 
-/// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I, and a
-/// cycle or 2 s of settling has a whole number of steps. From the parameters of Table I follows
-/// Table I's time step. The result may be out of range; check it with check_value().
+/// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I,
+/// rounded to give a whole number of steps in a cycle or in 2 s of settling. The parameters of
+/// Table I give the time step of Table I. The result may be out of range; check it with
+/// check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
@@ -77,14 +77,14 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.78 for n d^3 = 1.22 and z =
 /// 6.36 (found at N = 2000); because rough side walls bear a part of the pressure, 0.75 fits five
 /// settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
-/// weight per area if P acts on a moving bottom wall, P plus half of it if P acts at the top.
+/// weight per area if P acts on a moving bottom wall, P plus half this weight if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
 /// Time [s] after which drag has brought the grains to rest, 18 m/b; infinite without drag. The
 /// energy of weakly damped vibrations falls as exp(-b t/m), and must fall by a factor of about
 /// exp(18) to reach the default settle_kinetic_tolerance. At the time step of Table I, 300 grains
-/// take 18.8 s at m/b = 1 s and 3.0 s at 0.156 s. Larger steps heat the grains (6.6 s at 0.81 of
-/// the limit).
+/// take 18.8 s at m/b = 1 s and 3.0 s at m/b = 0.156 s. Larger time steps heat the grains (6.6 s at
+/// 0.81 of the stability limit).
 double damping_time_s(const Parameters& parameters);
 
 /// pressing_time() of protocols/settle.hpp [s]: the shortest time in which settling can end. If the

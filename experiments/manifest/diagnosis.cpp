@@ -110,7 +110,7 @@ struct VariantCheck {
     return last;
   }
 
-  // Whether the numbers that were computed for `auto` are in range. Reports those that are not.
+  // Returns whether all numbers that were computed for `auto` are in range. Reports the others.
   bool autos_are_in_range() {
     bool sound = true;
     for (const auto& [key, setting] : scale.settings) {
@@ -159,7 +159,7 @@ struct VariantCheck {
         p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
       const string_view key = last_stated({"steps_per_cycle", "period_s", "pause_s"});
       report(key.empty() ? "pause_s" : key, format("the pause takes {:.3g} time steps", pause),
-             format("Use a pause of at most {:g} steps of period_s/steps_per_cycle.",
+             format("Use a pause of at most {:g} time steps (period_s/steps_per_cycle).",
                     kMostPauseSteps));
     }
   }
@@ -176,8 +176,8 @@ struct VariantCheck {
       report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
                  ? "fill_packing_fraction"
                  : "nominal_packing_fraction",
-             format("with loose grains, the cell is {:.3g} d wide and {:.3g} d high and has {:.2g} "
-                    "wall grains, which is too large for {} grains",
+             format("the cell for the loose grains would be {:.3g} d wide and {:.3g} d high and "
+                    "have {:.2g} wall grains, which is too large for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
              "Raise it.");
     }
@@ -228,15 +228,14 @@ struct VariantCheck {
       refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
-             format("two phases are at one step, or one is at the end of the cycle, with {} steps "
-                    "in a cycle",
+             format("two phases fall on one time step, or a phase falls on the end of the cycle, "
+                    "because a cycle has only {} time steps",
                     cycle_steps(motion)),
              "Use fewer phases, or more steps_per_cycle.");
     }
   }
 };
 
-/// Whether a spreadsheet program would read the text as a formula.
 bool is_formula(const string& text) {
   const std::size_t first = text.find_first_not_of(' ');
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
@@ -340,7 +339,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
-  // [kg/m^3]. No known solid is outside of the range below.
+  // [kg/m^3]. All known solids are within the range below.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
     const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
@@ -406,7 +405,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::vector<string>& warnings) {
   const Start& start = scale.start;
   const bool settles = !start.is_recorded() && (start.file.empty() || scale.settle_at.line > 0);
-  nlohmann::ordered_map<string, std::vector<string>> advice;  // each with the names of its variants
+  nlohmann::ordered_map<string, std::vector<string>> advice;  // variants by warning
   for (const Variant& variant : variants) {
     for (const string& one : advice_on(variant, settles)) advice[one].push_back(variant.name);
   }
@@ -433,7 +432,7 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// Returns the largest b for which the column needs the checkpoints at cycles c and c - b.
+/// Returns the largest b for which the column's value at cycle c needs the checkpoint at c - b.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -450,7 +449,7 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles before it. All multiples of the cadence give the same answer, so only the first
+// `back` cycles before it. All multiples of `every_cycles` give the same answer, so only the first
 // multiple, the first cycle and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
@@ -575,17 +574,18 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
         all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
       found.push_back(format(
-          "the style for {} matches {} curves, so it is not used. State more of the swept keys.",
+          "the style for {} matches {} curves, so the style is not used. Add more swept keys.",
           words_of(one.where), curves));
     } else if (curves == 0 && !of_another) {
       found.push_back(
-          format("the style for {} matches no curve at any scale. State values that are swept.",
+          format("the style for {} matches no curve at any scale. Use only values that the "
+                 "experiment sweeps.",
                  words_of(one.where)));
     }
   }
   if (plot.cycle && is_of_run(plot.y)) {
     found.push_back(format(
-        "at_cycle has no effect on {}, which is one number per run. Leave at_cycle out.", plot.y));
+        "{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
     found.emplace_back(
         "at_cycle has no effect, since the plot draws every cycle. Leave at_cycle out.");
@@ -617,7 +617,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
 }
 
 /// The plots or claims of the figures that the manifest lists, then the plots or claims of the
-/// manifest itself. Each comes with a prefix for messages, which says where it is stated.
+/// manifest itself. Each comes with a prefix for messages: the place of its statement.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -668,7 +668,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       ids.push_back(claim.id);
       said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
-      // No run of this experiment has the values that a claim of a listed figure selects.
+      // A claim of a listed figure may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
       // Small scales are for trying out. Warn only if no other scale can decide the claim.

@@ -109,7 +109,7 @@ class TreeBuilder : public YAML::EventHandler {
   // Adds a copy of the anchored value. The limits count the copy like a value that is written out.
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchored_.find(anchor);
-    if (known == anchored_.end()) refuse_reference(mark);  // an alias within its own anchor
+    if (known == anchored_.end()) refuse_reference(mark);  // an alias in the value that it names
     check_size(known->second, position(mark), open_.size());
     add(known->second);
   }
@@ -283,7 +283,7 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
     return "This escape is not a character. Write the character itself.";
   }
   if (error.msg.find("flow") != std::string::npos) {
-    return "A { or [ of this line, or of one above it, is not closed.";
+    return "A { or [ in this line, or in a line above, is not closed.";
   }
   return "Check the indentation, the space after each colon, and the quotes, here and in the line "
          "above.";

@@ -30,9 +30,9 @@ struct Node {
 };
 
 /// Reads one YAML document within ManifestLimits, without tags and repeated keys. An alias becomes
-/// a copy of the anchored value, with the positions of the anchored value. Texts of nodes are UTF-8
-/// without noncharacters of Unicode, control characters except line feeds, and characters that
-/// change the direction of text. Throws ManifestError.
+/// a copy of the anchored value, with the positions of the anchored value. Texts of nodes are
+/// UTF-8, and have no noncharacters of Unicode, no control characters other than line feeds and no
+/// characters that change the direction of text. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
 /// The remedy for a key that is a number: YAML reads `{amplitude_rad: 0,05}` as a map with key 05.
@@ -43,8 +43,8 @@ inline constexpr const char* kDecimalPoint =
 /// than tabs and line ends. `remedy` is for control characters.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Writes as
-/// escapes, such as \x1b or \u202e: control characters, characters that change the direction of
+/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Replaces by
+/// escapes such as \x1b or \u202e: control characters, characters that change the direction of
 /// text, bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the
 /// space.
 std::string printable(std::string_view text, std::size_t longest = 60);

@@ -81,8 +81,8 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: the parts of place and ask that all runs of the scale share. `recorded`: the run whose
-// state this run begins with, or null. `file`: the file of grains that the packing begins with.
+// `common`: experiment, scale, manifest and checkpoints of all runs. `recorded`: the run with whose
+// state this run begins, or null. `file`: the file with which the packing begins.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
@@ -97,7 +97,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
-    // Variants may share a packing, so the place of a packing names no variant.
+    // Variants may share a packing, so the membership of a packing names no variant.
     Membership& packing = run.prepare->memberships.emplace_back(common);
     packing.place.variant = "packing";
     packing.place.seed = seed;
@@ -111,8 +111,8 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   return run;
 }
 
-// Raises the number of cycles of each variant to the largest number that this version of the
-// manifest asked for before. `place`: manifest, experiment and scale.
+// Raises the number of cycles of each variant to the largest number that earlier commands requested
+// with this version of the manifest. `place`: manifest, experiment and scale.
 void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
   std::map<std::string, std::uint64_t> longest;  // by name of the variant
@@ -207,7 +207,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
           plan.runs.emplace_back(planned_run(common, scale, variant, seed, recorded, plan.file));
       if (plan.file && fitted.insert(run.prepare->id).second) {
         const PlacedGrains grains =
-            placed(*plan.file, run.packing, seed);  // throws if they do not fit
+            placed(*plan.file, run.packing, seed);  // throws if the grains do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         const Cell& cell = grains.cell;
         const double height = std::fabs(grains.state.wall_height -
@@ -216,17 +216,17 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
             pressing_time(settle_scene(run.packing), height,
                           static_cast<double>(run.packing.grains) / (cell.width * cell.depth));
         if (plan.file->file.settles && time > run.packing.settle_time_limit_s) {
-          plan.warnings.push_back(
-              fmt::format("{}: the grains are {:.6g} d high. The moving wall presses them together "
-                          "in about {:.2g} s, so settling fails at settle_time_limit_s ({:g} s). "
-                          "Remove the empty space, or raise settle_time_limit_s.",
-                          plan.file->path, height, time, run.packing.settle_time_limit_s));
+          plan.warnings.push_back(fmt::format(
+              "{}: the packing of this file is {:.6g} d high. The moving wall needs about {:.2g} s "
+              "to press the grains together, so settling fails at settle_time_limit_s ({:g} s). "
+              "Remove the empty space above and below the grains, or raise settle_time_limit_s.",
+              plan.file->path, height, time, run.packing.settle_time_limit_s));
         }
       }
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
       if (same == run.place.variant || seed != chosen_seeds.front()) continue;
-      plan.warnings.push_back(fmt::format("{}: variants {} and {} are the same runs, computed once",
+      plan.warnings.push_back(fmt::format("{}: variants {} and {} have equal runs, computed once",
                                           manifest.file, same, run.place.variant));
     }
   }

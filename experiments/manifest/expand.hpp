@@ -29,8 +29,8 @@ struct ExpandOptions {
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest states it. Each of its stages has one membership. The name of the scale is
-/// empty if the manifest has no scales; the name of the variant is "base" if nothing is swept.
+/// A run as a manifest states it. Each stage of the run has one membership. The name of the scale
+/// is empty if the manifest has no scales; the name of the variant is "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;

@@ -18,8 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-// If the meaning of a stage's key changes, this text must change too, so that keys with different
-// meanings never collide.
+// stage_key() hashes this text and the record of a stage. If the meaning of records changes, this
+// text must change too, so that records with different meanings never have equal ids.
 constexpr std::string_view kDomain = "shearcell stage 1\n";
 
 json as_json(const Field& field, std::string_view text) {
@@ -158,7 +158,7 @@ StageInputs read_stage(const json& resolved) {
   for (const Field& field : schema()) {
     const auto found = values.find(field.name);
     if (field.identity.recorded_as.empty() || found == values.end()) continue;
-    own["parameters"][std::string(field.name)] = *found;  // older records have other values
+    own["parameters"][std::string(field.name)] = *found;  // older records may differ
   }
   for (const json& change : json::diff(own, resolved)) {
     const std::string key = change.at("path").get<std::string>();

@@ -32,16 +32,16 @@ struct StageInputs {
   std::optional<StartFile> file = {};  ///< of a packing that begins with a file
 };
 
-/// The stage that fills the cell, or places the grains of the file, and settles. The result has no
-/// memberships; the id of the result is stage_key(resolved). Equal ids mean equal trajectories.
+/// The stage that makes the packing, from loose grains or from the grains of a file. The result has
+/// no memberships; its id is stage_key(resolved). Equal ids mean equal trajectories.
 Stage prepare_stage(const Parameters& parameters, std::uint64_t seed,
                     const std::optional<StartFile>& file = {});
 
 /// The stage after `parent`: a stiffening if the protocol is `stiffen`, otherwise a shear.
 Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& parent);
 
-/// SHA-256 (hex) of a domain tag and the canonical form of `resolved`. To check a recorded run,
-/// compute it again and compare it with the run's id.
+/// SHA-256 (hex) of a fixed prefix and the canonical form of `resolved`. To check a recorded run,
+/// compute this key from the record and compare the key with the run's id.
 std::string stage_key(const nlohmann::json& resolved);
 
 /// Thrown if the record of a stage is damaged or was written by another version of the program. The

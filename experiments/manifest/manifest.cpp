@@ -91,9 +91,9 @@ std::string_view why_not_until(std::string_view measure) {
   for (const Provider& by : all_providers()) {
     const Measure* found = find_named(by.measures, measure);
     if (found == nullptr) continue;
-    if (found->kind == MeasureKind::run) return "is a number of a whole run, which has not ended";
+    if (found->kind == MeasureKind::run) return "has a value only after the end of the run";
     if (found->kind == MeasureKind::curve) return "is a curve";
-    if (found->kind == MeasureKind::grains) return "has a number for each grain";
+    if (found->kind == MeasureKind::grains) return "has one value for each grain";
     if (by.from == ComputedFrom::simulation) return "needs a simulation";
     return by.cycles_back > 0 ? "compares the checkpoint with an earlier one" : "";
   }

@@ -56,7 +56,7 @@ class ProblemList {
  public:
   explicit ProblemList(std::string_view file) : file_(file) {}
 
-  /// Adds a problem_text(), unless it was added before: many variants may have an equal problem.
+  /// Adds a problem_text(), unless it was added before: many variants may have the same problem.
   void add(Position at, const std::string& key, const std::string& problem, const std::string& got,
            const std::string& remedy);
 
@@ -89,8 +89,8 @@ struct SweepAxis {
   std::vector<Setting> values;
 };
 
-/// The variants are every combination of the `grid` axes (the first varies slowest), each with
-/// every row of the `zip` axes (whose values advance together).
+/// The variants: each combination of values of the `grid` axes (the first axis varies slowest) with
+/// each row of values of the `zip` axes (which advance together).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
@@ -113,7 +113,7 @@ struct Until {
   bool operator==(const Until&) const = default;
 };
 
-/// Why `until` cannot use the measure; "" if it can. The measure must be one number of a
+/// Why `until` cannot use the measure; "" if it can. The measure must have one value for each
 /// checkpoint, computed from this checkpoint alone and without a simulation.
 std::string_view why_not_until(std::string_view measure);
 
@@ -132,10 +132,9 @@ struct StatedUntil {
   Position at;
 };
 
-/// The value of `checkpoints` and its position in the text.
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
-  std::vector<double> phases = {};  ///< parts of the cycle after a checkpoint, ascending, in (0, 1)
+  std::vector<double> phases = {};  ///< fractions of the next cycle, ascending, in (0, 1)
   Position at = {};
 };
 
@@ -160,7 +159,7 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};    ///< "" for the scale of the shear
   std::string variant = {};  ///< swept values; "" if the experiment has one variant
-  /// Beginning of the run's id in `checkpoint`, which replaces experiment, scale and variant.
+  /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -182,7 +181,7 @@ struct Scale {
   StatedUntil until = {};
   /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
   std::vector<std::string> primary = {};
-  /// Numbers of seeds at which claims get verdicts, ascending. Empty: one look, at the end.
+  /// Looks (interim analyses), each as its number of seeds, ascending. Empty: one, with all seeds.
   std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
 };

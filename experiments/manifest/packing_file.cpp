@@ -28,8 +28,8 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can contain. kWall tells wall grains from grains: 0 or the first type is a grain,
-/// a larger value is a wall grain.
+/// What a column can contain. In a column kWall, 0 or the first type marks a grain, and a larger
+/// value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
@@ -54,8 +54,8 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"id", kId},
                                  {"wall_side", kWall}};
 
-// The structs below hold what is found in a file. Their texts are constants or parts of the file,
-// so that a message can give the line of a part.
+// The structs below hold what is found in a file. Each string_view is a constant or a part of the
+// file's text. From a part, a message finds the line.
 
 struct Column {
   string_view name;             ///< "" for a column without a name
@@ -75,9 +75,9 @@ struct GrainTable {
 
 struct Box {
   string_view line;            ///< last line that states a part of the box
-  Eigen::AlignedBox3d planes;  ///< empty along axes that are not stated
+  Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
-  /// Axes along which LAMMPS fits the box to the grains. In a dump this box is of an earlier step.
+  /// Axes along which LAMMPS fits the box to the grains. A dump may have an earlier box.
   std::array<bool, 3> follows{};
 };
 
@@ -123,10 +123,9 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. Other names may mean a diameter,
-/// which is then compared with the diameter of the run, or a velocity, which is then refused.
-/// Reading such velocities would change the state behind an existing id of a packing, since earlier
-/// versions ignored them.
+/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed may still
+/// mean a diameter, which is compared with the diameter of the run, or a velocity. Such a velocity
+/// is refused: earlier versions ignored it, so reading it would change the packings of old ids.
 Meaning meaning_of(string_view column, bool units) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
@@ -139,7 +138,7 @@ Meaning meaning_of(string_view column, bool units) {
       "((v|mom|speed)[xyz0-9]?|p[xyz]|vel.*|[xyz](v|vel|dot)|.*(veloc|momenta|momentum).*)");
   const string name = lower(column);
   std::smatch found;
-  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // regex uses the stack
+  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // limits recursion
   string stem = found[2];
   const auto unit = value_of<LengthUnit>(found.str(4));
   const bool may_be_listed = found.length(1) == 0 && (found.length(3) == 0 || (units && unit));
@@ -256,7 +255,7 @@ class PackingReader {
   }
 
   /// Reads the rest of the file, one grain in each line. `count`: the number of grains, if the line
-  /// of `stated_in` states it.
+  /// that contains `stated_in` states it.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -295,7 +294,6 @@ class PackingReader {
     return columns;
   }
 
-  /// Adds a name to not_read_, which has at most 100 names.
   void leave(string_view name) {
     constexpr std::size_t most = 100;
     if (name.empty() || not_read_.size() == most) return;
@@ -447,7 +445,7 @@ class PackingReader {
   bool read_title() {
     static const std::regex unit(
         "\\bunits?\\b\\W{1,9}(m|si|d|lj|cgs|real|metal|micro|nano|electron|[cmun]m)\\b");
-    const string title(line_.substr(0, 500));  // std::regex uses the stack
+    const string title(line_.substr(0, 500));  // limits the recursion of std::regex
     if (std::smatch found; std::regex_search(title, found, unit)) {
       take_unit("units", line_.substr(static_cast<std::size_t>(found.position(1)),
                                       static_cast<std::size_t>(found.length(1))));
@@ -877,7 +875,7 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images if no box
+    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images without box
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
@@ -901,7 +899,7 @@ class PackingReader {
   }
 
   static constexpr double kLargest = 1e100;   // products of two values are finite
-  static constexpr double kTolerance = 1e-5;  // relative; files may have six digits
+  static constexpr double kTolerance = 1e-5;  // relative; files may have only six digits
 
   string_view text_;
   string_view file_;

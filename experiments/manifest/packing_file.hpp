@@ -31,7 +31,7 @@ struct PackingFile {
   std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
 };
 
-/// Facts that the manifest and the parameters of the run contribute to the reading of a file.
+/// What the manifest and the parameters of the run say about a file.
 struct PackingFacts {
   std::optional<LengthUnit> unit = {};  ///< of lengths, if the file states none
   double diameter_m = 0;                ///< of the run's grains

@@ -11,7 +11,6 @@
 
 namespace shearcell {
 
-/// The kind of a stage.
 enum class StageKind : std::uint8_t { prepare, shear, stiffen };
 
 template <>
@@ -84,7 +83,7 @@ struct Parameters {
   std::uint64_t stiffness_steps_per_decade = 4;
   double minimize_force_tolerance = 1e-4;
 
-  // Lengths, which do not enter the id of a run: a longer run extends a shorter run.
+  // Lengths of runs. They do not enter the id of a run: a longer run extends a shorter run.
   std::uint64_t cycles = 200;
   std::uint64_t stiffness_decades = 2;
 

@@ -111,8 +111,8 @@ void fields(Start& start, const auto& visit) {
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
   visit(start.run, {.name = "checkpoint",
-                    .doc = "instead of experiment, seed and cycle: the beginning of the "
-                           "run's id and a whole cycle",
+                    .doc = "instead of experiment, seed and cycle: `ID@CYCLE`, with the first "
+                           "digits (at least eight) of the run's id and a whole cycle",
                     .example = "0123abcd@10",
                     .longest = kLongestLabel});
   visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
@@ -131,7 +131,7 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
          .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
-                "of its keys; values of the keys of `zip` advance together",
+                "of its keys; `zip` advances all its keys together",
          .example = "{grid: {fluid: [still, cell]}}"});
   visit(scale.settle, {.name = "settle",
                        .doc = "parameters that have other values while the packing settles. They "
@@ -152,22 +152,23 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: fractions of the cycle after each checkpoint, "
-                "pause included, for further checkpoints; default none",
+                "always has a checkpoint. `phases`: more checkpoints in the cycle that follows "
+                "each checkpoint, at these fractions of the cycle and its pause; default none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
          .wanted = "a map of settings"});
-  visit(scale.until, {.name = "until",
-                      .doc = "ends a run `extra_cycles` after the measure reaches the value at the "
-                             "end of a cycle; default: the run ends at `cycles`",
-                      .besides = ", or `none`",
-                      .example = "{crystalline_percent: 10, extra_cycles: 15}",
-                      .wanted = "a measure with its value"});
-  visit(scale.looks,
-        {.name = "looks",
-         .range = {least_runs, ManifestLimits::runs},
-         .doc = "numbers of seeds at which claims get verdicts, planned before the runs. The "
-                "intervals are widened for the number of looks. Default: one look, at all seeds",
-         .example = "[12, 36, 60]"});
+  visit(scale.until,
+        {.name = "until",
+         .doc = "ends a run `extra_cycles` cycles after the end of the first cycle at which the "
+                "measure reaches the value. Default: the run ends at `cycles`",
+         .besides = ", or `none`",
+         .example = "{crystalline_percent: 10, extra_cycles: 15}",
+         .wanted = "a measure with its value"});
+  visit(scale.looks, {.name = "looks",
+                      .range = {least_runs, ManifestLimits::runs},
+                      .doc = "planned looks (interim analyses), each given by the number of seeds "
+                             "that it includes. Claims get verdicts at each look. More looks widen "
+                             "the intervals. Default: one look, with all seeds",
+                      .example = "[12, 36, 60]"});
   visit(scale.primary, {.name = "primary",
                         .doc = "ids of the claims that these runs are meant to decide; all other "
                                "claims are exploratory",
@@ -207,23 +208,23 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name,
         {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
-  visit(plot.also,
-        {.name = "y",
-         .doc = "required; a [measure](#measures), a number of each run such as `onset_size_phi`, "
-                "or an expression of measures and parameters: `stress_xy_Pa/contact_pressure_Pa`. "
-                "Runs that end before their onset are counted in the caption. A list draws several "
-                "columns; a map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
-         .names = can_be_y,
-         .terms = terms,
-         .required = true});
-  visit(
-      plot.x,
-      {.name = "x",
-       .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-              "If `x` is a number of the run, `y` is the value at `at_cycle`. A measured number, "
-              "such as `core_time_s`, gives one point for each variant, at the mean over its runs",
-       .names = can_be_x,
-       .terms = terms});
+  visit(plot.also, {.name = "y",
+                    .doc = "required; a [measure](#measures), with values at checkpoints or one "
+                           "value for each run (`onset_size_phi`), or an expression of measures "
+                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption counts "
+                           "runs that end before the onset. A list draws several columns; a map "
+                           "also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
+                    .names = can_be_y,
+                    .terms = terms,
+                    .required = true});
+  visit(plot.x,
+        {.name = "x",
+         .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
+                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is a "
+                "measure with one value for each run, such as `core_time_s`, each variant has one "
+                "point, at the mean over its runs",
+         .names = can_be_x,
+         .terms = terms});
   visit(plot.where,
         {.name = "where",
          .doc = "selects runs by swept values, lists of values, or ranges `{min: 5200}`",
@@ -232,7 +233,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption counts runs without a partner in this variant",
+              "and cycle, is subtracted. The caption counts runs for which no such `y` exists",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
@@ -242,18 +243,17 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc =
-             "name of a figure: plots with equal `figure` are its panels (a), (b), ..., and claims "
-             "with equal `figure` are its claims, with one caption. Default: a separate figure"});
+         .doc = "name of a figure. Plots with this name are its panels (a), (b), ..., and claims "
+                "with this name are its claims. It has one caption. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
-                     .doc = "one panel, NAME_1, NAME_2, ..., for each value of this parameter, "
-                            "with equal axis ranges",
+                     .doc = "one panel for each value of this parameter, with equal axis ranges. "
+                            "The panels are named NAME_1, NAME_2, ...",
                      .names = can_be_by});
   visit(plot.show,
         {.name = "show",
          .doc = "`mean` (default) or `rms`: mean or root mean square with its standard error; "
                 "`traces`: every run as a line; `scatter`: every value as a point. If `y` is a "
-                "curve measure or `x` a number of the run, the CSV file has the means"});
+                "curve measure, or `x` has one value for each run, the CSV file has the means"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(plot.xlabel,
         {.name = "xlabel",
@@ -263,9 +263,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
   visit(plot.series,
         {.name = "series",
-         .doc = "label, colour (blue, vermilion, green, purple, orange, sky, black or "
-                "`\"#rrggbb\"`) and marker of curves. The key is a value of `by`, `\"KEY=VALUE\"` "
-                "as in `labels`, or the name of one of several `y`. Curves come in this order",
+         .doc = "styles of curves, in drawing order: label, colour (blue, vermilion, green, "
+                "purple, orange, sky, black or `\"#rrggbb\"`), marker. Each key is a value of "
+                "`by`, `\"KEY=VALUE\"` as in `labels`, or the name of one of several `y`",
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
@@ -278,19 +278,22 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                     .names = can_be_y,
                     .terms = terms,
                     .example = "[phi_uncorrected]"});
-  visit(plot.mark, {.name = "mark",
-                    .doc = "a black point on each curve, at the means of two numbers of the run",
-                    .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
-  visit(plot.cycle,
-        {.name = "at_cycle",
-         .range = kCycles,
-         .doc = "the cycle of a curve measure, or of `y` if `x` is a number of the run. Default: "
-                "the last cycle that all runs have, which the CSV file and the caption state"});
+  visit(
+      plot.mark,
+      {.name = "mark",
+       .doc =
+           "a black point on each curve, at the means of two measures with one value for each run",
+       .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
+  visit(plot.cycle, {.name = "at_cycle",
+                     .range = kCycles,
+                     .doc = "the cycle at which a curve measure is drawn, or `y` if `x` has one "
+                            "value for each run. Default: the last cycle that all runs have, as "
+                            "stated in the CSV file and the caption"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
-         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw, with the "
-                "checkpoints at `phases`. Other plots show only whole cycles",
+         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw. "
+                "Checkpoints at `phases` are then drawn too. Other plots show only whole cycles",
          .example = "[20, 21]"});
 }
 
@@ -317,20 +320,22 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.estimator, {.name = "estimator",
                           .doc = "what is estimated; by default the other keys imply it",
                           .names = estimators});
-  visit(claim.against,
-        {.name = "against",
-         .doc = "for `estimator: slope`: the column on the other axis, at the first checkpoint of "
-                "each run; for `spread_ratio`: the number whose spread is the denominator",
-         .names = can_be_compared,
-         .terms = terms});
-  visit(claim.where,
-        {.name = "where",
-         .doc = "selects runs of all sides: values, lists of values, or ranges `{min: 5200}`",
-         .example = "{amplitude_rad: [0.04, 0.05]}"});
-  visit(claim.for_each, {.name = "for_each",
-                         .doc = "a parameter: one claim, with the id `ID@KEY=VALUE`, for each of "
-                                "its values. `{KEY}` in `statement` is replaced by the value",
-                         .names = can_be_by});
+  visit(
+      claim.against,
+      {.name = "against",
+       .doc = "with `estimator: slope`: the column of the x axis, at the first checkpoint of each "
+              "run; with `spread_ratio`: the column whose standard deviation is the denominator",
+       .names = can_be_compared,
+       .terms = terms});
+  visit(claim.where, {.name = "where",
+                      .doc = "selects runs for both sides of the claim: values, lists of values, "
+                             "or ranges `{min: 5200}`",
+                      .example = "{amplitude_rad: [0.04, 0.05]}"});
+  visit(claim.for_each,
+        {.name = "for_each",
+         .doc = "a parameter. Each value of the parameter gives one claim, with the id "
+                "`ID@KEY=VALUE`. `{KEY}` in `statement` is replaced by the value",
+         .names = can_be_by});
   visit(claim.between, {.name = "between",
                         .doc = "two selections of swept values, one for each side. The difference "
                                "is the first side minus the second side",
@@ -352,23 +357,23 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "(log-rank test, which includes runs that end before the event)"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
-                       .doc = "instead of `margin`: limit of the relative difference (0.03 means 3 "
-                              "%), which is computed from the means of logarithms"});
+                       .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
+                              "%. The difference is computed from means of logarithms"});
   visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
-  visit(claim.cycles,
-        {.name = "cycles",
-         .range = kCycles,
-         .doc = "instead of `at_cycle`: first and last of the cycles whose mean value is compared",
-         .example = "[1, 15]"});
-  visit(claim.phi, {.name = "phi",
-                    .range = {0, 1},
-                    .doc = "instead of `at_cycle`: range of phi over which the mean is compared",
-                    .example = "[0.646, 0.67]"});
-  visit(claim.reaches,
-        {.name = "reaches",
-         .range = {-1e15, 1e15},
-         .doc =
-             "instead of `at_cycle`: a value; the first cycle that reaches the value is compared"});
+  visit(claim.cycles, {.name = "cycles",
+                       .range = kCycles,
+                       .doc = "instead of `at_cycle`: the first and the last cycle of a range. The "
+                              "mean over this range is compared",
+                       .example = "[1, 15]"});
+  visit(claim.phi,
+        {.name = "phi",
+         .range = {0, 1},
+         .doc = "instead of `at_cycle`: a range of phi. The mean over this range is compared",
+         .example = "[0.646, 0.67]"});
+  visit(claim.reaches, {.name = "reaches",
+                        .range = {-1e15, 1e15},
+                        .doc = "instead of `at_cycle`: a value. The first cycle at which the "
+                               "measure reaches this value is compared"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first side is higher or lower by more than the margin"});
@@ -382,8 +387,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                          .example = "true"});
   visit(claim.cannot_be_decided,
         {.name = "cannot_be_decided",
-         .doc = "why no number of runs would decide the claim. The verdict is then `cannot be "
-                "decided`, with this reason and the numbers",
+         .doc = "the reason why no number of runs would decide the claim. The verdict is then "
+                "`cannot be decided`, with this reason and the measured numbers",
          .example = "the published number scatters by more than the margin",
          .longest = 300});
 }
@@ -404,11 +409,11 @@ void fields(Manifest& manifest, const auto& visit) {
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
-  visit(manifest.labels,
-        {.name = "labels",
-         .doc = "names of variants in drawings, captions, claims, progress, `status` and `table`",
-         .example = "{\"fluid=still\": fluid at rest}",
-         .wanted = "a map of names"});
+  visit(manifest.labels, {.name = "labels",
+                          .doc = "display names of variants, for drawings, captions, claims, "
+                                 "progress messages, `status` and `table`",
+                          .example = "{\"fluid=still\": fluid at rest}",
+                          .wanted = "a map of names"});
   visit(manifest.plots, {.name = "plots",
                          .doc = "your own figures",
                          .example = "[{name: compaction, y: phi, x: cycle}]"});
@@ -422,9 +427,10 @@ void fields(Manifest& manifest, const auto& visit) {
          .doc = "parameters of every run; other parameters have their default",
          .example = "{grains: 7900}"});
   fields(manifest.base, visit);
-  visit(manifest.scales, {.name = "scales",
-                          .doc = "named sets of keys that override the keys above; default `desk`",
-                          .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
+  visit(manifest.scales,
+        {.name = "scales",
+         .doc = "named sets of keys that override the keys above. The default scale is `desk`",
+         .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
 }
 
 template <class T>
@@ -516,7 +522,7 @@ string meant_expression(const string& text) {
       {std::regex("\\blog\\("), "ln("},
       {std::regex("\\bpow\\(([^(),]+),([^(),]+)\\)"), "($1)^($2)"},
       {std::regex("(^|[-+*/^(] *)([0-9]*\\.?[0-9]+) *(?=[A-Za-z_(])(?![eE][-+0-9])"), "$1$2*"}};
-  if (text.size() > 200) return "";  // std::regex uses the stack
+  if (text.size() > 200) return "";  // limits the recursion of std::regex
   string meant = text;
   for (const auto& [notation, ours] : notations) meant = std::regex_replace(meant, notation, ours);
   return is_expression(meant) && wrong_in_expression(meant).empty() ? meant : "";
@@ -644,8 +650,7 @@ struct Reader {
       if (std::ranges::find(about.terms, name) == about.terms.end()) {
         reject_value(
             in,
-            with_nearest(fmt::format("uses {}, which is not a number of a run or checkpoint",
-                                     printable(name)),
+            with_nearest(fmt::format("uses {}, which is not the name of a number", printable(name)),
                          name, about.terms),
             "`shearcell manual` lists measures and parameters.");
         return false;
@@ -654,7 +659,7 @@ struct Reader {
       of_checkpoint = of_checkpoint || !is_of_run(name);
     }
     if (of_run && of_checkpoint) {
-      reject_value(in, "combines a number of the whole run with one of its checkpoints",
+      reject_value(in, "combines a value of the whole run with a value of a checkpoint",
                    "Use measures of one kind.");
     }
     return !(of_run && of_checkpoint);
@@ -687,7 +692,7 @@ struct Reader {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (field->is_choice() || (end.key != "min" && end.key != "max")) {
-          reject_key(end, "is not an end of a range", "It takes `{min: 1, max: 2}` of a number.");
+          reject_key(end, "is not an end of a range", "A range is `{min: 1, max: 2}` of numbers.");
         } else if (auto read = read_scalar(end, *field)) {
           range[end.key] = std::move(*read);
         }
@@ -792,8 +797,8 @@ struct Reader {
     }
   }
 
-  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. If the
-  // key has no example, it has one value, which is used for both.
+  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. A key
+  // without an example (`at_cycle`) has one value, which becomes both the first and the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -860,7 +865,6 @@ struct Reader {
     }
   }
 
-  // Reads points [x, y] or [x, y, error].
   void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
     for (const Node& item : items_of(in, about.example)) {
       const std::size_t problems_before = problems.size();
@@ -908,7 +912,6 @@ struct Reader {
     }
   }
 
-  // Reads a list of different figures, experiments or claims.
   void read(const Node& in, const Field& about, std::vector<string>& names) {
     for (const Node& item : items_of(in, about.example)) {
       string name;
@@ -1038,7 +1041,7 @@ struct Reader {
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
         reject_key(part, "cannot be swept, since runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
-                   : length ? "Set it in `base` or in a scale, or zip it with a key that does."
+                   : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
                             : "Set it in `base` or in a scale.");
         continue;
       }
@@ -1159,7 +1162,6 @@ struct Reader {
     if (!in.is_scalar() || in.text != "none") read(in, about, stated.until);
   }
 
-  // Reads any other map.
   template <HasFields T>
   void read(const Node& in, const Field& about, T& value) {
     value = {};
@@ -1184,7 +1186,7 @@ struct Reader {
       named = true;
       until.measure = part.key;
       const string why(why_not_until(part.key));
-      if (!why.empty()) reject_key(part, why, "Name a number of one checkpoint, such as phi.");
+      if (!why.empty()) reject_key(part, why, "Name another measure, such as phi.");
     }
     if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
       reject(in, "names no measure", remedy_of(about));
@@ -1214,8 +1216,8 @@ struct Reader {
       if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
       if (find_named(known, part.key) == nullptr) continue;  // reported already
       reject_key(part, fmt::format("cannot be used with {}", sources.front()),
-                 part.key == "noise_d" ? "Run a manifest with the file first, and begin with its "
-                                         "state: `{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
+                 part.key == "noise_d" ? "Run a manifest with this file. Then start from that run: "
+                                         "`{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
                                        : "Leave it out.");
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
@@ -1241,7 +1243,7 @@ struct Reader {
     reject_if(range.from == range.to, &in, "begins and ends with the same value",
               "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
-              "has equal ratios, so both ends must be above 0", "Use `spacing: linear`.");
+              "has logarithmic spacing, so both ends must be above 0", "Use `spacing: linear`.");
   }
 
   void check(const Node&, const Field&, const auto&) {}
@@ -1262,13 +1264,13 @@ struct Reader {
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              fmt::format("{} is one number of a run", plot.y), "Name a parameter as x.");
+              fmt::format("{} has one value for each run", plot.y), "Name a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
       reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
     }
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
-                    "Use `cycle` or a number of the run as x.");
+                    "As x, use `cycle`, a parameter, or a measure with one value for each run.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
     reject_if(!of_runs || of_run, cycles, "can only be used if each run is drawn along its cycles",
               "Use `show: traces`, and `cycle` or a measure as x.");
@@ -1334,7 +1336,7 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // Reports a claim that has several of the keys, or none of them if `lacking` is not null.
+    // Reports a claim that has several of the keys or, if `lacking` is not null, none of them.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
                                  const string& remedy = "") {
       const Node* first = nullptr;
@@ -1364,8 +1366,9 @@ struct Reader {
       const bool any = claim.compare.empty() || !named->of_run;
       reject_value_if(!any && is_of_run(claim.compare) != *named->of_run, in.find("estimator"),
                       fmt::format("cannot be used with {}", claim.compare),
-                      *named->of_run ? "Compare a number of the whole run, such as onset_size_phi."
-                                     : "Compare a number of checkpoints, such as phi.");
+                      *named->of_run
+                          ? "Compare a measure with one value for each run, such as onset_size_phi."
+                          : "Compare a measure with one value for each checkpoint, such as phi.");
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
@@ -1385,7 +1388,7 @@ struct Reader {
     } else if (const auto stated = std::ranges::find_if(
                    times, [&](const char* key) { return in.find(key) != nullptr; });
                stated != times.end()) {
-      reject(*in.find(*stated), fmt::format("{} is one number of a run", claim.compare),
+      reject(*in.find(*stated), fmt::format("{} has one value for each run", claim.compare),
              "Leave it out.");
     }
     reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
@@ -1448,7 +1451,7 @@ struct Reader {
     for (const auto& [own, of] : names) {
       const string& text = own->text;
       if (!is_claim_id(text)) continue;
-      // Whether a manifest states the figure `of`, and whether this manifest lists that figure.
+      // Whether any manifest states the figure `of`, and whether this manifest lists the figure.
       const bool is_stated = find_named(computed_figures(), of) == nullptr;
       const bool is_listed = std::ranges::count(listed, of) > 0;
       const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {

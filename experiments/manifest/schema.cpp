@@ -31,8 +31,8 @@ constexpr Identity kShear = {.stage = StageKind::shear};
 constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
 
-// Smallest value of parameters that are divisors in the conversion to d, m and s, so that no result
-// is infinite.
+// Lower limit of parameters that are divisors in the conversion to d, m and s. It keeps results
+// finite.
 constexpr double kSmallest = 1e-30;
 
 constexpr Range above(double min, double max) {
@@ -85,14 +85,14 @@ std::string takes(const Field& field) {
                                     : fmt::format("It takes {}.", expected_values(field));
 }
 
-// What to write instead of a text that looks like a number but is not valid: with a decimal comma,
-// thousands separators, a power of ten or a unit, or with a calculation.
+// What to write instead of an invalid number, such as a number with a decimal comma, thousands
+// separators, a unit or `x 10^`, or a calculation.
 std::string number_remedy(const Field& field, const std::string& text) {
   static const std::pair<std::regex, const char*> habits[] = {
       {std::regex("[ _']|\xc2\xa0|\xe2\x80[\x89\xaf]"), ""},  // spaces, also narrow ones
       {std::regex("(\\*|x|\xc2\xb7|\xc3\x97)10\\^"), "e"},
       {std::regex("\\.(?=.*,)|,(?=[0-9]{3}[,.])"), ""}};
-  if (text.size() > 64) return takes(field);  // std::regex uses the stack
+  if (text.size() > 64) return takes(field);  // limits the recursion of std::regex
   std::string plain = text;
   for (const auto& [habit, instead] : habits) plain = std::regex_replace(plain, habit, instead);
   static const std::regex thousands(",(?=[0-9]{3}$)"), comma(",");
@@ -145,8 +145,8 @@ std::span<const Field> schema() {
       row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", {0, 1e9}, kPrepare,
                              "Stokes drag constant (Table I)"),
       row<&P::fluid>("fluid", "", "", {}, kShear,
-                     "velocity of the fluid in the drag under shear: `still` is at rest, `cell` "
-                     "has the velocity of the walls at the same height (B.3, Eq. S5)"),
+                     "fluid that drags the grains during shear: `still` is at rest, `cell` moves "
+                     "like the walls at the same height (B.3, Eq. S5)"),
       row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kPrepare,
                                 "gravitational acceleration (Table I); 0 turns it off (D)"),
       row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kPrepare,
@@ -155,7 +155,7 @@ std::span<const Field> schema() {
           "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
           "wall on which the pressure is P. With `moving_wall`, the load of the moving wall is P "
           "A_w. With `top`, the load of a moving bottom wall is P A_w plus the grains' weight. "
-          "Both are equal without gravity or with a moving top wall"),
+          "The two values are equivalent without gravity or with a moving top wall"),
       // The cell.
       row<&P::walls>("walls", "", "", {}, kPrepare,
                      "texture of the walls; rough walls carry fixed wall grains"),
@@ -172,8 +172,8 @@ std::span<const Field> schema() {
           "at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
-          "largest distance of wall grain centres behind the wall plane; measures assume 0.25 for "
-          "the surface of the walls"),
+          "largest distance of wall grain centres behind the wall plane. Measures that need the "
+          "surface of a rough wall assume 0.25"),
       row<&P::wall_grain_draw>(
           "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
           "each value gives other random positions of the wall grains for the same seed"),
@@ -203,7 +203,7 @@ std::span<const Field> schema() {
                                      above(0, kLargestOverlapLimit),
                                      {.stage = StageKind::prepare, .recorded_as = "0.1"},
                                      "a stage fails and stops if its largest overlap exceeds this "
-                                     "value; raise the value to continue it"),
+                                     "value. To continue the stage, raise the value"),
       // Shear.
       row<&P::protocol>(
           "protocol", "", "", {}, kShear,
@@ -211,7 +211,7 @@ std::span<const Field> schema() {
           "(B.2)"),
       row<&P::amplitude_rad>("amplitude_rad", "A", "rad", {0, 0.5}, kShear,
                              "amplitude of the tilt theta = A sin(omega t)"),
-      // The shortest period and the most steps give the shortest time step of settling, 1e-15 s.
+      // The smallest settle_time_step_s is the smallest period_s / the largest steps_per_cycle.
       row<&P::period_s>("period_s", "T", "s", {1e-6, 1e6}, kShear,
                         "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row<&P::steps_per_cycle>(
@@ -220,8 +220,8 @@ std::span<const Field> schema() {
           "limit, 0.355"),
       row<&P::pause_s>("pause_s", "", "s", above(0, 1e6),
                        {.stage = StageKind::shear, .under = ProtocolKind::paused},
-                       "under protocol paused: rest with fixed walls after each cycle (B.5); "
-                       "rounded to whole time steps"),
+                       "under protocol paused: duration of the rest without tilt after each cycle "
+                       "(B.5); rounded to whole time steps"),
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
@@ -229,8 +229,8 @@ std::span<const Field> schema() {
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "number of shear cycles; a larger value extends a run"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
-                      "program that computes the shear. LAMMPS gives another run, equal up to "
-                      "rounding. This program always computes the settling"),
+                      "program that computes the shear. A run with LAMMPS has another id and other "
+                      "rounding errors. This program always computes the settling"),
       // A shear that begins with a recorded state.
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},

@@ -56,7 +56,7 @@ struct Field {
   std::span<const std::string_view> names = {};  ///< the values of a choice
   std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
-  std::span<const std::string_view> terms = {};  ///< for expressions; empty: not an expression
+  std::span<const std::string_view> terms = {};  ///< names in expressions; empty: takes none
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
@@ -74,7 +74,7 @@ inline bool has_unit(const Field& field) {
   return !field.unit.empty() && field.unit != "1";
 }
 
-/// Completes the field for a member of type T: names of an enumeration, or whole numbers.
+/// Completes the field for a member of type T: `names` for an enumeration, `whole` for integers.
 template <class T>
 constexpr Field with_type(Field field) {
   if constexpr (std::is_enum_v<T>) field.names = kNames<T>;

@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// The manifests that state figures of the supplement, as read_manifest() gives them.
+/// The manifests that state figures of the supplement, read by read_manifest().
 std::span<const Manifest> shipped_manifests();
 
 /// All figures of the supplement: first the computed figures, then the stated figures.

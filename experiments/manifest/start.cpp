@@ -29,7 +29,7 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   });
 }
 
-/// Throws ManifestError unless cell, grains and units are those of the recorded run.
+/// Throws ManifestError unless the variant has the cell, grains and units of the recorded run.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
   Parameters had;
@@ -55,8 +55,8 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
   }
 }
 
-/// The nominal packing fraction with which the cell has this width; nothing if it is out of range.
-/// A cell with a higher fraction is narrower.
+/// The nominal packing fraction with which the cell has this width; nothing if the fraction is out
+/// of range. A cell with a higher fraction is narrower.
 std::optional<double> fraction_for_width(Geometry shape, double width) {
   const Range& range = find_field("nominal_packing_fraction")->range;
   const auto excess = [&](double fraction) {

@@ -17,10 +17,10 @@
 
 namespace shearcell {
 
-/// The run in `known` with whose state the variant begins. If `start` names no variant and the
-/// other experiment has several, the variant with equal values of all keys that both experiments
-/// sweep. Throws ManifestError if not exactly one run fits, if the run has no checkpoint at the
-/// cycle, or if the cell or grains of the run differ.
+/// The run in `known` with whose state the variant begins. If several runs fit `start`, returns the
+/// run that has the variant's value for each key that both experiments sweep. Throws ManifestError
+/// if not exactly one run remains, if the run has no checkpoint at the cycle, or if the cell or
+/// grains of the run differ.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 

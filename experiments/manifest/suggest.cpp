@@ -99,8 +99,8 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
     if (field != nullptr && field->symbol == unknown) return std::string(candidate);
     if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
   }
-  // Several names begin with `stiffness`, but only stiffness_N_per_m ends in a unit. Several names
-  // with a unit begin with `settle`, so that none of them is suggested.
+  // For `stiffness`, several names fit, but only stiffness_N_per_m ends in a unit and is suggested.
+  // For `settle`, several names with a unit fit, and none of them is suggested.
   if (with_unit.size() > 1) {
     std::erase_if(with_unit, [](string_view name) {
       const Field* field = find_field(name);

@@ -22,8 +22,8 @@ struct Tried {
 };
 
 /// Finds `name` in the table of tried names. An entry with a remark also fits names that contain
-/// its words: `friction` fits `coefficient_of_friction`. If several entries fit, the first whose
-/// `instead` is one of `candidates`, otherwise the first with a remark. Null if no entry fits.
+/// its words: `friction` fits `coefficient_of_friction`. Of the entries that fit, returns the first
+/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none fits.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name
@@ -52,7 +52,6 @@ std::string some_of(const auto& names, std::size_t most = 3) {
   return names.size() > most ? fmt::format("{} and {} more", first, names.size() - most) : first;
 }
 
-/// The member `name` of each item.
 std::vector<std::string_view> names_of(auto&& list) {
   std::vector<std::string_view> names;
   for (const auto& one : list) names.emplace_back(one.name);

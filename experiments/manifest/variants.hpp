@@ -26,7 +26,7 @@ struct Variant {
   nlohmann::json swept = nlohmann::json::object();  ///< values by key, without `cycles` and `seeds`
   Parameters parameters = {};
   Parameters packing = {};  ///< `parameters`, overridden by the values of `settle`
-  /// Number of seeds: the variant has only the first seeds of the scale. Default: all.
+  /// Number of seeds: the variant has only the first `seeds` seeds of the scale. Default: all.
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
@@ -39,9 +39,9 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether to select the value. The parts of its display name `name` count as parts of the value.
-  /// Texts with equal keys are alternatives; a value must fit one text for each set of keys. True
-  /// if no texts were given.
+  /// Whether to select the value. A text may also have parts of the value's display name `name`.
+  /// Texts with equal keys are alternatives: for the texts "a=1", "a=2" and "b=3", the value must
+  /// have b=3, and a=1 or a=2. True if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first text that no value has fitted so far, or null.
   const std::string* unfound() const;
@@ -67,9 +67,9 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 
 /// Returns the display names of variants, which are objects of swept keys and values and may be
-/// repeated. Labels come first, those with most keys before others, and replace the keys that they
-/// state. Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". The name
-/// is "no sweep" if nothing is swept. (Ids and CSV files use Variant::name.)
+/// repeated. A name begins with labels (those with the most keys first) in place of the keys that
+/// they state. Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". The
+/// name is "no sweep" if nothing is swept. (Ids and CSV files use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 

@@ -121,7 +121,7 @@ TEST(FigureWarnings, OfAClaimBetweenVariantsThatAreTheSameRuns) {
   const std::string top = "{gravity_m_per_s2: 0, pressure_at: top}";
   const Strings same = found(top + ", {gravity_m_per_s2: 0, pressure_at: moving_wall}");
   ASSERT_EQ(same.size(), 2U);
-  EXPECT_TRUE(has(same[0], "are the same runs, computed once"));
+  EXPECT_TRUE(has(same[0], "have equal runs, computed once"));
   EXPECT_TRUE(has(same[1], "claim own: both sides of `between` are the same runs"));
   EXPECT_EQ(found(top + ", {gravity_m_per_s2: 9.81, pressure_at: top}").size(), 1U);
 }
@@ -203,7 +203,7 @@ TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {
   for (const auto& [bad, says] :
        {std::pair{plot("y: phi*msd_10_cycles_d2"), "so phi*msd_10_cycles_d2 has no value"},
         {plot("y: 2*onset_size_phi, x: drag_kg_per_s, at_cycle: 2"),
-         "at_cycle has no effect on 2*"},
+         "has one value for each run, so at_cycle has no effect"},
         {plot("y: phi, x: 1/drag_kg_per_s, at_cycle: 3"), "no run has a checkpoint at cycle 3"},
         {std::string(
              "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, of: {walls: rough}, "

@@ -527,11 +527,12 @@ TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
                                         {"90000", "", false}}) {
     write_grains(std::string("x_d,y_d,z_d\n1,1,1\n1,") + y + ",1\n");
     const std::vector<std::string> warnings = expand(manifest(rest, two)).warnings;
-    EXPECT_EQ(std::ranges::count_if(warnings,
-                                    [](const std::string& one) {
-                                      return one.find("grains.csv: the grains are 90000 d high.") !=
-                                             one.npos;
-                                    }),
+    EXPECT_EQ(std::ranges::count_if(
+                  warnings,
+                  [](const std::string& one) {
+                    return one.find("grains.csv: the packing of this file is 90000 d high.") !=
+                           one.npos;
+                  }),
               warned ? 1 : 0)
         << y << rest;
   }
