@@ -148,7 +148,7 @@ TEST_F(Commands, StatusListsASharedRunUnderEachExperiment) {
   write("twin.yaml", renamed(text, "twin"));
   expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
   const std::string status = expect(0, {"status"},
-                                    {"tiny at scale base", "twin at scale base", "packing N=200 ",
+                                    {"tiny", "twin at scale base", "packing N=200 ",
                                      "packing N=300 ", "4 stages: 4 completed"})
                                  .out;
   const std::string run = last_run().substr(0, 8);
@@ -269,7 +269,7 @@ TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   write("a.yaml", after("a", "b"));
   write("b.yaml", after("b", "tiny"));
   write("m.yaml", tiny_manifest());
-  expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a at scale base"});
+  expect(0, {"plan", "a.yaml", "b.yaml", "m.yaml"}, {"tiny, b, a"});
   write("b.yaml", after("b", "a"));
   expect(2, {"plan", "a.yaml", "m.yaml", "b.yaml"},
          {"warning: a.yaml: the `start` keys of the manifests form a loop",

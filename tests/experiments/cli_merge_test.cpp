@@ -62,7 +62,7 @@ TEST_F(Split, MergeNamesTheRunsThatFiguresThenLeaveOut) {
   }
   expect_names(warnings({"many", "few"}, "new"), few, "2 runs", many, "6 runs");
   expect(0, {"merge", "many", "few", "--store", "text"},
-         {"warning: experiment tiny at scale base"});
+         {"warning: experiment tiny"});
 }
 
 TEST_F(Split, MergeCountsRunsThatBothVersionsDeclare) {

@@ -154,7 +154,7 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   EXPECT_TRUE(
       has(with_notes.at("notes")[0].get<std::string>(), "left out: 2 runs of another version"));
   const Outcome report =
-      expect(0, {"report", "--out", "report.html"}, {"tiny at scale base: left out: 2 runs"});
+      expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
   EXPECT_FALSE(has(report.err, "left out: experiment"));
   // A manifest that states the runs of both versions.
   write("both.yaml", tiny_manifest("",

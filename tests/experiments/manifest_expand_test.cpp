@@ -514,7 +514,7 @@ TEST(Expand, NamesVariants) {
     for (const PlannedRun& run : plan_of("grains: 600", rest).runs) found.push_back(run.name);
     return found;
   };
-  EXPECT_EQ(names(""), Strings{"base"});
+  EXPECT_EQ(names(""), Strings{"no sweep"});
   EXPECT_EQ(names("sweep: {grid: {fluid: [still, cell]}}\n"),
             (Strings{"fluid=still", "fluid=cell"}));
   EXPECT_EQ(names("sweep: {zip: {steps_per_cycle: [45600, 64488], settle_time_step_s: [4.4e-5, "

@@ -323,13 +323,13 @@ TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
 
 TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   const std::string none = refusal(clones(""));
-  EXPECT_NE(none.find("start: the store has no run of tiny at scale base with seed 1. Compute this "
+  EXPECT_NE(none.find("start: the store has no run of tiny with seed 1. Compute this "
                       "run first, or name the store that contains it with --store."),
             std::string::npos)
       << none;
   compute_here(tiny_manifest("", kBothFluids));
   EXPECT_NE(refusal(clones(""))
-                .find("more than one run of tiny at scale base with seed 1. Select one: `variant: "
+                .find("more than one run of tiny with seed 1. Select one: `variant: "
                       "\"KEY=VALUE\"`. Join several values by commas."),
             std::string::npos);
   EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");

@@ -97,7 +97,7 @@ export function manyChecks({open, expect, report, shots, drawAllPlots}) {
       const figures = await page.locator(".figure:has(.plot)").evaluateAll((all) => all.map((one) =>
         ({id: one.id, caption: one.querySelector(".caption")?.textContent ?? ""})));
       for (const {id, caption} of figures) {
-        expect(caption.startsWith(`Figure ${id.split(".").pop()}`) && /Experiment many, scale base\./.test(caption),
+        expect(caption.startsWith(`Figure ${id.split(".").pop()}`) && /Experiment many\./.test(caption),
           `captions: ${id}: '${caption}'`);
       }
       const why = "Nothing is drawn in zero: no run has the values to be shown.";

@@ -97,7 +97,7 @@ TEST_F(ReportOfRuns, HasTheCaptionOfEachFigure) {
   const ComputedFigure drawn =
       compute_figure(store_, wanted_figures(store_, {"S2"}).figures.at(0), {});
   EXPECT_TRUE(has(drawn.caption, "Figure S2. ")) << drawn.caption;
-  EXPECT_TRUE(has(drawn.caption, "Experiment tiny, scale base.")) << drawn.caption;
+  EXPECT_TRUE(has(drawn.caption, "Experiment tiny.")) << drawn.caption;
   for (const std::string& html : {make(), make(drawings())}) {
     EXPECT_TRUE(has(html, "<p class=\"caption\">" + escape_html(drawn.caption) + "</p>"));
     EXPECT_EQ(count(html, "<figcaption>(a) S2a"), 1U) << "the caption names panels by letters";
