@@ -15,8 +15,8 @@ void CellOrder::choose_strip(std::size_t sites) {
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // Prefetch distance: one row and two lines of cells, plus 20 % because some rows hold more sites
-  // than the average. A small cell fits in the cache and needs no prefetch.
+  // Prefetch distance: the sites of one row (`strip` lines of cells along x) and of two more lines,
+  // plus 20 % for rows with more sites. A small cell fits in the cache and needs no prefetch.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));
@@ -24,7 +24,7 @@ void CellOrder::choose_strip(std::size_t sites) {
 
 void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, const double* rows,
                       const std::vector<Site>& sites, Team& team) {
-  // Two points at distance r differ by at most r sqrt(1 + tan^2(theta)) in x of the untilted frame.
+  // In the untilted frame, two points at distance r differ by up to r sqrt(1 + tan^2(theta)) in x.
   const double reach_x = reach * std::sqrt(1 + pose.tan_theta * pose.tan_theta);
   grid_.cells = Grid(cell, pose, {reach_x, reach, reach}, sites.size());
   choose_strip(sites.size());

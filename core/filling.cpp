@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// Volume that a rough wall takes from the cell, per wall area [d]: 0.66 wall grains per d^2, each
-// with 0.17 d^3 inside the cell (mean for recesses of 0 to d/4), and the gaps between them.
+// Volume that a rough wall takes from the cell, per wall area [d]. It includes the gaps between the
+// wall grains (0.66 per d^2, each with 0.17 d^3 inside the cell: mean for recesses of 0 to d/4).
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
@@ -44,7 +44,7 @@ void poll_sometimes(const Poll& poll, std::uint64_t attempt) {
   if (poll && attempt % 1024 == 1023) poll();
 }
 
-// Places discs of diameter d by random sequential addition on a wall with the sides `length` and
+// Places discs of diameter d by random sequential addition on a wall of the size `length` x
 // `depth`. The wall is periodic along `depth`. Calls place(along, z, recess) for each disc.
 template <class Place>
 void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side, double length,

@@ -17,9 +17,9 @@ struct CellRange {
   std::size_t begin, end;
 };
 
-/// A grid in the untilted frame of a pose, periodic in z. Points outside the walls belong to the
-/// border cells; searches find them up to one grid cell outside. The layers in z are grouped into
-/// strips. Within a strip, the cell number increases fastest along x, then along z, then along y.
+/// A grid in the untilted frame of a pose, periodic in z. A point outside the walls belongs to a
+/// border cell; a search finds it if it is at most one grid cell outside. The layers in z are
+/// grouped into strips. In a strip, cell numbers increase fastest along x, then z, then y.
 struct Grid {
   std::int32_t columns = 1, layers = 1, rows = 1;  ///< number of cells in x, z and y
   std::int32_t strip = 1;  ///< layers per strip; the last strip may have fewer
@@ -28,8 +28,8 @@ struct Grid {
   std::array<double, 3> per_cell{};  ///< number of grid cells per d along x, y and z
 
   Grid() = default;
-  /// Divides the cell into one strip of grid cells, as small as possible but not below `sizes` [d].
-  /// At most about four cells per point are made, so that a sparse grid costs little.
+  /// Makes a grid with one strip. The grid cells are as small as possible, but not smaller than
+  /// `sizes` [d]. There are at most about four grid cells per point, so a sparse grid is cheap.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
   std::size_t size() const {

@@ -32,7 +32,7 @@ constexpr std::size_t padded(std::size_t grains) {
   return (grains + 7) / 8 * 8;
 }
 
-/// Offset of the padding row, which follows the padded grains and touches nothing.
+/// Offset of the padding row, which touches nothing. It follows the rows of grains and spare lanes.
 constexpr std::int32_t padding_offset(std::size_t grains) {
   return static_cast<std::int32_t>(4 * padded(grains));
 }
@@ -42,8 +42,8 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
   return padding_offset(grains) + 4;
 }
 
-/// Flags of a block of grains. kNearSeam: the nearest image of some neighbour is across the
-/// periodic boundary in z. The kernel skips the code for walls or boundary if no grain needs it.
+/// Flags of a block of grains. kNearSeam: the nearest image of a neighbour is across the periodic
+/// boundary in z. Without a flag, the kernel skips the code for this boundary or wall.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 
@@ -100,8 +100,8 @@ struct CellGrid {
   const std::int32_t* id = nullptr;      ///< permanent id of each site; wall grains come first
 };
 
-/// Input of the search for outer lists. The outer list of a grain holds all sites nearer than 1
-/// plus both margins [d], in ascending id.
+/// Input of the search for outer lists. The outer list of a grain holds, in ascending id, all sites
+/// that are closer than 1 plus the margins of the grain and the site [d].
 struct SearchTask {
   CellGrid grid;
   std::int32_t first_grain = 0;  ///< smallest id of a grain; smaller ids are wall grains
@@ -118,7 +118,7 @@ struct SearchTask {
 inline constexpr std::size_t kMostNeighbours = 1024;
 
 /// Input for pruning the outer lists to inner lists. An inner list keeps the neighbours that are
-/// now nearer than 1 plus both margins [d].
+/// now closer than 1 plus the margins of the grain and the neighbour [d].
 struct PruneTask {
   std::size_t grains = 0;
   const double* rows = nullptr;
@@ -140,8 +140,8 @@ struct PruneTask {
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number if some grain has moved
-/// farther from its `reference` than its margin minus margin_loss.
+/// One implementation of the loops. `step` returns a positive number if a grain's distance from its
+/// `reference` exceeds its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;

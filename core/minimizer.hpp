@@ -24,8 +24,8 @@ struct MinimizeSettings {
 /// ids. Throws NumericalFailure if the tolerance is not reached or a watchdog check fails.
 void minimize_enthalpy(Simulation& simulation, const MinimizeSettings& settings = {});
 
-/// Returns the quantity that force_tolerance limits, for a state with upright walls. The contacts
-/// are found without neighbour lists.
+/// Returns the largest net force in a state with upright walls, in the units of force_tolerance.
+/// The contacts are found without neighbour lists.
 double force_residual(const Cell& cell, const Scene& scene, const State& state);
 
 }  // namespace shearcell

@@ -74,8 +74,8 @@ double Reference::wall_moved(const WallPose& pose) const {
 
 double Reference::margin_loss(double tan_theta) const {
   // A simple shear by e multiplies a distance by at least its smallest singular value, which is
-  // sqrt(1 + e^2/4) - e/2 > 1 - e/2. So a distance of 1 plus two margins loses at most the fraction
-  // e/2 of its length, and the margin of each of the two grains loses half of this.
+  // sqrt(1 + e^2/4) - e/2 > 1 - e/2. So a distance of 1 plus two margins becomes shorter by at most
+  // the fraction e/2. Half of this loss is subtracted from the margin of each of the two grains.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
@@ -94,8 +94,8 @@ bool NeighbourLists::inner_valid(double excess, const WallPose& pose) const {
   return excess <= 0 && inner_reference_.wall_moved(pose) < room;
 }
 
-// Widens the margins if the last outer lists were valid for a short time. Many grains are then fast
-// (a wall presses loose grains together), and wide margins cost less than frequent searches.
+// Widens the margins if the last outer lists were valid only for a short time. In this case many
+// grains are fast (a wall presses loose grains together), and wide margins cost less than searches.
 void NeighbourLists::choose_widest_margin(const Snapshot& now) {
   const std::uint64_t age = now.step - built_at_;
   built_at_ = now.step;
@@ -166,8 +166,8 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// Every pair within its inner margins must be in the outer list. So an inner margin cannot exceed
-// the unused part of the outer margin. Returns false if this part is too small for a grain or wall.
+// The outer lists must contain every pair that is closer than 1 plus the inner margins. So an inner
+// margin is at most the unused part of the outer margin. Returns false if this part is too small.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

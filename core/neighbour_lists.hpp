@@ -37,10 +37,10 @@ struct ListSettings {
 
 /// Positions of the grains when a list was built, in the frame that moves with the affine shear.
 ///
-/// Two grains that are not neighbours in a list were at least 1 + m_i + m_j apart, with margins m.
-/// They cannot touch until one of them has moved in this frame by more than its margin minus
-/// margin_loss(). So each grain checks only its margin, and a fast grain can have a wide margin
-/// without making the lists of slow grains longer.
+/// Two grains that are not listed as neighbours were at least 1 + m_i + m_j apart, where m_i and
+/// m_j are their margins. They cannot touch until one of them has moved in this frame by more than
+/// its margin minus margin_loss(). So the movement of each grain is compared with its own margin
+/// only, and wide margins of fast grains do not lengthen the lists of slow grains.
 class Reference {
  public:
   /// Stores the present positions and the present pose. `widest` is the largest margin [d].

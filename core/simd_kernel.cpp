@@ -20,12 +20,12 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Number of neighbours of a lane for which the series are computed together. In one series, each
-// operation waits for the previous one. Four neighbours fit in 32 registers if coefficients are
+// Number of neighbours per lane whose series are computed together, because each operation of one
+// series waits for the previous operation. Four neighbours fit in 32 registers if coefficients are
 // loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
-// Computes contact_factor(s) of kCount numbers s <= kSeriesEnd.
+// Computes contact_factor(s) for kCount numbers s <= kSeriesEnd.
 template <std::size_t kCount>
 HWY_INLINE void series_factors(const V* s, V* factor) {
   const double* coefficient = kContactSeries.data() + kContactSeries.size() - 1;
@@ -48,7 +48,7 @@ HWY_INLINE V exact_beyond(V s, V series) {
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// Separations of the grains in `own` from one neighbour of each grain.
+// For each grain in `own`, the separation from one of its neighbours (one slot of the list).
 template <bool kSeam>
 HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
@@ -58,7 +58,7 @@ HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows
   return separation<kSeam>(own, other, depth, per_depth);
 }
 
-// Adds (1/r - 1) dr of each neighbour that touches: kCount per lane, in the order of the list.
+// Adds (1/r - 1) dr of the next kCount neighbours of each lane (0 for a neighbour without contact).
 template <std::size_t kCount>
 HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   V s[kCount], factor[kCount];
@@ -83,8 +83,8 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   }
 }
 
-// Adds (1/r - 1) dr of all neighbours that touch. The k-th neighbour of lane l is
-// list[k * kLanes + l].
+// Adds (1/r - 1) dr of all neighbours that touch, in the order of the list. The k-th neighbour of
+// lane l is list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,

@@ -26,8 +26,8 @@ using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
 // Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
-// whole vector is written, and the rest of it is undefined. Doubles are not used because Compress
-// of Highway 1.0 copies a table of 16 kB per call for doubles.
+// whole vector is written; its remaining lanes are undefined. The values are not doubles, because
+// for doubles, Compress of Highway 1.0 copies a table of 16 kB per call.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -37,8 +37,8 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
 }
 
 // Writes the row offsets of the ids to `outer`, in ascending id. The rank of an id is the number of
-// smaller ids. Nearly every list fits in two vectors. Both are always compared, because a branch on
-// the length would be mispredicted. `ids` must have room for two vectors after its last entry.
+// smaller ids. Nearly every list fits in two vectors. Two vectors are always compared, as a branch
+// on the length would be mispredicted. `ids` must have room for two vectors after its last entry.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -56,7 +56,7 @@ HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids
   }
 }
 
-// Square of the cutoff, which is 1 plus both margins.
+// Square of the cutoff. The cutoff is 1 plus the margins of the two sites.
 HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   const V cutoff = hn::Add(hn::Set(kD, 1.0), hn::Add(own_margin, other_margin));
   return hn::Mul(cutoff, cutoff);

@@ -64,8 +64,8 @@ class Simulation {
   /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.
   void check() const;
 
-  /// Checks that all numbers are finite and all grains are inside the cell. Other states must not
-  /// be recorded. Throws NumericalFailure.
+  /// Checks that all numbers are finite and all grains are inside the cell. A state that fails this
+  /// check must not be recorded. Throws NumericalFailure.
   void check_recordable() const;
 
   /// Replaces the state by another state of the same grains, with upright walls. Throws

@@ -30,8 +30,8 @@ class Walls {
   /// Writes a row {x, y, z, margin} [d] for each wall grain.
   void place_all(const WallPose& pose, double margin, double* rows) const;
 
-  /// Selects the wall grains that place() updates: those between the bottom and top planes or at
-  /// most `reach` [d] outside. (Side walls extend farther beyond the moving wall.)
+  /// Selects the wall grains that place() updates: those between the bottom and the top plane, and
+  /// those at most `reach` [d] below or above. (Side walls extend farther past the moving wall.)
   void choose_active(const WallPose& pose, double reach);
   const std::vector<std::int32_t>& active() const { return active_; }
 

@@ -49,7 +49,7 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w of contacts in the bounds of omega^2 (watchdog.hpp). kOnMovingWall: bound of the wall.
+// Weights w of the contacts of a grain (watchdog.hpp), and the factor 5 in the moving wall's bound.
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
 // Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether

@@ -58,7 +58,7 @@ struct WatchTask {
 /// over its contacts: w is 2 for a grain, 1 for a fixed wall and 5/4 for the moving wall. The bound
 /// of the moving wall is k 5 (sum of n_y^2) / (mass of the wall). The largest bound is exact for a
 /// pair (2 k/m) and for an FCC crystal (8 k/m). The checks take as long as about four time steps.
-/// Throws NumericalFailure for the first failing grain in memory.
+/// Throws NumericalFailure. It names the failing grain that is stored first in memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

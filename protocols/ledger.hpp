@@ -23,17 +23,17 @@ struct Ledger {
 
   double dissipation() const { return lost_by_grains + lost_by_wall; }
   double stored() const { return elastic + kinetic + gravitational + load; }
-  /// Error of the balance.
+  /// Error of the energy balance.
   double missing() const { return stored() + dissipation() - work_of_walls; }
 };
 
 /// Simulates `steps` steps from `start`. Every `stride` steps, it adds the work (trapezoidal rule)
-/// and the losses (rectangle rule with the later state). Each sample searches for contacts with
-/// walls without neighbour lists, which takes as long as 15 steps. Throws NumericalFailure.
+/// and the losses (rectangle rule with the later state). Each of these samples takes as long as 15
+/// steps, because it finds the wall contacts without neighbour lists. Throws NumericalFailure.
 ///
 /// Measured for one cycle at the time step of Table I (45600 steps), A = 0.1, N = 600 and 5200: the
-/// error is at most 0.6 % of the dissipation with strides 1 and 8, and 1 % with stride 16. The
-/// ledger takes 3 to 4 times as long as the cycle with stride 8, and 2 to 3 times with stride 16.
+/// error is at most 0.6 % of the dissipation for strides 1 and 8, and 1 % for stride 16. A ledger
+/// takes 3 to 4 times as long as the cycle alone for stride 8, and 2 to 3 times for stride 16.
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
               std::uint64_t steps, std::uint64_t stride = 1);
 

@@ -93,7 +93,7 @@ StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) 
   simulation.set_overlap_limit(compacting
                                    ? std::max(parameters_.overlap_limit, kLargestOverlapLimit)
                                    : parameters_.overlap_limit);
-  // If the stage was interrupted after its last state was recorded, it must not advance further.
+  // A stage that was interrupted after its last state was recorded must not advance further.
   if (finished(simulation)) return {.checkpoint_due = true, .finished = true};
 
   Scene scene = scene_;

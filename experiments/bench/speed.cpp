@@ -22,8 +22,8 @@ struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
   double step = 0, search = 0, prune = 0;
-  // Every 16th step is computed three more times, with its results in `elsewhere`: the whole step,
-  // the step without walls, and the step without walls and neighbours.
+  // Every 16th step is repeated three times: the whole step, the step without walls, and the step
+  // without walls and neighbours. The results of the repeated steps are written to `elsewhere`.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
   double blocks = 0, slots = 0;  // numbers of blocks and slots in the repeated steps
   std::vector<double> elsewhere;
@@ -142,7 +142,7 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
       static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
 }
 
-// Uses the times of the last measure_shares().
+// Uses the times from the last call of measure_shares().
 void measure_limit(std::size_t lanes, SpeedResult& result) {
   result.multiplications = multiplications(lanes, times.slots / times.blocks);
   result.limit = 1e-6 * static_cast<double>(result.threads) * peak_multiplications(lanes) /

@@ -14,7 +14,7 @@ namespace shearcell::bench {
 /// z and the fluid are not counted.
 double multiplications(std::size_t lanes, double slots);
 
-/// Largest number of fused vector multiply-adds per second on one core, from several short runs.
+/// Fused vector multiply-adds per second on one core: the largest of several short measurements.
 /// `lanes`: number of doubles per vector, 1 or the width of one of kernels_here().
 double peak_multiplications(std::size_t lanes);
 
@@ -32,8 +32,8 @@ struct SpeedResult {
   std::string simd = {};
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Fractions of the time. Walls: wall planes and grains of the moving wall. Force: neighbours and
-  /// other wall grains. Moving the wall, drive, sorting and watchdog are in none of the shares.
+  /// Fractions of the time. Wall: wall planes and grains of the moving wall. Force: neighbours and
+  /// other wall grains. No share includes the drive, wall movement, sorting and the watchdog.
   double force_share = 0, integration_share = 0, wall_share = 0;
   double search_share = 0, prune_share = 0;  ///< search of outer lists, pruning of inner lists
   double steps_per_search = 0, steps_per_prune = 0;

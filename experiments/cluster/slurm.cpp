@@ -64,8 +64,8 @@ std::string unfit_path(const fs::path& path) {
   const bool fit =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
   if (text.size() > kLongest) {
-    return fmt::format("'{:.40}...' has {} bytes; name a folder whose path has at most {}", text,
-                       text.size(), kLongest);
+    return fmt::format("'{:.40}...' has {} bytes; name a folder whose path has up to {} bytes",
+                       text, text.size(), kLongest);
   }
   if (fit) return "";
   return fmt::format(
@@ -151,7 +151,7 @@ std::string queue_job(const Job& job, const fs::path& folder) {
     return text.size() <= kLongest && std::regex_match(text, found, number);
   };
   if (sbatch.code == 0 && is_number(sbatch.output)) return found[1];
-  // sbatch failed, perhaps after it queued the job, or the cluster added text to the job number.
+  // Either sbatch failed (perhaps after it queued the job), or its output contains more text.
   const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
   std::optional<std::vector<QueuedTask>> tasks;
   std::string queue = "no job of this name is in the queue";
@@ -172,8 +172,9 @@ std::string queue_job(const Job& job, const fs::path& folder) {
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
       "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
       "--name={}",
-      sbatch.code != 0 ? failure
-                       : fmt::format("sbatch gave no job number but '{}'", trimmed(sbatch.output)),
+      sbatch.code != 0
+          ? failure
+          : fmt::format("sbatch printed '{}', not a job number", trimmed(sbatch.output)),
       queue, job.name, job.name, job.name));
 }
 

@@ -48,7 +48,7 @@ struct QueuedTask {
   std::string job;                    ///< number of the job, or of the whole array
   std::optional<std::uint64_t> task;  ///< index in the array
   std::string state;                  ///< "PENDING", "RUNNING", "COMPLETING", ...
-  std::string reason;                 ///< why it waits, for example "Priority"
+  std::string reason;                 ///< why the task waits, for example "Priority"
   std::string node;                   ///< where it runs
 };
 

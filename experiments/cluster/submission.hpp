@@ -27,7 +27,7 @@ struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
   double particle_steps = 0;          ///< remaining work, including the packings
-  double core_seconds = 0;            ///< remaining time of one core, from Rates (outlook.hpp)
+  double core_seconds = 0;            ///< time for this work on one core [s] (Rates in outlook.hpp)
 
   void add(const Share& other);
 };
@@ -36,9 +36,9 @@ struct Share {
 /// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Joins the shares of packings into at most `tasks` shares, none of them empty. Starts with the
-/// longest packing, and gives each packing to the share with the least core time so far. The same
-/// input gives the same shares.
+/// Joins the shares of packings into at most `tasks` shares, none of them empty. Takes the packings
+/// in descending core time, and gives each packing to the share with the least core time so far.
+/// The same input gives the same shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.
@@ -63,8 +63,8 @@ struct Proposal {
 };
 
 /// Leaves out a packing and all its runs if `busy` contains the packing or one of its runs. If
-/// `job.cpus` is 0, each task gets as many cores as all runs of the largest share need at once, but
-/// at most 16 (or `job.threads`, if this is more).
+/// `job.cpus` is 0, each task gets as many cores as the largest share needs to compute all its runs
+/// at once, but at most 16 (or `job.threads` if this is more than 16).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -95,8 +95,8 @@ Job array_job(const Submission& submission, const std::filesystem::path& store,
 Job merge_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options, const std::string& array);
 
-/// Makes a store for each task, with copies of all records of its runs. Then records an event:
-/// `facts`, the runs of each task and the command. `seen`: number of submission events that the
+/// Makes a store for each task, with copies of all records of its runs. Then records an event that
+/// contains `facts`, the runs of each task and the command. `seen`: number of submission events the
 /// caller has read. Throws ConcurrencyConflict if another program has added such an event since.
 Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::json facts,
                               std::size_t seen);
@@ -112,7 +112,7 @@ std::vector<Submission> unfinished_submissions(const Store& store);
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
 /// Runs that are queued or being computed: all runs of submissions with jobs in the queue, all runs
-/// that programs on this machine hold, and the packings of these runs that are not settled yet.
+/// that programs on this machine compute, and the packings of these runs that are not yet settled.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
 /// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. Other machines

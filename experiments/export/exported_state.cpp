@@ -28,7 +28,7 @@ void add_columns(const Measures& measures, ExportedState& frame) {
   }
 }
 
-// In LAMMPS, a shear continues with its drive, a packing with upright walls and settling forces.
+// Task for LAMMPS: a shear with its drive, or a settling with upright walls and settling forces.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   const auto kind = value_of<StageKind>(stage.kind);
   if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;

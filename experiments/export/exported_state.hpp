@@ -36,7 +36,7 @@ struct ExportedState : Particles {
   /// The frame's scalar measures, by their names in `shearcell table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// Measures of each particle (analysis/measures.hpp). Unknown values are NaN (whole numbers: -1).
+  /// Measures of each particle (analysis/measures.hpp). Unknown values are NaN, or -1 if `whole`.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
   MeasureOutcome unread;                    ///< earlier checkpoints that could not be read
@@ -45,7 +45,7 @@ struct ExportedState : Particles {
   std::optional<LammpsTask> continued;
 };
 
-/// The name of a frame in file names: its cycle, or "step45600" in a packing, which has no cycles.
+/// The name of a frame in file names: its cycle, or "step45600" for a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
 /// Makes a frame from a checkpoint. `sources` must have read the run (read_run()); without

@@ -24,19 +24,19 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 /// Extended XYZ in one file. The comment line of each frame has the run, its parameters and the
 /// scalars. Readers require chemical symbols: species H is a grain, He a wall grain. The column
 /// `wall_side` is ExportedState::type; OVITO would read a column `type` as a second species. A text
-/// that ASE or OVITO would read as a number or a logical value is in single quotes: the experiment
-/// T is 'T'. Lengths are in metres, or in grain diameters d, because OVITO and ASE expect numbers
-/// of order 1. `d_m` is d in metres.
+/// that ASE or OVITO would read as a number or a logical value gets single quotes: 'T' for an
+/// experiment named T. `unit`: metres, or grain diameters d because OVITO and ASE expect lengths of
+/// order 1. The key `d_m` gives d in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
 /// A folder with frames.pvd, which lists all frames, and two files for each frame: grains_CYCLE.vtp
 /// (points with their data; scalars as field data) and cell_CYCLE.vtp (the six faces of the cell).
-/// SI units. `frames`: number of frames; frames.pvd is complete after the last.
+/// SI units. `frames`: number of frames; frames.pvd is complete after the last one.
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
 /// A folder with frame_CYCLE.data for each frame, in SI units and without measures (lammps_data).
 /// The title line of this file gives the planes of the cell. If ExportedState::continued is set,
-/// the folder also gets in.frame_CYCLE, a script with which LAMMPS continues (lammps_script).
+/// the folder also gets in.frame_CYCLE, a script that continues the run in LAMMPS (lammps_script).
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, with a row for each contact. Particles are

@@ -49,7 +49,7 @@ class Trajectory {
     put("particles/all/step", H5T_STD_U64LE, {}, &frame.checkpoint.state.step);
     put("particles/all/time", H5T_IEEE_F64LE, {}, &frame.checkpoint.time_s, "s");
     element("particles/all/box/edges", H5T_IEEE_F64LE, {3, 3}, edges.data(), "nm");
-    // H5MD does not define the origin of a box.
+    // The origin is an addition: H5MD does not define an origin of the box.
     element("particles/all/box/origin", H5T_IEEE_F64LE, {3}, origin.data(), "nm");
     element("particles/all/position", H5T_IEEE_F64LE, {particles_, 3}, position.data(), "nm");
     element("particles/all/velocity", H5T_IEEE_F64LE, {particles_, 3}, frame.velocity.data(),

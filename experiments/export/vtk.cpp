@@ -12,7 +12,8 @@
 namespace shearcell {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the files state LittleEndian");
+static_assert(std::endian::native == std::endian::little,
+              "the files declare the byte order LittleEndian");
 
 /// Collects arrays. They are written after the XML elements that refer to them.
 class PolyData {
