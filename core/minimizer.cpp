@@ -30,7 +30,7 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
 }
 
 // Sums over the grains and the moving wall; the terms of the wall are weighted by its mass. Plain
-// loops in the order of the ids fix the order of the additions, and thus the bits on any machine.
+// loops over the ids fix the order of the additions, so every machine computes the same bits.
 struct Sums {
   double power, velocity, force;
 };

@@ -17,7 +17,7 @@ std::array<double, 2> uniform_pair(std::array<std::uint32_t, 4> counter, std::ui
 
 /// A nearly normal random number with mean 0 and variance 1: the sum of twelve uniform numbers
 /// minus 6. It has the same bits on every machine, because no logarithm or cosine is needed. The
-/// last component of `counter` is ignored; the sum uses the values 0 to 5 for it.
+/// last component of `counter` is replaced by 0, 1, ..., 5 to draw six pairs of uniform numbers.
 double normal_number(std::array<std::uint32_t, 4> counter, std::uint64_t seed);
 
 }  // namespace shearcell

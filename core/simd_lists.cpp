@@ -26,8 +26,8 @@ using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
 // Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
-// whole vector is written; its remaining lanes are undefined. The values are not doubles, because
-// for doubles, Compress of Highway 1.0 copies a table of 16 kB per call.
+// whole vector is written; its remaining lanes are undefined. The values are integers, because
+// Compress of Highway 1.0 copies a table of 16 kB in each call for doubles.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -94,7 +94,7 @@ class Surroundings {
                       hn::Set(kD, t.grid.position[1][place]),
                       hn::Set(kD, t.grid.position[2][place])};
     const V own_margin = hn::Set(kD, t.grid.margin[place]);
-    // Ids are compared as doubles (exact), to get the same type of mask as from the distances.
+    // Ids are compared as doubles (exact), so that this mask has the type of the distance mask.
     const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
     std::size_t count = 0;
     for (std::size_t k = 0; k < size_; k += kLanes) {

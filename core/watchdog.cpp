@@ -23,8 +23,8 @@ std::string message(const std::string& quantity, double value, double limit, std
   return text.str();
 }
 
-// Calls visit(offset, separation, moving) for every neighbour of grain g, with the neighbour's row
-// offset. `moving` says whether the neighbour belongs to the moving wall.
+// Calls visit(offset, separation, moving) for every neighbour of grain g. `offset` is the row
+// offset of the neighbour. `moving` says whether the neighbour belongs to the moving wall.
 template <class Visit>
 void for_each_neighbour(const WatchTask& task, std::size_t g, Visit&& visit) {
   const double* own = task.rows + 4 * g;

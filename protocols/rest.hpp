@@ -8,7 +8,7 @@ namespace shearcell {
 
 /// Returns the state after `seconds` of rest under the forces of the scene, between upright walls
 /// that are held in place. Continuous shear is recorded while its shear rate is largest, but paused
-/// shear is recorded after a pause (supplement B.5). Equal times of rest make their states
+/// shear is recorded after a pause (supplement B.5). Equal times of rest make the two states
 /// comparable. The result depends only on the arguments and has step 0. Throws NumericalFailure.
 State rested(const Cell& cell, const Scene& scene, State state, double seconds);
 

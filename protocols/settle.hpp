@@ -23,7 +23,7 @@ struct SettleParameters {
 
 /// Estimated time [s] that the moving wall needs to press loose grains into a dense packing, plus
 /// half a second. The wall is assumed to move at the speed at which the drag on the wall and on all
-/// grains balances the pressure. `height` [d]: of the loose grains; `per_area`: grains per d^2.
+/// grains balances the pressure. The loose grains fill `height` [d]; `per_area`: grains per d^2.
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has pressed the grains together. With gravity

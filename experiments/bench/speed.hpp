@@ -39,15 +39,15 @@ struct SpeedResult {
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
   double multiplications = 0;  ///< per particle-step
-  /// Rate if the multiplication units were never idle, measured on one core and multiplied by the
-  /// number of threads. No kernel with these operations can be faster.
+  /// Rate that a kernel would reach if the multiplication units were never idle. The value for one
+  /// core is multiplied by the number of threads. No kernel with these operations can be faster.
   double limit = 0;
   std::string state_hash = {};  ///< hash after 200 steps; equal for all results of one size
 };
 
 /// Measures each size with each kernel and number of threads. The cell has rough walls, the
 /// parameters of Table I and A = 0.0833. Its packing is pressed together first. For N > 18200 a
-/// smaller packing is repeated along the depth, and the result has the N of the repeated packing.
+/// smaller packing is repeated along the depth; SpeedResult::grains includes all copies.
 /// Throws std::runtime_error if kernels give different states after 200 steps. Shares are measured
 /// with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);

@@ -120,8 +120,8 @@ std::optional<double> slurm_seconds(const std::string& time) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
   if (time.size() > kLongest || !std::regex_match(time, found, form)) return std::nullopt;
-  // With days or with three numbers, the first number after the days is hours. Otherwise the first
-  // number is minutes.
+  // In a time with days or with three numbers, the first number after the days is hours. In any
+  // other time, the first number is minutes.
   double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
   for (std::size_t part = 1; part <= 4; ++part) {
     if (!found[part].matched) continue;
@@ -151,7 +151,7 @@ std::string queue_job(const Job& job, const fs::path& folder) {
     return text.size() <= kLongest && std::regex_match(text, found, number);
   };
   if (sbatch.code == 0 && is_number(sbatch.output)) return found[1];
-  // Either sbatch failed (perhaps after it queued the job), or its output contains more text.
+  // Either sbatch failed (perhaps after it queued the job), or it printed more than the job number.
   const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
   std::optional<std::vector<QueuedTask>> tasks;
   std::string queue = "no job of this name is in the queue";
@@ -172,9 +172,8 @@ std::string queue_job(const Job& job, const fs::path& folder) {
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
       "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
       "--name={}",
-      sbatch.code != 0
-          ? failure
-          : fmt::format("sbatch printed '{}', not a job number", trimmed(sbatch.output)),
+      sbatch.code != 0 ? failure
+                       : fmt::format("sbatch printed '{}' as job number", trimmed(sbatch.output)),
       queue, job.name, job.name, job.name));
 }
 

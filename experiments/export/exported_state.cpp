@@ -55,7 +55,7 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
   frame.sha256 = record.sha256;
   for (const auto& [column, cell] : facts_of(record, measures)) {
     const nlohmann::json value = json_of(cell);
-    // ExportedState has members for these.
+    // ExportedState has members for these values.
     if (column.name == "cycle" || column.name == "time_s" || column.name == "checkpoint") continue;
     frame.scalars.emplace_back(column.name, value.is_null() ? std::nan("") : value.get<double>());
   }

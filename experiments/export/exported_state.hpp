@@ -49,7 +49,7 @@ struct ExportedState : Particles {
 std::string frame_name(const ExportedState& frame);
 
 /// Makes a frame from a checkpoint. `sources` must have read the run (read_run()); without
-/// `sources`, measures that need earlier checkpoints are NaN. `every`: as in ToMeasure. Throws like
+/// `sources`, measures that need earlier checkpoints are NaN. `every`: see ToMeasure. Throws like
 /// analyse_stored().
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                        const Run& run = {}, const MeasureSources* sources = nullptr,

@@ -12,8 +12,7 @@
 namespace shearcell {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "the files declare the byte order LittleEndian");
+static_assert(std::endian::native == std::endian::little, "the files declare LittleEndian");
 
 /// Collects arrays. They are written after the XML elements that refer to them.
 class PolyData {
