@@ -292,7 +292,7 @@ std::string Object::text(const std::string& name) const {
   return value.substr(0, value.find('\0'));
 }
 
-/// The data of a dataset, after its type, shape, size and address were checked.
+/// Checks the type, shape, size and address of a dataset and returns its data.
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);

@@ -41,12 +41,12 @@ struct Attempt {
   std::string started_at;  ///< UTC
   std::string ended_at;    ///< UTC; "" when no event ended the attempt
   AttemptOutcome outcome = AttemptOutcome::running;
-  std::string why;  ///< reason of a failure or interruption; "" otherwise
+  std::string why;  ///< reason for a failure or interruption; "" otherwise
   /// Host, build and libraries as recorded: a JSON object, which may be empty.
   nlohmann::json host = nlohmann::json::object();
-  std::string from_run;         ///< run of the initial state; "" if this was loose grains or a file
-  std::string from_checkpoint;  ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; derived for old events
+  std::string from_run;            ///< run of the initial state; "" for loose grains or a file
+  std::string from_checkpoint;     ///< SHA-256 of the initial state, or ""
+  std::uint64_t bits_version = 0;  ///< core/bits_version.hpp; derived for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 

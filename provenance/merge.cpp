@@ -130,7 +130,7 @@ struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
-  std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
+  std::set<std::uint64_t> attempts;  ///< events of copied attempts: their seq in the source
   bool source_wins = false;          ///< the run has a later step or state in the source
 
   bool wants(const Database& into, const Event& event) const {
@@ -160,7 +160,7 @@ struct RunMerge {
   }
 };
 
-/// The seq of each event that belongs to an attempt to copy.
+/// The seq of every event of the attempts that must be copied.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;
@@ -221,7 +221,7 @@ bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. Non-empty `runs`: only these runs, all manifests, all grain files.
+/// Reads and checks a source. If `runs` is not empty, keeps only `runs`, manifests and packings.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -289,7 +289,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // manifests and grain files of the store
+  std::erase_if(streams, [&log](const auto& entry) {  // texts that are already in the store
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
@@ -369,7 +369,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         reports.push_back(std::move(report));
       }
     } catch (const FilePruned&) {
-      // A program pruned a checkpoint after its store was read, so the loop reads the store again.
+      // A checkpoint was pruned after the source was read, so the loop reads the source again.
     }
   }
   return reports;

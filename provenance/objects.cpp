@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kFolder = "objects";
 
 /// Opens the subfolder `name` of `parent`. If `create` is true, creates a missing subfolder. Throws
-/// if it is a link, so nothing outside the store is read or written.
+/// if `name` is a link, so nothing outside the store is read or written.
 Descriptor open_folder(const Descriptor& parent, const std::string& name,
                        const std::filesystem::path& path, bool create) {
   if (create) {

@@ -67,7 +67,7 @@ inline std::string at_scale(const std::string& scale) {
   return scale.empty() ? "" : " at scale " + scale;
 }
 
-/// The checkpoints to list: only recorded, recorded and pruned, or all (also rejected).
+/// Which checkpoints to list. `and_pruned`: recorded and pruned. `all`: also rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
 /// If two stores hold a stage at the same step, a merge keeps the state that is later in this list.
@@ -134,7 +134,7 @@ struct PruneChoice {
   bool last_too = false;
 };
 
-/// Work that an attempt spent since its previous record.
+/// Work of an attempt since its previous checkpoint.
 struct Effort {
   double wall_seconds = 0;
   double particle_steps = 0;  ///< grains times time steps

@@ -75,7 +75,7 @@ class Database {
   std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Unused prepared statements, by SQL text. They are kept because preparing is slow.
+  /// Unused prepared statements, by SQL text. Reuse is faster than preparing a new statement.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
@@ -158,7 +158,7 @@ struct WriteTransaction : Transaction {
 };
 
 /// All reads within the transaction see the same state of the database. If another transaction is
-/// open, the object does nothing.
+/// already open, the object does nothing.
 struct ReadTransaction : Transaction {
   explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED", true) {}
 };

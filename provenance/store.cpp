@@ -601,7 +601,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
     throw StoreDamaged(
         fmt::format("checkpoint {:.12} of run {:.12}: the regenerated checkpoint has state {:.12} "
-                    "instead of {:.12} and file {:.12}, so it was not stored",
+                    "(recorded: {:.12}) and file {:.12}, so it was not stored",
                     record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {

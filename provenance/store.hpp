@@ -104,10 +104,10 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each membership whose place is new for the stage or was declared for another stage
-  /// since, or which requests a larger target or another checkpoint interval. A larger target makes
-  /// a completed stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256
-  /// or belongs to other parameters, or when the parent was not declared.
+  /// Records each membership that the store lacks, that requests a larger target or another
+  /// checkpoint interval, or whose place was later declared for another stage. A larger target
+  /// makes a completed stage `declared` again. Throws std::invalid_argument when the id is not a
+  /// SHA-256 or belongs to other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
@@ -207,8 +207,8 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
-  /// which must include all parents, and all manifests and files of grains. Throws NotFound when a
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only manifests,
+  /// files of grains and these runs, and `runs` must include all parents. Throws NotFound when a
   /// source is not a store and MachineError while a program computes a run of this store. Throws
   /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
   /// different states of one run at one step or different runs under one id.
@@ -236,7 +236,7 @@ class Store {
   EventLog log_;
   Holder self_;
   std::uint64_t lease_ms_;
-  std::map<std::string, std::uint64_t> held_;  ///< run id -> attempt of this object
+  std::map<std::string, std::uint64_t> held_;  ///< run id -> number of the attempt
 };
 
 }  // namespace shearcell

@@ -26,7 +26,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Up to `most` bytes from the beginning of a file. Nothing unless it is regular and readable.
+/// Up to `most` bytes from the beginning of a file; nothing if it is not a readable regular file.
 std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
   // Without O_NONBLOCK, opening a named pipe would wait for a writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
