@@ -234,7 +234,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
-    // HDF5 1.10 writes wrong checksums into file images. The oldest superblock has no checksum.
+    // The oldest superblock has no checksum. In newer ones, HDF5 1.10 writes a wrong checksum.
     require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "version");
     const Handle creation = creation_list(H5P_FILE_CREATE);
     require(H5Pset_userblock(creation.get(), hdf5::kFrameSize), "a user block");
@@ -281,7 +281,7 @@ void require_plausible(const Checkpoint& checkpoint) {
        {cell.width, cell.depth, cell.bottom, cell.top, checkpoint.state.wall_height}) {
     if (std::abs(length) > kLongestCell) refuse("/restart/cell", "has an implausible size");
   }
-  // Both checks limit the memory that an analysis needs for periodic images and layers of the cell.
+  // The next two checks limit the memory that periodic images and layers need in an analysis.
   if (cell.depth < 0.1 * cell.width) {
     refuse("/restart/cell", "has a depth of less than a tenth of its width");
   }

@@ -39,8 +39,8 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 /// Decodes a checkpoint file. Throws StoreDamaged unless it is complete and consistent.
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
-/// Throws StoreDamaged, which names the HDF5 path, when a length, position or tilt is impossible
-/// for a cell. Such a value could make a run or an analysis overflow or never end.
+/// Throws StoreDamaged with the HDF5 path when a length, position or tilt is implausibly large or
+/// small. With such a value, a run or an analysis could overflow or never end.
 void require_plausible(const Checkpoint& checkpoint);
 
 /// SHA-256 (hex) of the exact state and cell. Two runs continue identically if and only if their

@@ -30,7 +30,7 @@ CREATE TABLE derived(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// Hash of key and content. It also detects content that was moved to another key.
+/// Hash of key and content. Because the key is included, content under a wrong key is detected.
 std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
   return Sha256()
       .add_fields("shearcell derived 1", key.checkpoint, key.measure, key.version)
@@ -80,7 +80,7 @@ void DerivedCache::open() {
   if (read_only_ && empty) return;
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
-  // Nothing is synced. After a power cut, objects with a wrong hash are computed again.
+  // Nothing is synced, because objects that a power cut damages are detected and computed again.
   database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
@@ -98,7 +98,7 @@ void DerivedCache::open() {
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": the database has another layout version");
   }
-  // If another program added a trigger, SQLite would run this trigger at every insert.
+  // Another program may have added a trigger. SQLite would run the trigger at every insert.
   sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0",
                         kDerivedTable);
   if (odd.step()) throw StoreDamaged(file_.string() + ": it has tables of another program");

@@ -32,13 +32,13 @@ struct DerivedObject {
 /// and a short hash of measure and version. When a checkpoint is pruned, the log stores the digests
 /// of its measures, because these measures cannot be computed again.
 using Digests = std::map<std::string, std::string>;
-/// The key and digest of one object.
+/// The entry of one object in Digests.
 Digests::value_type digest_entry(const DerivedObject& object);
 
 /// The derived objects of one store. Not thread-safe; several processes may use one store.
 ///
-/// A damaged file never causes an exception. An object that is missing, damaged or stored under
-/// another key is not returned. A file that is not a valid database is renamed and replaced. If
+/// A damaged file never causes an exception. An object is not returned if it is damaged or was
+/// moved to another key. A file that is not a valid database is renamed and replaced. If
 /// nothing can be stored (no space, no permission, a foreign file), trouble() gives the reason.
 class DerivedCache {
  public:
@@ -56,9 +56,9 @@ class DerivedCache {
 
   /// Why nothing can be stored; "" if objects can be stored.
   const std::string& trouble() const { return trouble_; }
-  /// Whether the machine failed to read or write the file, which may be intact.
+  /// Whether reading or writing failed because of the machine. The file itself may be intact.
   bool is_unread() const { return unread_; }
-  /// A message about a damaged file that was renamed and replaced, now or earlier; otherwise "".
+  /// A warning if a damaged file was ever renamed and replaced; otherwise "".
   std::string replaced() const;
 
   static constexpr const char* kFile = "derived.sqlite";

@@ -37,8 +37,8 @@ struct ConcurrencyConflict : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The store is not readable or not intact: it is not a store, or has a newer schema, a truncated
-/// or altered checkpoint, a broken hash chain, or two results for one run. Exit code 4.
+/// The store cannot be read or is not intact. Examples: another program's file, a newer schema, a
+/// damaged checkpoint, a broken hash chain, two different results of one run. Exit code 4.
 struct StoreDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

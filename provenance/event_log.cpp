@@ -61,8 +61,8 @@ void create_tables(sqlite::Database& database) {
 }
 
 /// Creates the log under a temporary name and then renames it, so that a killed program leaves no
-/// partial log. Does nothing if another program has created the log. If the file system cannot
-/// rename without replacing a file, the caller creates the log in place.
+/// partial log. Does nothing if another program has created the log. If the file system does
+/// not support RENAME_NOREPLACE, the caller creates the log under its final name.
 void create_whole(const std::filesystem::path& file) {
   const std::filesystem::path whole =
       file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
@@ -77,7 +77,7 @@ void create_whole(const std::filesystem::path& file) {
   }
 }
 
-/// Throws unless every schema statement is one that this program writes, because a forged schema
+/// Throws if the schema has a statement that this program does not write, because a forged schema
 /// could contain SQL that runs whenever a table is read or written. A missing table causes an error
 /// only when it is used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
@@ -161,8 +161,8 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Says which field of an event was changed: the field whose expected value makes the hash valid
-/// again. The neighbouring events give the expected prev_hash, version and hash.
+/// Returns a text that says which field of an event was changed. A field was changed if the hash is
+/// valid with the field's expected value, which follows from the neighbouring events.
 std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
                       const std::optional<Event>& next) {
   Event repaired = event;
@@ -227,7 +227,7 @@ std::optional<std::string> run_of(const Event& event) {
 }
 
 std::string utc_text(std::int64_t ms) {
-  const std::int64_t within = (ms % 1000 + 1000) % 1000;  // not negative, also before 1970
+  const std::int64_t within = (ms % 1000 + 1000) % 1000;  // not negative, even before 1970
   return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::time_t{(ms - within) / 1000}), within);
 }
 

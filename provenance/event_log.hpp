@@ -27,9 +27,9 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
 
 /// One row of the log.
 struct Event {
-  std::uint64_t seq = 0;      ///< 1, 2, 3, ... over the whole log
+  std::uint64_t seq = 0;      ///< 1, 2, 3, ... in the whole log
   std::string stream;         ///< such as "run/<id>", "manifest/<sha256>", "figure/<name>"
-  std::uint64_t version = 0;  ///< 1, 2, 3, ... within the stream
+  std::uint64_t version = 0;  ///< 1, 2, 3, ... in the stream
   std::string type;
   std::uint64_t schema = 1;  ///< version of the payload's layout
   std::string recorded_at;   ///< UTC, ISO 8601 with milliseconds
@@ -53,7 +53,7 @@ std::string utc_text(std::int64_t ms);
 struct NewEvent {
   std::string type;
   nlohmann::json payload;       ///< in the newest layout of its type
-  std::string not_before = {};  ///< earliest recorded_at, in case the clock was set back
+  std::string not_before = {};  ///< recorded_at is this time or later
 };
 
 /// Identifies the content of a log: equal heads mean equal logs.
@@ -82,8 +82,8 @@ class EventLog {
   Event append(const sqlite::WriteTransaction& lock, std::string_view stream,
                const NewEvent& event);
 
-  /// Appends an event of another log to its stream. Type, layout, time and payload stay the same;
-  /// seq, version and hashes are new.
+  /// Copies an event of another log to the end of this log. Stream, type, schema, recorded_at and
+  /// payload stay the same; seq, version and hashes are new.
   Event append_copy(const sqlite::WriteTransaction& lock, Event event);
 
   /// Number of events in the stream.
@@ -91,7 +91,7 @@ class EventLog {
   Head head() const;
   /// Hash of the event with this seq: 64 zeros for seq 0, "" when there is no such event.
   std::string hash_at(std::uint64_t seq) const;
-  /// Events in order. An empty `stream` selects all streams, an empty `type` all types.
+  /// Events in order. An empty `stream` means all streams, and an empty `type` means all types.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   /// Calls visit(event) for all events in order, without loading the whole log into memory.
   void for_each(const std::function<void(const Event&)>& visit) const;

@@ -41,7 +41,7 @@ struct PackingRegistered {
 
 struct RunDeclared {
   static constexpr std::string_view kType = "RunDeclared";
-  Stage stage;  ///< only the members that `fields` names
+  Stage stage;  ///< only the members in `fields` are stored
   Membership membership;
   static void fields(auto& e, auto field) {
     field("parent", e.stage.parent), field("kind", e.stage.kind),
@@ -161,7 +161,7 @@ struct StoreMerged {
   }
 };
 
-/// Any other event: its type is unknown, or no struct describes its payload (FigureGenerated).
+/// An event that has no struct above: FigureGenerated, for example, or an event of unknown type.
 struct Other {};
 
 using Any =
@@ -173,7 +173,7 @@ using Any =
 Any decode(const Event& event);
 NewEvent encode(const Any& event);
 
-/// The number of the layout in which payloads of this type are written; 1 if it never changed.
+/// The newest payload layout of this event type; 1 if the layout never changed.
 std::uint64_t newest_schema(std::string_view type);
 
 inline constexpr const char* kFigureGenerated = "FigureGenerated";

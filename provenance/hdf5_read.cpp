@@ -90,7 +90,7 @@ std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
   Cursor cursor(space);
   const std::uint64_t version = cursor.number(1), rank = cursor.number(1);
   if (version != 1 || rank > 2 || space.size() < 8 + 8 * rank) return std::nullopt;
-  cursor.take(6);  // flags and reserved bytes; maximum sizes may follow and are ignored
+  cursor.take(6);  // flags and reserved bytes; maximum sizes after the shape are ignored
   std::vector<std::uint64_t> shape;
   for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(cursor.number(8));
   return shape;
@@ -124,7 +124,7 @@ Object Object::root(Bytes file, std::size_t user_block) {
   Cursor cursor(file);
   if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
   const bool known = cursor.number(5) == 0 &&
-                     cursor.number(2) == 0x0808;  // versions 0, addresses and lengths of 8 bytes
+                     cursor.number(2) == 0x0808;  // versions 0; addresses and lengths have 8 bytes
   cursor.take(9);
   if (!known || cursor.number(8) != user_block) {
     refuse("file", "its superblock is not one that this program writes");
@@ -292,7 +292,7 @@ std::string Object::text(const std::string& name) const {
   return value.substr(0, value.find('\0'));
 }
 
-/// The data of a dataset, after its type, shape, size and address were checked.
+/// Checks the type, shape, size and address of a dataset and returns its data.
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);

@@ -27,7 +27,7 @@ inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 /// Version of the layout of /restart.
 inline constexpr std::uint64_t kRestartFormat = 1;
 
-/// The text of the frame of a file with this digest, without padding.
+/// The frame text for a file with this digest, without the zeros at the end.
 inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }

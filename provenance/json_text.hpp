@@ -16,7 +16,7 @@ namespace shearcell {
 
 struct Event;
 
-/// Returns a discarded value if the text is not JSON or is deeper than StoreLimits::json_depth.
+/// If the text is not JSON or exceeds StoreLimits::json_depth, the result is a discarded value.
 nlohmann::json parse_json(std::string_view text);
 /// Like parse_json(), but parses CBOR.
 nlohmann::json parse_cbor(std::span<const std::byte> bytes);

@@ -37,20 +37,20 @@ Maker maker_of(const nlohmann::json& host);
 
 /// One computation of a run by one program, from start to end.
 struct Attempt {
-  std::uint64_t seq = 0;   ///< of the event that began the attempt
+  std::uint64_t seq = 0;   ///< seq of the event that began the attempt
   std::string started_at;  ///< UTC
-  std::string ended_at;    ///< UTC; "" when no event ended it
+  std::string ended_at;    ///< UTC; "" when no event ended the attempt
   AttemptOutcome outcome = AttemptOutcome::running;
-  std::string why;  ///< reason of a failure or interruption; "" otherwise
+  std::string why;  ///< reason for a failure or interruption; "" otherwise
   /// Host, build and libraries as recorded: a JSON object, which may be empty.
   nlohmann::json host = nlohmann::json::object();
-  std::string from_run;  ///< run of the initial state; "" if it began from loose grains or a file
-  std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; derived for old events
+  std::string from_run;            ///< run of the initial state; "" for loose grains or a file
+  std::string from_checkpoint;     ///< SHA-256 of the initial state, or ""
+  std::uint64_t bits_version = 0;  ///< core/bits_version.hpp; derived for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 
-/// One checkpoint, and its state after all events of the log.
+/// One checkpoint. record.state is its state (recorded, rejected, pruned) at the end of the log.
 struct CheckpointHistory {
   CheckpointRecord record;
   std::string recorded_at;  ///< UTC
@@ -63,7 +63,7 @@ struct CheckpointHistory {
 
 struct RunLineage {
   Stage stage;
-  std::vector<Attempt> attempts;               ///< in the order of the log; shown as 1, 2, ...
+  std::vector<Attempt> attempts;  ///< in the order of the log; shown to users as 1, 2, ...
   std::vector<CheckpointHistory> checkpoints;  ///< in ascending order of step
 
   const CheckpointHistory* find(std::string_view sha256) const;
@@ -77,14 +77,14 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id
 
-/// Adds the lineages of the run and of all stages before it, unless `lineages` contains the run.
+/// Adds the lineages of run `id` and all stages before it. Does nothing if `lineages` has `id`.
 void add_run_lineage(const Store& store, const std::string& id, RunLineages& lineages);
 
 /// Processor time of a stage, and the names of the processors.
 struct ComputingTime {
-  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. For events
-  /// without processor time (earlier versions, LAMMPS under mpirun), the wall-clock time times the
-  /// number of processes is added.
+  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. Events of
+  /// earlier versions, and of LAMMPS under mpirun, have no processor time. Their wall-clock time,
+  /// multiplied by the number of processes, is added instead.
   double core_seconds = 0;
   std::set<std::string> processors;  ///< names of the processors that computed the steps
 };

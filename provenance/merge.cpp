@@ -85,8 +85,8 @@ void require_equal_runs(const Database& a, const std::string& a_name, const Data
   }
 }
 
-/// Whether the checkpoint is new: `into` lacks it, or has only a damaged file, which `record` can
-/// replace. A state that `into` has in another file (from another HDF5 library) is not new.
+/// Whether `into` lacks the checkpoint, or has it only as a damaged file that `record` can replace.
+/// If `into` has the same state in a file with other bytes (another HDF5 version), returns false.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
@@ -125,13 +125,13 @@ using Stream = std::vector<const Event*>;  // in the order of the log
 
 /// Decides which events of one run are copied. If the store does not have the run, every attempt is
 /// copied. Otherwise an attempt is copied if it recorded a new checkpoint (see is_news). The last
-/// attempt is also copied if the run is further in the source than in the store.
+/// attempt is also copied if `source_wins` is true.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
-  std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
-  bool source_wins = false;          ///< the run is further in the source than in the store
+  std::set<std::uint64_t> attempts;  ///< events of copied attempts: their seq in the source
+  bool source_wins = false;          ///< the run has a later step or state in the source
 
   bool wants(const Database& into, const Event& event) const {
     if (event.type == events::RunDeclared::kType) {
@@ -148,8 +148,8 @@ struct RunMerge {
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
   }
 
-  /// Returns `last_claim` if the copied events changed the state of the run. The caller appends it
-  /// again, which restores the state that the run had before the merge.
+  /// Returns `last_claim` if the copied events changed the state of the run. The caller then
+  /// appends this event again, which restores the state that the run had before the merge.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
@@ -160,7 +160,7 @@ struct RunMerge {
   }
 };
 
-/// The seq of each event that belongs to an attempt to copy.
+/// The seq of every event of the attempts that must be copied.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;
@@ -216,12 +216,12 @@ bool merged_before(const EventLog& log, const Head& head) {
       });
 }
 
-/// Whether the stream holds one text: a manifest or a file of grains.
+/// Whether the stream holds the text of a manifest or of a file of grains.
 bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. If `runs` is not empty, reads only these runs and all texts.
+/// Reads and checks a source. If `runs` is not empty, keeps only `runs`, manifests and packings.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -271,7 +271,7 @@ void require_agreement(const Database& into, const std::string& name,
 void require_idle(const Store& into) {
   for (const Lease& lease : into.leases()) {
     throw MachineError(
-        fmt::format("{}: a program computes run {:.12} ({}); merge when that program has ended",
+        fmt::format("{}: a program is computing run {:.12} ({}); merge when that program has ended",
                     into.folder().string(), lease.run, describe(lease.holder)));
   }
 }
@@ -289,7 +289,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // texts that the store already has
+  std::erase_if(streams, [&log](const auto& entry) {  // texts that are already in the store
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
@@ -369,7 +369,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         reports.push_back(std::move(report));
       }
     } catch (const FilePruned&) {
-      // A program pruned a checkpoint after its store was read, so the loop reads the store again.
+      // A checkpoint was pruned after the source was read, so the loop reads the source again.
     }
   }
   return reports;

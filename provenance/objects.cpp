@@ -21,8 +21,8 @@ namespace {
 
 constexpr const char* kFolder = "objects";
 
-/// Opens the subfolder `name` of `parent`. With `create`, makes it if it is missing. Links are
-/// refused, so nothing outside the store is read or written.
+/// Opens the subfolder `name` of `parent`. If `create` is true, creates a missing subfolder. Throws
+/// if `name` is a link, so nothing outside the store is read or written.
 Descriptor open_folder(const Descriptor& parent, const std::string& name,
                        const std::filesystem::path& path, bool create) {
   if (create) {
@@ -89,7 +89,7 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   const std::filesystem::path path = folder_ / file_of(sha256);
   const Descriptor folder = open_object_folder(folder_, sha256, false);
   if (!folder.valid()) throw damaged("the file is missing");
-  // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
+  // Without O_NONBLOCK, opening a named pipe would wait for a writer.
   const Descriptor file(openat(folder.get(), path.filename().c_str(),
                                O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!file.valid()) {
@@ -102,7 +102,7 @@ std::vector<std::byte> ObjectStore::get(std::string_view sha256, std::uint64_t s
   if (!S_ISREG(status.st_mode)) throw damaged("it is not a regular file");
   const auto found = static_cast<std::uint64_t>(status.st_size);
   if (found != size) throw damaged(fmt::format("it has {} bytes instead of {}", found, size));
-  // A sparse file may be larger than memory. Decoding needs a few copies of the bytes.
+  // The limit is a quarter of the memory, because decoding needs a few copies of the bytes.
   if (static_cast<double>(size) > machine_memory() / 4) {
     throw TooLittleMemory(fmt::format("{}: its {} bytes do not fit into the memory of this machine",
                                       path.string(), size));

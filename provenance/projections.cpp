@@ -19,8 +19,8 @@ using nlohmann::json;
 using sqlite::Database;
 using sqlite::Statement;
 
-// `registered` is the seq of the last registration. `newest` holds, for each experiment and scale,
-// the last registered manifest that declared a run there.
+// `registered` is the seq of the last registration. `newest` has one row for each experiment and
+// scale: the last registered manifest that declared a run of this experiment at this scale.
 constexpr std::string_view kTables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
@@ -127,7 +127,7 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration (no larger target, same interval) makes the run current in its place.
+    // A repeated declaration (no larger target, same interval) makes the run the last one declared.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -140,7 +140,7 @@ class Projector {
     if (d.kind != "prepare") show_newest(place.experiment, place.scale, place.manifest);
   }
 
-  /// Keeps the later time if the text was registered before.
+  /// If the manifest was registered before, keeps the later of the two registration times.
   void register_manifest() const {
     run("INSERT INTO manifests VALUES(?,?,?) ON CONFLICT DO UPDATE SET "
         "registered_at = excluded.registered_at, registered = excluded.registered "
@@ -219,7 +219,7 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Makes `manifest` the newest at this scale, unless the previous newest was registered later.
+  /// Records `manifest` as the newest at this scale if it was registered after the recorded one.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
@@ -237,8 +237,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Moves the run to its furthest recorded checkpoint. Does nothing if the run is already beyond
-  /// checkpoint `sha256`, so a run whose last checkpoints were pruned does not move back.
+  /// Sets cycle, step and state hash of the run to those of its last recorded checkpoint. Does
+  /// nothing if the run is already past checkpoint `sha256`: its last checkpoints may be pruned.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

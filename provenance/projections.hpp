@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Schemas 1 and 2 lack `manifests` and `newest`, and some columns of `runs` and `memberships`.
+/// Derived tables. Schemas 1 and 2 lack the last two tables and some columns of the first two.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
@@ -26,8 +26,8 @@ void create_projections(sqlite::Database& database);
 /// messages call the database `name`.
 sqlite::Database empty_projections(const std::string& name);
 
-/// Applies one event to the tables; no other code writes to them. Events of unknown type change
-/// nothing. Throws StoreDamaged when a required member of the payload is missing.
+/// Applies one event to the tables; no other code writes to them. An event of unknown type changes
+/// at most updated_at of a run. Throws StoreDamaged when the payload lacks a required member.
 void apply(sqlite::Database& database, const Event& event);
 /// Applies the event. Then checks that the event has a time, and that a registered manifest or file
 /// of grains has the recorded SHA-256. Returns a description of what is wrong, or "".
@@ -51,10 +51,10 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` gives the stage a new place, or a larger target or another checkpoint interval
-/// in a known place. `known` is the stage as stored, or nothing if the store does not have it.
+/// Whether `wanted` has a place that the stage does not have, or requests for its place a larger
+/// target or another checkpoint interval. `known` is the stored stage; nothing if there is none.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether `run` was declared last in this place. Runs from different packings can share a place.
+/// Whether `run` was the last run declared for `place`, which runs from other packings can share.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.

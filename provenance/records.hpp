@@ -31,7 +31,7 @@ struct Ask {
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
   nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
   std::vector<double> checkpoint_phases = {};  ///< extra checkpoints: fractions of a cycle
-  std::uint64_t ordinal = 0;                   ///< seq of the event that declared the place
+  std::uint64_t ordinal = 0;                   ///< seq of the event that declared this request
 };
 
 /// The place of a stage in an experiment, and the request of the experiment.
@@ -67,7 +67,7 @@ inline std::string at_scale(const std::string& scale) {
   return scale.empty() ? "" : " at scale " + scale;
 }
 
-/// The checkpoints to list: only recorded, recorded and pruned, or all (also rejected).
+/// Which checkpoints to list. `and_pruned`: recorded and pruned. `all`: also rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
 /// If two stores hold a stage at the same step, a merge keeps the state that is later in this list.
@@ -101,21 +101,21 @@ struct Stage {
   std::string state_hash;                         ///< of the furthest checkpoint, or ""
   double wall_seconds = 0;                        ///< sum over all checkpoints
   double particle_steps = 0;                      ///< sum over all checkpoints
-  nlohmann::json ends = nlohmann::json::array();  ///< why it ended, one entry per completion
-  std::string error;                    ///< why it failed or was interrupted; "" otherwise
+  nlohmann::json ends = nlohmann::json::array();  ///< why the stage ended, one entry per completion
+  std::string error;                    ///< why the stage failed or was interrupted, or ""
   std::string updated_at;               ///< time of its last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// The unit that users count, list and average: a place and the last stage in it. A stage that two
-/// experiments share belongs to two runs.
+/// The unit that users count, list and average: a place (experiment, scale, variant and seed) and
+/// the last stage computed for it. A stage that two experiments share belongs to two runs.
 struct Run {
   Place place = {};
   Ask ask = {};
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
-  bool named = false;     ///< whether the name is a label of the manifest
-  /// False if the manifest has a newer version, or another run was declared later in this place.
+  bool named = false;     ///< whether the manifest states this name as a label
+  /// False if the manifest has a newer version, or another run was declared later for this place.
   bool newest = true;
 };
 
@@ -129,12 +129,12 @@ bool same_computation(const auto& a, const auto& b) {
 struct PruneChoice {
   std::vector<std::string> runs;  ///< run ids; empty for all runs
   std::uint64_t keep_every = 0;   ///< K > 0 keeps cycles 0, K, 2K, ...
-  /// For completed stages: prune also the last checkpoint, from which the stage could continue, and
+  /// In completed stages, also prune the last checkpoint (the stage then cannot be continued) and
   /// the checkpoints from which other stages started.
   bool last_too = false;
 };
 
-/// Work that an attempt spent since its previous record.
+/// Work of an attempt since its previous checkpoint.
 struct Effort {
   double wall_seconds = 0;
   double particle_steps = 0;  ///< grains times time steps
@@ -160,12 +160,12 @@ struct CheckpointRecord {
   std::string state_hash;
   std::map<std::string, double> observables;
   CheckpointState state = CheckpointState::recorded;
-  std::uint64_t seq = 0;  ///< of the event that recorded the checkpoint
+  std::uint64_t seq = 0;  ///< seq of the event that recorded the checkpoint
 };
 
 struct FigureRecord {
   std::string name;           ///< "drag/desk/S2"
-  std::uint64_t seq = 0;      ///< of the event that recorded the figure
+  std::uint64_t seq = 0;      ///< seq of the event that recorded the figure
   std::string recorded_at;    ///< UTC
   nlohmann::json provenance;  ///< inputs and SHA-256 of the outputs
 };

@@ -192,8 +192,8 @@ json add_licence(Graph& graph, const std::string& licence) {
                     {"@type", "CreativeWork"},
                     {"name", chosen ? licence : "No licence was chosen"},
                     {"description", chosen ? "The licence of the data in this crate"
-                                           : "The exporter of these data chose no licence; ask "
-                                             "them before you use the data."}});
+                                           : "The person who exported these data chose no licence; "
+                                             "ask this person before you use the data."}});
 }
 
 std::string title_of(const Stage& stage) {
@@ -293,7 +293,7 @@ bool is_crate_of(const fs::path& folder, const std::string& run) {
          });
 }
 
-/// Creates the folder unless it exists. A file or a link in its place is an error.
+/// Creates the folder if it is missing. Throws if `path` is a file or a link.
 void make_folder(const fs::path& path) {
   const fs::file_status status = fs::symlink_status(path);
   if (fs::exists(status) && !fs::is_directory(status)) {

@@ -22,7 +22,7 @@ struct CrateFacts {
 /// Collects the content of a crate. Throws NotFound for an unknown run.
 CrateFacts crate_facts(const Store& store, const std::string& run);
 
-/// Paths in the crate. They contain only hashes, so a forged record cannot name an outside file.
+/// Paths in the crate. They contain only hashes, so forged records cannot name files elsewhere.
 std::string crate_path_of_checkpoint(const std::string& sha256);
 std::string crate_path_of_manifest(const std::string& sha256);
 inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
@@ -34,7 +34,7 @@ nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 /// Each checkpoint is verified. `folder` must be missing, empty, or an earlier export of the same
 /// run, which is updated: files of checkpoints that are no longer kept are deleted. Returns the
 /// files, relative to the folder. Throws std::invalid_argument for any other folder and
-/// StoreDamaged for a damaged checkpoint. After an error a new folder is incomplete.
+/// StoreDamaged for a damaged checkpoint. After an error the folder may be incomplete.
 std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
                                         const std::filesystem::path& folder);
 

@@ -67,15 +67,15 @@ class Database {
  private:
   friend class Statement;
   void require_same_file() const;
-  /// Throws MachineError if the cause of the error `code` is the journal of a killed program that
-  /// this user cannot play back.
+  /// Throws MachineError if error `code` occurred because a killed program left a journal and this
+  /// user has no permission to play the journal back.
   void require_journal_can_be_played_back(int code) const;
   using Prepared = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
   std::string name_;
   std::string full_name_;  ///< "" for a database in memory
   std::uint64_t device_ = 0, inode_ = 0;
   std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle_;
-  /// Unused prepared statements, by SQL text. They are kept because preparing is slow.
+  /// Unused prepared statements, by SQL text. Reuse is faster than preparing a new statement.
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
@@ -144,7 +144,7 @@ class Transaction {
   void commit();
 
  protected:
-  /// Runs the SQL statement `begin`. With `nested`, does nothing inside another transaction.
+  /// Runs the SQL statement `begin`. If `nested`, does nothing when another transaction is open.
   Transaction(Database& database, const std::string& begin, bool nested = false);
 
  private:
@@ -157,8 +157,8 @@ struct WriteTransaction : Transaction {
   explicit WriteTransaction(Database& database) : Transaction(database, "BEGIN IMMEDIATE") {}
 };
 
-/// All reads within the transaction see the same state of the database. An object that is created
-/// inside another transaction does nothing.
+/// All reads within the transaction see the same state of the database. If another transaction is
+/// already open, the object does nothing.
 struct ReadTransaction : Transaction {
   explicit ReadTransaction(Database& database) : Transaction(database, "BEGIN DEFERRED", true) {}
 };

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
-/// The name of a visible file or folder in `folder`; "" if there is none.
+/// The name of a file or subfolder of `folder`, except hidden ones; "" if there is none.
 std::string other_file_in(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -39,7 +39,7 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder / kLogFile);  // throws if the path is too long, before anything is made
+  sqlite::full_name(folder / kLogFile);  // throws before anything is made if the path is too long
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; name another one", name));
@@ -97,13 +97,13 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
     return fmt::format("its lease expired and another program took the run ({})",
                        describe(lease.holder));
   }
-  // A newer attempt, or an end that a merge copied, shows that another program continued the run.
+  // If the run has a newer attempt or is no longer running, another program continued the run.
   const auto run = query_stage(database, id);
   const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";
 }
 
-/// Throws NotFound if there are several candidates. Their members `id` begin with the prefix.
+/// Throws NotFound if there are two or more candidates. The message lists their ids.
 void require_one(const char* what, std::string_view prefix, const auto& candidates, auto id) {
   constexpr std::size_t most = 10;
   if (candidates.size() < 2) return;
@@ -125,14 +125,14 @@ std::set<std::string> initial_states(const EventLog& log) {
   return found;
 }
 
-/// The stage starts from the state of its parent at this cycle.
+/// The cycle of the parent at which the stage starts.
 double start_cycle(const Stage& stage) {
   const json cycle = member_of(member_of(stage.resolved, "parameters"), "start_cycle");
   return cycle.is_number() ? cycle.get<double>() : 0;
 }
 
-/// Whether `keep_every` keeps the checkpoint. All checkpoints of a settling packing have cycle 0;
-/// only the checkpoint at step 0 is kept.
+/// Whether `keep_every` keeps the checkpoint. All checkpoints of a packing that settles
+/// have cycle 0. Of these, only the checkpoint at step 0 is kept.
 bool kept_by_cadence(const PruneChoice& choice, const CheckpointRecord& record) {
   return choice.keep_every > 0 && (record.cycle > 0 || record.step == 0) &&
          std::fmod(record.cycle, static_cast<double>(choice.keep_every)) == 0;
@@ -239,7 +239,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
   NewEvent event =
       encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info});
-  // The manifest with the latest time is the newest version of the experiment.
+  // The manifest with the latest recorded_at is the newest version of the experiment.
   if (known) event.not_before = newest.text(1);
   append(stream, event, lock);
   lock.commit();
@@ -283,7 +283,7 @@ void Store::declare_stage(const Stage& declared) {
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
-    // If another stage was declared later in this place, this stage becomes the current one again.
+    // If another stage was declared later for this place, this stage is declared again.
     if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
@@ -601,7 +601,7 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
     throw StoreDamaged(
         fmt::format("checkpoint {:.12} of run {:.12}: the regenerated checkpoint has state {:.12} "
-                    "instead of {:.12} and file {:.12}, so it was not stored",
+                    "(recorded: {:.12}) and file {:.12}, so it was not stored",
                     record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {

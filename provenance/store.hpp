@@ -32,8 +32,8 @@ struct LoadedCheckpoint {
 };
 
 struct Finding {
-  /// `error`: a record is lost or changed. `note`: every record is intact. `unread`: the machine
-  /// failed, so this was not checked.
+  /// `error`: a record is lost or changed. `note`: every record is intact. `unread`: the subject
+  /// could not be checked, because the machine failed.
   enum class Severity { note, unread, error };
   Severity severity = Severity::note;
   std::string subject;  ///< file, event or table
@@ -47,7 +47,7 @@ struct VerifyReport {
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
   std::uint64_t orphans = 0;      ///< files that no event names
-  Head head;                      ///< a saved copy can later prove that the log only grew
+  Head head;                      ///< head of the log, which can be saved for a later verify()
 
   /// The number of findings of this severity.
   std::size_t count(Finding::Severity severity) const;
@@ -104,10 +104,10 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each place that is new for the stage, has a larger target or another checkpoint
-  /// interval, or was given to another stage in the meantime. A larger target makes a completed
-  /// stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or belongs
-  /// to other parameters, or when the parent was not declared.
+  /// Records each membership that the store lacks, that requests a larger target or another
+  /// checkpoint interval, or whose place was later declared for another stage. A larger target
+  /// makes a completed stage `declared` again. Throws std::invalid_argument when the id is not a
+  /// SHA-256 or belongs to other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
@@ -142,8 +142,8 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. With `damage`, rejects missing
-  /// and damaged checkpoints (with Access::read: skips them) and appends their errors to `damage`.
+  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, appends
+  /// the errors of missing and damaged checkpoints and, if the store is writable, rejects these.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -176,15 +176,14 @@ class Store {
   /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
   /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
-  /// file. Throws FilePruned, even if the checkpoint was pruned after `record` was read.
+  /// file. Throws FilePruned if the checkpoint is pruned, even if `record` is older.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
-  /// Decodes read_file() and compares it with the record. Throws StoreDamaged, which names the
-  /// file.
+  /// Decodes read_file() and compares it with the record. Throws StoreDamaged with the file's path.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
   std::vector<FigureRecord> figures() const;  ///< the newest figure of each name, sorted by name
-  /// Events of `stream` ("run/<id>", ...; "": all streams) that have this `type` ("": all types).
+  /// Events in order. An empty `stream` means all streams, and an empty `type` means all types.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   Head head() const;
 
@@ -192,12 +191,13 @@ class Store {
 
   /// Drops the tables and derives them from the events.
   void rebuild();
-  /// Reports damage as findings. A log that does not continue the earlier head `against` is damaged
-  /// too. Throws only when the machine fails.
+  /// Reports damage as findings. `against` is a head that was saved earlier; a log that does not
+  /// contain it was changed and is reported as damaged. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
-  /// The checkpoints that prune() may delete. Without PruneChoice::last_too they exclude the newest
-  /// readable checkpoint of each run, all later ones, and the initial states of other stages.
+  /// The checkpoints that prune() may delete. Excludes the initial states of stages that have not
+  /// ended. Without PruneChoice::last_too, also excludes the initial states of ended stages, the
+  /// newest readable checkpoint of each run, and all later checkpoints of this run.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
@@ -207,8 +207,8 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
-  /// which must include all parents, and all manifests and files of grains. Throws NotFound when a
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only manifests,
+  /// files of grains and these runs, and `runs` must include all parents. Throws NotFound when a
   /// source is not a store and MachineError while a program computes a run of this store. Throws
   /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
   /// different states of one run at one step or different runs under one id.
@@ -236,7 +236,7 @@ class Store {
   EventLog log_;
   Holder self_;
   std::uint64_t lease_ms_;
-  std::map<std::string, std::uint64_t> held_;  ///< run id -> attempt of this object
+  std::map<std::string, std::uint64_t> held_;  ///< run id -> number of the attempt
 };
 
 }  // namespace shearcell

@@ -109,8 +109,8 @@ std::string excerpt(const std::string& cell, std::size_t place) {
                      begin + part.size() < cell.size() ? "..." : "");
 }
 
-/// Describes the first row that differs between two tables. `expected` or `found` is null if its
-/// table has no more rows. Rows begin with their keys.
+/// Describes the first difference between two tables. `expected` and `found` are the rows at which
+/// the tables differ; a row is null if its table has ended. Rows begin with their keys.
 std::string row_difference(const sqlite::Database& database, const std::string& table,
                            const std::vector<std::string>* expected,
                            const std::vector<std::string>* found) {
@@ -170,7 +170,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      // A forged table cannot hide damage, because compare_tables() reports the forgery.
+      // It was pruned after the log was read. (A forged table is reported by compare_tables().)
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;

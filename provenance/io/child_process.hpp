@@ -38,7 +38,7 @@ struct Command {
 
 /// A running program. Its standard input is empty. The program has its own process group, so Ctrl-C
 /// on a terminal does not stop it. The program gets SIGTERM when the thread that started it ends.
-/// The destructor sends SIGTERM, and SIGKILL to a program that has not ended 5 s later.
+/// The destructor sends SIGTERM, and SIGKILL if the program still runs 5 s later.
 class ChildProcess {
  public:
   /// Throws ProgramError when the program cannot be started.
@@ -71,8 +71,8 @@ struct ProgramOutcome {
 };
 
 /// Runs the program `words[0]` in `folder` and waits until it ends. Returns nothing when the
-/// program is not installed. Throws ProgramError when the program cannot be started, or when it has
-/// not ended after `seconds` and is therefore killed.
+/// program is not installed. Kills the program if it still runs after `seconds`. Throws
+/// ProgramError when the program cannot be started or was killed for this reason.
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& variables = {},

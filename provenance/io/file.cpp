@@ -26,9 +26,9 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Up to `most` bytes from the beginning of a file; nothing unless it is regular and readable.
+/// Up to `most` bytes from the beginning of a file; nothing if it is not a readable regular file.
 std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) {
-  // O_NONBLOCK: the opening of a named pipe must not wait for a writer.
+  // Without O_NONBLOCK, opening a named pipe would wait for a writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
   if (!file.valid() || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -141,7 +141,7 @@ void require_ours(const fs::path& path, const Recognize& ours) {
   if (failure) throw std::system_error(failure, path.string() + ": cannot write");
   if (type == fs::file_type::directory) {
     throw NotOurs(path.string() +
-                  ": this is a folder, and the output is a file; name another path with --out");
+                  ": this is a folder, but the output is a file; name another path with --out");
   }
   if (type != fs::file_type::regular) {
     throw NotOurs(path.string() +

@@ -43,17 +43,17 @@ void sync(const Descriptor& file, const std::filesystem::path& path);
 
 enum class Durability {
   renamed,  ///< a reader sees the old file or the complete new file
-  synced    ///< as `renamed`; the new file also survives a power cut
+  synced    ///< like `renamed`, and the new file survives a power cut
 };
 
-/// Deletes the temporary files and folders that killed programs left in `folder`; with `below` also
-/// those in its subfolders. Names: ".tmp-<pid>-*" or ".*.tmp-<pid>-*". An entry is deleted
-/// only if process <pid> has ended and no process, for example in another container, has locked it.
+/// Deletes the temporary files and folders that killed programs left in `folder` and, if `below` is
+/// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". One is deleted only
+/// if process <pid> has ended and no process, for example in another container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
-/// mode 0666 minus umask. Then renames it to the last component of `path`, which replaces a file or
-/// link there. After any error, deletes the temporary file and throws an exception of fail_on().
+/// mode 0666 minus umask. Then renames it to the last component of `path`; an existing file or link
+/// is replaced. After an error, deletes the temporary file and throws as fail_on() does.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, const std::string& temporary,
                   Durability durability);
@@ -71,7 +71,7 @@ std::optional<std::string> read_plain(const std::filesystem::path& path, std::si
 /// Says whether this program wrote the file that begins with these bytes (at most 4096).
 using Recognize = std::function<bool(std::string_view beginning)>;
 
-/// Throws NotOurs if `path` exists, except for a regular file that `ours` recognizes. Throws
+/// Throws NotOurs if `path` exists and is not a regular file that `ours` recognizes. Throws
 /// std::system_error when the type of the file cannot be determined.
 void require_ours(const std::filesystem::path& path, const Recognize& ours);
 
@@ -92,9 +92,9 @@ class NewFile {
 };
 
 /// A new temporary folder that only this user can read; the destructor deletes it with its content.
-/// The folder lies in TMPDIR (else /tmp), unless `prefix` is an absolute path. Its name is `prefix`
-/// + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the parent
-/// folder and throws std::system_error, which names the folder, when no folder can be created.
+/// The folder lies in TMPDIR (by default /tmp), unless `prefix` is an absolute path. The name is
+/// `prefix` + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the
+/// parent folder and throws std::system_error, which names it, when no folder can be created.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");

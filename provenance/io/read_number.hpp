@@ -8,7 +8,7 @@
 
 namespace shearcell {
 
-/// The value of a text that is one decimal number in the range of the type; otherwise nothing.
+/// The value of `text` if it is exactly one decimal number in the range of Number; else nothing.
 template <class Number>
 std::optional<Number> read_number(std::string_view text) {
   Number value{};

@@ -153,8 +153,7 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   ASSERT_EQ(with_notes.at("notes").size(), 1U);
   EXPECT_TRUE(
       has(with_notes.at("notes")[0].get<std::string>(), "left out: 2 runs of another version"));
-  const Outcome report =
-      expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
+  const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
   EXPECT_FALSE(has(report.err, "left out: experiment"));
   // A manifest that states the runs of both versions.
   write("both.yaml", tiny_manifest("",
@@ -194,7 +193,7 @@ TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
     expect(0, {"table", "--per", "run", "--out", "runs.csv"});
     EXPECT_EQ(read_bytes(path("runs.csv")), printed.out);
   }
-  expect_refused({"table", "--out", "/"}, {"/: this is a folder, and the output is a file"});
+  expect_refused({"table", "--out", "/"}, {"/: this is a folder, but the output is a file"});
   const std::string rows = expect(0, {"table"}).out;
   for (const char* name : {"-", "/dev/stdout"}) {
     EXPECT_EQ(expect(0, {"table", "--out", name}).out, rows) << name;
