@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A stratum with n and m runs on the two sides has the weight n m / (n + m). Each mean has its own
-/// variance, so t has Welch's degrees of freedom.
+/// A stratum with n and m runs on the two sides has the weight n m / (n + m). The variances of the
+/// means may differ, so t has Welch's degrees of freedom.
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Scalar number = estimator_by_keys(claim).scalar(claim);
   const RunGroup sides[] = {a, b};

@@ -28,8 +28,8 @@ std::set<std::int64_t> cycles_to_follow() {
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// Number of cycles followed to compare critical sizes between amplitudes. [choice]: errors are
-/// smallest, since crystallites hardly change in one cycle and most have grown after ten cycles.
+/// Cycles over which crystallites are followed to compare amplitudes. [choice]: the errors are
+/// larger after one cycle (crystallites hardly change) and after ten cycles (most have grown).
 constexpr std::int64_t cycles_compared = 5;
 
 /// Each critical size of the supplement comes from "usually 6 to 10" simulations.

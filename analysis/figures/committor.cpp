@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The rows that enter a verdict, for each crystallite, control and element of cycles_without.
+/// The data behind a verdict: a row for each crystallite or control, and element of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -323,9 +323,8 @@ Verdict size_is_published(const Amplitude& one) {
       size, packings, note, fates_of({&one}));
 }
 
-/// Compares the critical sizes of two amplitudes. In the supplement the critical size grows from
-/// the lower to the higher amplitude. Clones of different amplitudes count as independent, since
-/// their states share at most the packing.
+/// Decides whether the critical size grows with the amplitude, as in the supplement. Clones of
+/// different amplitudes count as independent, since their states share at most the packing.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;
