@@ -32,7 +32,7 @@ constexpr double rare = 0.1;
 /// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< clones in which a descendant grew after `gone`
+  std::size_t revived = 0;                 ///< `gone`, but a descendant grew later
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The data behind a verdict: a row for each crystallite or control, and element of cycles_without.
+/// The data behind a verdict: a row for each subject and each element of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});

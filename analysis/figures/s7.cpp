@@ -20,8 +20,8 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t density_bins = 8;
-/// Smallest distance [d] from a wall to the centre of a crystallite of critical size. It is the
-/// smallest distance of interior grains from rough walls (1.875 d) plus a radius. [choice]
+/// Smallest distance [d] from a wall to the centre of a crystallite of critical size: the smallest
+/// distance of interior grains from rough walls (1.875 d) plus the crystallite's radius. [choice]
 constexpr double inaccessible = 4;
 
 struct Places {

@@ -162,7 +162,7 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname() is not used, since each subcommand would override --store with it.
+  // CLI11's envname() is not used, since each subcommand would override --store with the variable.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
