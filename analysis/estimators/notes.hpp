@@ -7,7 +7,7 @@
 namespace shearcell {
 
 inline constexpr const char* no_group =
-    "the claim selects no runs, or runs that also differ in another swept parameter";
+    "the claim selects no runs, or its runs differ in a swept parameter that is not in the claim";
 
 inline void add_note(std::string& note, const std::string& text) {
   note += (note.empty() ? "" : "; ") + text;

@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A stratum with n and m runs on the two sides has the weight n m / (n + m). Each mean has its own
-/// variance, so t has Welch's degrees of freedom.
+/// A stratum with n and m runs on the two sides has the weight n m / (n + m). The variances of the
+/// means may differ, so t has Welch's degrees of freedom.
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Scalar number = estimator_by_keys(claim).scalar(claim);
   const RunGroup sides[] = {a, b};
@@ -88,8 +88,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
       stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
       strata.empty()
           ? std::string(no_group)
-          : fmt::format("{} and {} runs in {} of {} with equal values of all other "
-                        "parameters; a group needs at least {} numbers on each side",
+          : fmt::format("{} and {} runs on the two sides, in {} of {} (within a group, all other "
+                        "parameters are equal); a group needs at least {} numbers on each side",
                         runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
       std::move(entered), Counted::runs_per_variant);
   verdict.censored = censored;

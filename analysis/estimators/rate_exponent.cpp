@@ -13,8 +13,8 @@ std::string words_of_exponent(const ClaimSpec& claim) {
   return fmt::format("exponent of the rate against {}", claim.against);
 }
 
-/// Decides on the exponent minus the published exponent, which is 0 if the claim has none. Throws
-/// UsageError if `against` is not the number of grains of a region.
+/// Compares the exponent with the published exponent, or with 0 if the claim has no published
+/// exponent. Throws UsageError if `against` is not the number of grains of a region.
 Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
   const Region region = claim.against == grains_of(Region::core) ? Region::core : Region::interior;
   if (claim.against != grains_of(region)) {

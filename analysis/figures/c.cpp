@@ -21,15 +21,15 @@
 namespace shearcell {
 namespace {
 
-/// Numbers of cycles over which crystallites are followed. The critical size depends on this
-/// number. The supplement's n_bin of each amplitude is included.
+/// Numbers of cycles over which crystallites are followed, including the supplement's number for
+/// each amplitude (n_bin). The critical size depends on this number.
 std::set<std::int64_t> cycles_to_follow() {
   std::set<std::int64_t> cycles = {1, 2, 5, 10, 20};
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// Number of cycles followed to compare critical sizes between amplitudes. [choice]: errors are
-/// smallest, since crystallites hardly change in one cycle and most have grown after ten cycles.
+/// Cycles over which crystallites are followed to compare amplitudes. [choice]: the errors are
+/// larger after one cycle (crystallites hardly change) and after ten cycles (most have grown).
 constexpr std::int64_t cycles_compared = 5;
 
 /// Each critical size of the supplement comes from "usually 6 to 10" simulations.
@@ -257,7 +257,7 @@ Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// For each run, the counts from which the critical size follows.
+/// For each run, the counts from which the critical size is computed.
 Table growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
   Table entered =
       entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
@@ -283,8 +283,8 @@ std::string in_grains(const std::optional<Estimate>& size) {
   return size ? in_grains(size->value) : "none";
 }
 
-/// The supplement's critical size comes from few runs. It is assumed to scatter like our critical
-/// size in repeated studies with published_runs runs.
+/// The supplement's critical size comes from few runs. Its error is assumed to be the error that
+/// our critical size would have with published_runs runs.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const auto& [runs, critical] = one.published_bin();
   const double published = one.published->critical_size;
@@ -297,7 +297,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
     const double size = critical->value;
     note += fmt::format("; critical size {:.3g} grains, or {} by a monotone fit of delta_rho", size,
                         in_grains(one.curve.monotone_critical_size()));
-    note += fmt::format("; in repeated studies with {} runs, 90 % would give {} to {}",
+    note += fmt::format("; 90 % of repeated studies with {} runs would give {} to {}",
                         published_runs, in_grains(low), in_grains(high));
     relative = ratio(*critical, {.value = published,
                                  .interval = {published * size / high, published * size / low},
@@ -314,8 +314,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
     }
   }
   note += fmt::format(
-      "; critical size {} without the {} of {} growing crystallites that are absorbed, and {} "
-      "without the {} of {} shrinking crystallites that vanish",
+      "; critical size {} if absorbed crystallites ({} of {} that grow) are left out, and {} if "
+      "vanished crystallites ({} of {} that shrink) are left out",
       in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
       all.vanished, all.smaller());
   const AmplitudeGrowth* const alone = &one;

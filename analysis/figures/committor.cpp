@@ -25,14 +25,14 @@ namespace {
 /// cycles_gone. The other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
-/// No critical size is defined if the fraction of growing controls (Subject) exceeds this value and
-/// is at least the fraction of growing crystallites of the smallest size. [choice]
+/// No critical size is defined if more than this fraction of the controls (Subject) grow, and the
+/// smallest crystallites do not grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
 /// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< clones in which a descendant grew after `gone`
+  std::size_t revived = 0;                 ///< `gone`, but a descendant grew later
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -82,7 +82,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
   return map.size.empty() ? 0 : std::ranges::max(map.size);
 }
 
-/// Adds the outcomes in the clones of one state: of its crystallites, or of the state as a control.
+/// Adds the crystallites of one state, or the state as a control, with the outcomes in all clones.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -175,13 +175,13 @@ std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t 
 /// Why no critical size is defined; "" if it is defined.
 std::string why_undefined(const Amplitude& one) {
   const std::optional<double> q = background(one);
-  if (!q) return "the background is not known, since every state has crystallites";
+  if (!q) return "the growing fraction of controls is unknown, since every state has crystallites";
   const auto smallest =
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
   return fmt::format(
-      "no critical size is defined: a fraction {:.2g} of clones that begin without crystallites "
-      "form one of {} grains, but only a fraction {:.2g} of crystallites of {} and {} grains grow",
+      "no critical size is defined: a fraction {:.2g} of the controls form a crystallite of {} "
+      "grains, but only a fraction {:.2g} of the crystallites of {} to {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 
@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The rows that enter a verdict, for each crystallite, control and element of cycles_without.
+/// The data behind a verdict: a row for each subject and each element of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -309,7 +309,7 @@ Verdict size_is_published(const Amplitude& one) {
   std::optional<Estimate> size = half_size(one, chosen_rule);
   const std::size_t packings = by_packing_and_size(one, chosen_rule).size();
   const std::string note = fmt::format(
-      "{} and {} in {}; {} left out, since they begin with a crystallite of {} grains or more; {}",
+      "{} and {} in {}; left out: {} with an initial crystallite of {} grains or more; {}",
       counted(one.crystallites.size(), "crystallite"), counted(one.controls.size(), "control"),
       counted(packings, "packing"), counted(one.left_out, "state"), grown_size, note_on(one, size));
   if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
@@ -323,9 +323,8 @@ Verdict size_is_published(const Amplitude& one) {
       size, packings, note, fates_of({&one}));
 }
 
-/// Compares the critical sizes of two amplitudes. In the supplement the critical size grows from
-/// the lower to the higher amplitude. Clones of different amplitudes count as independent, since
-/// their states have at most the packing in common.
+/// Decides whether the critical size grows with the amplitude, as in the supplement. Clones of
+/// different amplitudes count as independent, since their states share at most the packing.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;

@@ -121,8 +121,8 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
 }
 
 /// The exponent a of rate ~ n^a if the rate is proportional to the area of the walls, N^(2/3). n is
-/// the number of grains in the region. The smallest and the largest cells determine a. It is less
-/// than 2/3, since the fraction n / N grows with N. NaN unless n > 0 and n grows with N.
+/// the number of grains in the region. Computed from the smallest and the largest cells. The result
+/// is less than 2/3, since n / N grows with N. NaN unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
@@ -144,7 +144,8 @@ std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region 
       .id = id, .against = grains_of(region), .published = PublishedSpec{.value = 1}};
   Verdict verdict = rate_exponent.decide(claim, {.text = text, .margin = (1 - walls) / 2, .id = id},
                                          pointers(runs), {});
-  if (verdict.estimate) verdict.note += fmt::format("; walls alone would give {:.2f}", walls - 1);
+  if (verdict.estimate)
+    verdict.note += fmt::format("; nucleation only at the walls would give {:.2f}", walls - 1);
   return {std::move(verdict)};
 }
 

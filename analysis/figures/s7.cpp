@@ -20,8 +20,8 @@ namespace shearcell {
 namespace {
 
 constexpr std::size_t density_bins = 8;
-/// Smallest distance [d] from a wall to the centre of a crystallite of critical size: interior
-/// grains are at least 1.875 d from a rough plane, and a crystallite has a radius. [choice]
+/// Smallest distance [d] from a wall to the centre of a crystallite of critical size: the smallest
+/// distance of interior grains from rough walls (1.875 d) plus the crystallite's radius. [choice]
 constexpr double inaccessible = 4;
 
 struct Places {
@@ -91,9 +91,9 @@ Table density_table(std::string name, std::string first_column, Text x,
   return table;
 }
 
-/// Decides on the share of nuclei in one part of the cell minus the share in another part, over all
-/// runs. `side` returns 1 in the first part, -1 in the second part, 0 elsewhere, and nothing if
-/// nuclei at this place are left out. The bootstrap draws packings, each with all its runs.
+/// Decides on the share of nuclei in one part of the cell minus the share in another part. `side`
+/// returns 1 in the first part, -1 in the second part, 0 elsewhere, and nothing if nuclei at this
+/// place are left out. The bootstrap resamples packings; a packing includes all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);
@@ -151,7 +151,7 @@ Verdict upper_less_lower(RunGroup runs, const Claim& claim) {
 
 FigureResult figure_s7(const Frame& frame) {
   const std::span<const FrameRun> runs = frame.runs;
-  // The panels of the supplement are for the softest springs; a manifest may sweep the stiffness.
+  // If the stiffness is swept, the panels show only the softest springs, as in the supplement.
   const auto by_stiffness = runs_by(runs, "stiffness_N_per_m");
   const auto softest = by_stiffness.empty() ? pointers(runs) : by_stiffness.begin()->second;
   const auto probability = [](const std::string& of) { return formula("$P$(" + of + ")"); };

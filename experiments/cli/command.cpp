@@ -128,7 +128,7 @@ void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(
       command, "--variant", variants,
       "Only runs with this swept value, such as fluid=cell, or with this label from `status`. If "
-      "this option is repeated, a run must have, for each key, one of the given values",
+      "several values of one key are given, one must match. If several keys are given, all must",
       "KEY=V");
 }
 
@@ -242,8 +242,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that each run comes after the run from which it starts. A `start` need
-// not name the experiment of that run, so manifests that start from no run come first.
+// Sorts the manifests so that each run comes after the run from which it starts. Manifests that
+// start from no run come first, since a `start` may omit the name of the experiment.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -266,7 +266,7 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   }
 }
 
-// Warns if figures will omit runs of the store when this plan has been run, since figures show only
+// Warns if figures will omit runs of the store after this plan is run, since figures show only
 // the runs of the newest manifest of each experiment and scale.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;

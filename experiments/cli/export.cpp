@@ -116,7 +116,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
   std::vector<CheckpointRecord> records;
   std::size_t pruned = 0;
-  // A single cycle may also select a checkpoint that was stored when the run was interrupted.
+  // A single cycle may also select a checkpoint that exists only because of an interruption.
   const bool by_name = range.first == range.last;
   std::vector<CheckpointRecord> all = store.checkpoints(stage.id, Listed::and_pruned);
   if (!by_name) {

@@ -55,8 +55,8 @@ void print_verdicts(const ComputedFigure& result) {
   }
 }
 
-/// Prints the files and verdicts of the figure, unless --json is given. Prints to standard error
-/// what the figure lacks, but no message that is in `told`. `path`: see WantedFigure::path().
+/// Prints the files and verdicts of the figure, unless --json is given. Prints messages on missing
+/// data to standard error and adds them to `told`. Skips messages that are already in `told`.
 void print(const ComputedFigure& result, const std::string& path, std::set<std::string>& told,
            Context& context) {
   const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };

@@ -162,14 +162,14 @@ int after_output(int code) {
 
 int run(int argc, char** argv) {
   Context context;
-  // CLI11's envname() is not used, since each subcommand would replace --store by the variable.
+  // CLI11's envname() is not used, since each subcommand would override --store with the variable.
   const char* store = std::getenv("SHEARCELL_STORE");
   if (store != nullptr && *store != '\0') context.store = store;
   CLI::App app{kDescription, "shearcell"};
   app.formatter(std::make_shared<HelpFormatter>());  // set first, since new commands copy it
   app.footer(kFooter);
   app.set_version_flag("--version", version_text());
-  app.require_subcommand(0, 1);  // 0: describe_extras() reports unknown commands
+  app.require_subcommand(0, 1);  // minimum 0, so that describe_extras() reports unknown commands
   for (const auto& [group, commands] : kCommands) {
     for (AddCommand* const add : commands) add(app, context);
     for (CLI::App* command : app.get_subcommands({})) {

@@ -116,7 +116,7 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// For each experiment, adds a note on the work until the next planned look (interim analysis).
+// For each experiment, adds a note on the work that the next look (interim analysis) needs.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
                 std::vector<std::string>& notes) {
   for (const Plan& plan : plans) {

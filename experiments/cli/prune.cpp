@@ -312,8 +312,8 @@ void add_regenerate(CLI::App& app, Context& context) {
   add_threads_option(*command, options->threads, "Number of threads; useful for large cells");
   add_common_options(
       *command, context,
-      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If the stage has none,
-also recomputes the file of the state with which the stage begins. If a state or a file does
+      R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is no such
+checkpoint in the stage, also recomputes the file of the initial state. If a state or a file does
 not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
 Examples:
   shearcell regenerate 2a2c47ca

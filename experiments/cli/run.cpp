@@ -190,7 +190,7 @@ std::function<void()> tried(std::function<void()> action, std::chrono::seconds i
 }
 
 // Returns the folder in which the task computes: its store, or if `scratch` is set, a copy on the
-// node's disk. The copy's name contains submission and task, so that a restarted task finds it.
+// node's disk. The copy is named after submission and task, so that a restarted task finds it.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
   if (scratch.empty()) return task;
   const Store sound(task, Access::write);  // throws before copying if the store is unusable
@@ -253,8 +253,8 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   add_threads_option(command, options.parallel.threads,
                      "Threads inside each run; useful for large cells");
   add_number(command, "--mpi", options.parallel.ranks,
-             "MPI processes of each LAMMPS run; the number affects the last digits of results", "N",
-             1, 65536);
+             "MPI processes of each LAMMPS run; this number affects the last digits of results",
+             "N", 1, 65536);
   add_number(
       command, "--keep-every", options.keep_every,
       "When a run is completed, measure its checkpoints and delete their files as `prune` does, "

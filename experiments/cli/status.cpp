@@ -64,9 +64,9 @@ std::string describe(const QueuedTask& task) {
   return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-/// Returns state and cycle of the run: those that its cluster task reports, if the reported cycle
-/// is at least the stored cycle, else those in the store. A run whose program was killed is
-/// returned as interrupted.
+/// Returns state and cycle of the run, as stored or as its cluster task reports them. The report is
+/// used if its cycle is not less than the stored cycle. If the program that computed the run was
+/// killed, the state is `interrupted`.
 std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
   const QueuedRun* queued = view.queued(stage);
   const bool reported =

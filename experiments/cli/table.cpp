@@ -92,9 +92,10 @@ void add_table(CLI::App& app, Context& context) {
       "apply):\n" +
           columns_text +
           "Simulated columns need an option, such as --rest. critical_size and all columns below "
-          "it need\n--per run, which measures the newest checkpoint of each run. A run of several "
-          "experiments has rows\nfor each experiment, up to the cycles that the experiment asks "
-          "for.\n\nCurves:\n" +
+          "it need\n--per run, which measures the newest checkpoint of each run. A run that "
+          "several "
+          "experiments share\nhas rows for each experiment, up to the cycles that the experiment "
+          "asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

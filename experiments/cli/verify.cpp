@@ -222,7 +222,7 @@ void add_verify(CLI::App& app, Context& context) {
              "Recompute K sampled checkpoints and compare every bit", "K", 1, 1'000'000'000);
   add_number(*command, "--measures", options->measures,
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
-  add_number(*command, "--seed", options->seed, "Seed of the sample (default: from the head)");
+  add_number(*command, "--seed", options->seed, "Seed of sample (default: from the last event)");
   add_threads_option(*command, options->threads, "Threads of a replay; useful for large cells");
   add_common_options(
       *command, context,
@@ -233,9 +233,9 @@ measures of pruned checkpoints must match the hashes that the log records.
 --replay K recomputes K sampled checkpoints from earlier checkpoints, compares every bit of the
 state and of the values recorded with it, and records the outcome. A checkpoint is skipped if all
 earlier files were pruned. --measures K recomputes the cached measures of K sampled checkpoints.
-Cannot prove: states that are not sampled; when, where and how fast a run was computed; trajectories
-of LAMMPS; that nobody rewrote the log from its first event or cut off its end. To detect such a
-change of the log, keep the printed head away from the store and pass the head to --against.
+Not proved: states that are not sampled; when, where and how fast a run was computed; trajectories
+of LAMMPS. A log that was rewritten from its first event, or whose end was cut off, is not detected.
+To detect such changes, keep the printed head away from the store and pass the head to --against.
 Examples:
   shearcell verify --json
   shearcell verify --replay 5

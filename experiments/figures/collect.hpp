@@ -46,8 +46,8 @@ struct WantedFigure {
 
 /// The figures that registered manifests list.
 struct WantedFigures {
-  /// Sorted by experiment; figures of all experiments are last. Within an experiment, the figures
-  /// that the manifest lists by name come before the figures whose plots and claims it states.
+  /// Sorted by experiment; figures of all experiments are last. Within an experiment, figures that
+  /// the manifest only names come before figures that it defines by `plots` and `claims`.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };

@@ -61,9 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// Returns a text that names the version of the plots, if the manifest does not state the figure's
-/// plots. Manifests of earlier versions list figures by name only. Returns "" if the manifest
-/// states the figure or if C++ computes the figure.
+/// If the figure's plots come from this program and not from the manifest, returns a text with the
+/// program's version. For example, older manifests only name the figure. Returns "" if the manifest
+/// states the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -122,8 +122,8 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether the table has no value of a run that can be drawn. Checks only the series
-/// that have columns of the table or are traces (`thin`). If there are none, checks all series.
+/// Whether no value of a run can be drawn. Checks only series that are traces (`thin`) or have
+/// columns in the table. If the table has no such series, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };

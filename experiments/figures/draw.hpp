@@ -41,7 +41,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
 
 /// Computes the tables, verdicts and lineage of a figure. Writes only measures, into
 /// derived.sqlite, and does not use options.folder. Reads no checkpoint whose measures are cached.
-/// The result leaves out a damaged or pruned checkpoint without cached measures, and names it.
+/// A damaged or pruned checkpoint without cached measures is left out, and the result names it.
 /// Throws NotFound if the store has no run for the figure, and UsageError if the figure would
 /// average over a parameter that the experiment varies.
 ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,

@@ -16,7 +16,7 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kAtOnce = 500;  // largest number of checkpoints with results in memory
+constexpr std::size_t kAtOnce = 500;  // number of checkpoints after which a batch is measured
 
 /// Whether the provider needs the file of an earlier checkpoint that is already pruned, for example
 /// because a pruned run was continued. In this case the measure was lost with the earlier file.

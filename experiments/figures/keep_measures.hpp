@@ -9,15 +9,15 @@
 
 namespace shearcell {
 
-/// Computes and caches the measures for tables and figures that need the files of `records`. These
-/// are all derived measures of all checkpoints of the runs, because a later checkpoint's measure
-/// may need an earlier file. They are computed at each checkpoint cadence that an experiment asks
-/// for. Simulated measures are computed if a figure of a manifest needs them.
+/// Computes and caches all measures for tables and figures, so that the files of `records` can be
+/// deleted. Measures all checkpoints of the runs, because a later checkpoint's measure may need an
+/// earlier file, and uses each checkpoint cadence that an experiment requests. Simulated measures
+/// are computed if a figure of a manifest needs them.
 ///
 /// Removes from `records` each checkpoint with a measure that could not be computed; the outcome
-/// gives the reason. A checkpoint stays in `records` if the measure also needs the file of an
-/// earlier checkpoint that is already pruned. If measures cannot be cached, removes all records.
-/// The cache is on disk when the function returns.
+/// gives the reason. If this measure needs the file of an earlier checkpoint that is already
+/// pruned, the checkpoint is not removed. If measures cannot be cached, removes all records. The
+/// cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

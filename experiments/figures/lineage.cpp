@@ -30,8 +30,7 @@ FigureInput read_input(const json& input) {
   return result;
 }
 
-/// Numbers of cycles that differ by less than this are equal. A cycle has far fewer than 1e9 time
-/// steps.
+/// Cycles that differ by less than this are treated as equal. A time step is much longer.
 constexpr double kSameCycle = 1e-9;
 
 Cycles cycles_of(const std::vector<CheckpointRecord>& checkpoints) {

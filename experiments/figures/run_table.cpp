@@ -86,8 +86,8 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// The columns of a checkpoint. They include simulated measures only of the providers that
-/// `simulated` names.
+/// The columns of a checkpoint. A simulated measure has a column only if `simulated` names the
+/// provider of the measure.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
   for (const Measure* measure : all_measures(MeasureKind::number)) {
@@ -175,10 +175,10 @@ void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   }
   for (const auto& [name, count] : lacking) {
     if (provider(name).cycles_back == 0) continue;
-    table.notes.push_back(
-        fmt::format("{} with a file but without {}, because a checkpoint before {} is pruned or "
-                    "damaged; `shearcell regenerate` restores the pruned or damaged file",
-                    counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
+    table.notes.push_back(fmt::format(
+        "in {} the {} measures are missing, because a checkpoint before {} is pruned or "
+        "damaged; `shearcell regenerate` restores the pruned or damaged file",
+        counted(count, "checkpoint"), name, count == 1 ? "it" : "them"));
   }
 }
 

@@ -27,17 +27,17 @@ struct RunTable : MeasureOutcome {
 
 /// Returns the table of the selected newest_runs(), sorted by run and cycle. The checkpoints of a
 /// run are its checkpoints_for(). Onsets are found in the checkpoints at whole cycles, as in
-/// figures. The measures of the simulating providers that `simulated` names have columns too.
+/// figures. If `simulated` names providers, the table also has columns for their measures.
 /// Throws NotFound as select_runs() does.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated = {});
 
-/// Returns a table with a row for each point of a measured curve at each checkpoint. The columns
-/// identify the run, then state cycle, checkpoint, x and y.
+/// Returns a table with a row for each point of a measured curve at each checkpoint. The first
+/// columns identify the run. The last four are the cycle, the checkpoint, x and y.
 RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options);
 
-/// Names of the providers of all columns of a checkpoint, except the simulating providers. The
+/// Names of all providers that have columns in the table, without the simulating providers. The
 /// first name is "scalars".
 std::vector<std::string> table_providers();
 std::vector<std::string> simulating_providers();

@@ -40,8 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
   return {run.place.experiment, run.place.scale};
 }
 
-/// Returns, for each experiment and scale, the places (variant and seed) of the stage in the newest
-/// manifest version, or the place that was declared last if this version does not have the stage.
+/// Returns the places (variant and seed) of the stage in the newest manifest version of each
+/// experiment and scale. If this version lacks the stage, returns the place declared last.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {
@@ -65,7 +65,7 @@ bool in_order(const Run& a, const Run& b) {
   return key(a.place) < key(b.place);
 }
 
-/// Adds a note on each experiment whose edited manifest asks for fewer cycles than runs have.
+/// Adds a note on each experiment whose edited manifest asks for fewer cycles than are stored.
 void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& notes) {
   struct Shortened {
     std::size_t runs = 0;
@@ -85,8 +85,8 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   }
   for (const auto& [where, found] : shortened) {
     notes.push_back(fmt::format(
-        "experiment {}: {} shown shorter than stored (up to cycle {}), because the newest version "
-        "of its manifest asks for fewer cycles; raise `cycles` in the manifest to show more",
+        "experiment {}: {} not shown to the end (stored up to cycle {}), because the newest "
+        "version of its manifest asks for fewer cycles; raise the manifest's `cycles` to show all",
         where.first, found.runs == 1 ? "1 run is" : fmt::format("{} runs are", found.runs),
         found.had));
   }
@@ -166,7 +166,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
   chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
-  // Variants, by experiment, scale and version of the manifest.
+  // Variants of runs left out, by experiment, scale and version of the manifest.
   std::map<std::pair<ExperimentScale, std::string>, std::vector<std::string>> left;
   for (const Run& one : std::ranges::subrange(older, selected.end())) {
     const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {
@@ -188,9 +188,9 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     const auto shown = std::ranges::find(chosen.runs, where, experiment_scale<Run>);
     const auto count = std::ranges::count(chosen.runs, where, experiment_scale<Run>);
     chosen.notes.push_back(fmt::format(
-        "experiment {}{}: left out: {} of another version of its manifest, {:.8}: {}; "
-        "shown: {} of the version registered last{}. To show all, `shearcell run` one manifest "
-        "that states the runs of both versions; this computes only runs that neither version has",
+        "experiment {}{}: left out: {} of another manifest version, {:.8}: {}; "
+        "shown: {} of the version that was registered last{}. To show all runs, `shearcell run` "
+        "one manifest that lists all of them; only missing runs are computed",
         where.first, at_scale(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),

@@ -32,7 +32,7 @@ struct Report : MeasureOutcome {
   std::size_t experiments = 0, figures = 0, stages = 0;  ///< numbers in the page
   std::size_t packings = 0, checkpoints = 0;  ///< runs shown in 3D, and their checkpoints
   std::set<std::string> undrawn;   ///< a line for each drawing that failed, with the reason
-  std::set<std::string> problems;  ///< a line for each figure that fails with exit code 2
+  std::set<std::string> problems;  ///< a line for each figure that is unknown or invalid
   std::set<std::string> notes;     ///< lines about runs, figures and tables
 };
 

@@ -162,7 +162,8 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
   EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
-            "the claim selects no runs, or runs that also differ in another swept parameter");
+            "the claim selects no runs, or its runs differ in a swept parameter that is not in "
+            "the claim");
 }
 
 TEST(Compare, PairsMustIncludeMostRuns) {
@@ -239,9 +240,10 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_NEAR(pooled.interval.high, 0.001736722, 1e-9);
   EXPECT_EQ(pooled.ruling, Ruling::agrees);
   EXPECT_EQ(pooled.runs, 8U);
-  EXPECT_EQ(pooled.note,
-            "8 and 8 runs in 2 of 3 groups with equal values of all other parameters; a group "
-            "needs at least 3 numbers on each side");
+  EXPECT_EQ(
+      pooled.note,
+      "8 and 8 runs on the two sides, in 2 of 3 groups (within a group, all other parameters are "
+      "equal); a group needs at least 3 numbers on each side");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.

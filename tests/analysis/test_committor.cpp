@@ -269,8 +269,9 @@ TEST(CommittorFigure, AStateThatHasGrownIsLeftOut) {
   add_states(clones, [](auto size) { return share_that_grows(size, 8); });
   clones.add(50, 70, [](double) { return Fate::gone; });
   EXPECT_EQ(number_at(figure_of(clones.runs()), 0.1, 2, "states_left_out"), 1);
-  EXPECT_NE(figure_of(clones.runs()).verdicts[0].note.find("the background is not known"),
-            std::string::npos)
+  EXPECT_NE(
+      figure_of(clones.runs()).verdicts[0].note.find("the growing fraction of controls is unknown"),
+      std::string::npos)
       << "no controls";
 }
 

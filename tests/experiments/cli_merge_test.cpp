@@ -36,9 +36,10 @@ class Split : public ProgramTest {
     const std::string text = warnings.at(0);
     for (const std::string& part :
          {"experiment tiny at scale " + scale + ": left out: " + lost +
-              " of another version of its manifest, " + sha256_hex(older).substr(0, 8),
-          "shown: " + shown + " of the version registered last, " + sha256_hex(newest).substr(0, 8),
-          std::string("computes only runs that neither version has")}) {
+              " of another manifest version, " + sha256_hex(older).substr(0, 8),
+          "shown: " + shown + " of the version that was registered last, " +
+              sha256_hex(newest).substr(0, 8),
+          std::string("only missing runs are computed")}) {
       EXPECT_TRUE(has(text, part)) << part << "\n" << text;
     }
   }
@@ -61,8 +62,7 @@ TEST_F(Split, MergeNamesTheRunsThatFiguresThenLeaveOut) {
     std::filesystem::remove_all(path("into"));
   }
   expect_names(warnings({"many", "few"}, "new"), few, "2 runs", many, "6 runs");
-  expect(0, {"merge", "many", "few", "--store", "text"},
-         {"warning: experiment tiny"});
+  expect(0, {"merge", "many", "few", "--store", "text"}, {"warning: experiment tiny"});
 }
 
 TEST_F(Split, MergeCountsRunsThatBothVersionsDeclare) {

@@ -264,11 +264,12 @@ TEST_F(Prune, ATableSaysWhichSimulatedMeasuresLackAFile) {
   campaign(tiny_manifest(), {"--cycles", "6"}, "own");
   expect(0, {"prune", "--keep-every", "3", "--yes", "--store", "own"});
   const Outcome table = expect(0, {"table", "--ledger", "--store", "own"});
-  EXPECT_TRUE(has(table.err,
-                  "2 checkpoints with a file but without ledger, because a checkpoint before them"))
+  EXPECT_TRUE(
+      has(table.err,
+          "in 2 checkpoints the ledger measures are missing, because a checkpoint before them"))
       << table.err;
   expect(0, {"regenerate", "--all", "--store", "own"});
-  EXPECT_FALSE(has(expect(0, {"table", "--ledger", "--store", "own"}).err, "without ledger"));
+  EXPECT_FALSE(has(expect(0, {"table", "--ledger", "--store", "own"}).err, "ledger measures"));
 }
 
 TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {

@@ -135,8 +135,8 @@ TEST_F(CommandLineTable, ReportsThatAnEditedManifestHasFewerCyclesThanTheStore) 
   write("m.yaml", read_bytes(path("m.yaml")) + "# edited\n");
   expect(0, {"run", "m.yaml", "--cycles", "1", "-q"});
   const Outcome said = expect(0, {"table"});
-  EXPECT_TRUE(has(said.err, "2 runs are shown shorter than stored (up to cycle 2)"));
-  EXPECT_TRUE(has(said.err, "raise its `cycles` to show more"));
+  EXPECT_TRUE(has(said.err, "2 runs are not shown to the end (stored up to cycle 2)"));
+  EXPECT_TRUE(has(said.err, "raise the manifest's `cycles` to show all"));
 }
 
 TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
