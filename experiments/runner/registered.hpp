@@ -30,12 +30,12 @@ class VariantNames {
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// The display name of a stage at a place in an experiment; place.variant if no name is known.
+  /// The display name of a stage in the experiment and scale of `place`. If unknown, place.variant.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
-  /// The group in which the run's name must be unique, and the run's values within this group.
+  /// The group in which names must be unique, and the values that determine the run's name.
   static std::pair<Group, nlohmann::json> key_of(const Stage& stage, const Place& place);
 
   std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by the run's values
