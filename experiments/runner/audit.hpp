@@ -20,7 +20,7 @@ namespace shearcell {
 std::vector<Finding> check_runs(const Store& store);
 
 /// All recorded and pruned checkpoints that this program can recompute bit for bit. This excludes
-/// checkpoints from LAMMPS or from a program with another bits_version.
+/// checkpoints from LAMMPS or from a program with another bits_version. Order: stage, then step.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// A random sample of `count` different records, or all records if there are fewer. Equal seeds

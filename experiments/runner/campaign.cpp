@@ -37,7 +37,7 @@ enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// If more starts of a stage fail and no program holds the stage, the stage counts as blocked.
+// Number of failed starts after which a stage that no program holds counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -139,7 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // The next call tries again. If another program takes a stage, our records are rejected.
+        // The next call tries again. The store rejects our records of a stage that we have lost.
       }
     });
     {
@@ -177,7 +177,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started is already done. Computes no measures (they take long).
+  // Whether a job that will not be started is already done. Computes no measures (too slow).
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;

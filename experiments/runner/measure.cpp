@@ -99,7 +99,7 @@ class Measuring {
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
         throw MachineError(cache_.trouble() +
-                           "; the measures of pruned checkpoints are only in this file");
+                           "; the measures of pruned checkpoints are only in derived.sqlite");
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :

@@ -43,8 +43,8 @@ struct MeasureOutcome {
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. If a
-/// measure needs an earlier checkpoint at a whole cycle, this cycle must be a multiple of `every`.
+/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. An
+/// earlier checkpoint at a whole cycle is used only if this cycle is a multiple of `every`.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;
@@ -54,8 +54,7 @@ struct ToMeasure {
 /// only the log (ComputedFrom::record). Sets `lacking` to the providers that gave no result.
 /// Results are cached under the checkpoint's recorded SHA-256. If all results of a checkpoint are
 /// cached, its file is not read and may be missing. Throws StoreDamaged, with a remedy, if a cached
-/// result is invalid, and MachineError if the cached measures of a pruned checkpoint cannot be
-/// read.
+/// result is invalid; MachineError if the cached measures of a pruned checkpoint cannot be read.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);

@@ -28,7 +28,7 @@ class MeasureSources {
   void read_run(const std::string& run);
 
   /// The earlier checkpoint of the same run that the provider needs. Null if it was never recorded,
-  /// or if its cycle is whole but no multiple of `every`. Valid as long as this object exists.
+  /// or if its cycle is whole but not a multiple of `every`. Valid as long as this object exists.
   const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
                                   std::uint64_t every) const;
 
@@ -44,7 +44,7 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< measures with a digest in the log; those not cached
+    std::size_t named = 0, absent = 0;  ///< measures with a digest in the log; absent: not cached
     std::string altered;  ///< message about a measure that differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the digests in the log.

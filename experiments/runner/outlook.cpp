@@ -24,8 +24,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // maximum length, since a store may be forged
-constexpr double kMostCounted = 10'000;         // larger numbers are estimated
+constexpr std::size_t kMostListed = 1'000'000;  // maximum length of a list; a store may be forged
+constexpr double kMostCounted = 10'000;         // larger numbers of checkpoints are estimated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
@@ -150,8 +150,8 @@ double settling_time_s(const Parameters& p) {
 }
 
 /// Estimated number of force evaluations of one minimization at the default tolerance. Differs by
-/// less than a sixth from the mean of nine minimizations each (stiffening, supplement B.2): 8.2e3,
-/// 16e3 and 52e3 at N = 600, 2000 and 7900.
+/// less than a sixth from the measured means of nine minimizations in a stiffening (supplement
+/// B.2): 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
 double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
@@ -406,7 +406,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
-  // If only one experiment uses the stage, no other has continued the stage beyond `until`.
+  // If only one experiment uses the stage, no other experiment has continued it beyond `until`.
   if (stage.memberships.size() < 2 || ask.until.is_null()) {
     return static_cast<double>(ask.target_cycles);
   }
@@ -473,7 +473,7 @@ std::optional<double> expected_end(std::span<const Stage> stages, const json& un
 namespace {
 
 // Rates [particle-steps/s] that are assumed if the store has no measured rates. `bench speed` with
-// rough cells measured them on one core of an EPYC (Zen 4). LAMMPS of 29 Sep 2021: SCALING.md.
+// rough cells measured them on one core of an EPYC (Zen 4). LAMMPS (29 Sep 2021): SCALING.md.
 struct MeasuredRate {
   double grains, rate;
 };

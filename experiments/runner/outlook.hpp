@@ -30,9 +30,9 @@ using KnownMeasures = std::map<std::string, Measures>;
 struct Outlook {
   /// Whether the stage is completed, is long enough for all requests, and lacks no checkpoint.
   bool done = false;
-  /// Steps, ascending, that the stage has passed without recording a checkpoint that an experiment
-  /// requests. A replay can compute these checkpoints. Empty for LAMMPS, whose runs cannot be
-  /// replayed bit for bit.
+  /// Steps, ascending, at which an experiment requests a checkpoint, but which the stage has passed
+  /// without recording a checkpoint. A replay can compute these checkpoints. Empty for LAMMPS,
+  /// whose runs cannot be replayed bit for bit.
   std::vector<std::uint64_t> missing = {};
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.

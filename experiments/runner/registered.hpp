@@ -22,7 +22,7 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of the variants of stages, from variant_names() for each manifest. A settled
+/// Display names of variants. variant_names() gives the names for each manifest. A settled
 /// packing is called "packing". If an experiment has different packings at one scale, the values
 /// that differ are added: "packing N=600".
 class VariantNames {

@@ -17,7 +17,7 @@
 namespace shearcell {
 
 struct Parallel {
-  std::size_t threads = 1;  ///< of this program's engine; they do not change results
+  std::size_t threads = 1;  ///< of this program's engine; results do not depend on the number
   std::size_t ranks = 1;    ///< LAMMPS processes; if more than one, they run under mpirun
 };
 
@@ -59,7 +59,7 @@ std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& 
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< step at which the replay began; the states agree
+  std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
   std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
   /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
   /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
@@ -76,7 +76,7 @@ struct Replay {
   std::optional<CheckpointRecord> from = {};  ///< empty if the replay began at step 0
   std::uint64_t steps = 0;                    ///< number of recomputed steps
   std::optional<Divergence> divergence = {};
-  bool interrupted = false;  ///< whether a signal stopped the replay; nothing was recorded
+  bool interrupted = false;  ///< whether a signal stopped the replay; then nothing is recorded
 };
 
 /// Why this program cannot recompute the checkpoint bit for bit; empty if it can. `known` caches

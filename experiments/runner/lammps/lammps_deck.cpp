@@ -73,7 +73,7 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // A drag of rate b/m [1/s] becomes implicit if a grain's mass is increased by this part, b dt/2m.
+  // A drag of rate b/m [1/s] becomes implicit if a grain's mass is increased by this part: b dt/2m.
   double added(double drag) const {
     return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
   }
@@ -158,7 +158,7 @@ pair_coeff * * ${{law}})",
   }
 
   // Moves the wall grains of a group. `x` and `vx` name the LAMMPS variables of the displacement
-  // (from the data file) and the velocity along x. If `rises`, y follows the moving wall.
+  // (from the data file) and the velocity along x. If `rises`, grains follow the moving wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
@@ -191,8 +191,8 @@ pair_coeff * * ${{law}})",
   }
 
   // A side plane turns about its upper end. The motion of a region is relative to the initial pose.
-  // The engine's bottom and top use wall/harmonic, because fix wall/region reports its force only
-  // for the first step.
+  // In the engine's deck, the bottom and top planes use wall/harmonic, because fix wall/region
+  // reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
