@@ -34,8 +34,8 @@ void require_same(const std::string& what, const json& recorded, const json& exp
                                  recorded.dump(), expected.dump()));
 }
 
-/// Throws StoreDamaged if seed, swept values or variant contradict the parameters. Skips a swept
-/// parameter that has no effect on the run or is not part of the run's id.
+/// Throws StoreDamaged if the seed, a swept value or the variant contradicts the parameters. Skips
+/// a swept parameter that is not part of the run's id or has no effect on the run.
 void check_place(const Place& place, const StageInputs& stage, const json& resolved) {
   require_same("seed", place.seed, stage.seed);
   for (const auto& [key, value] : place.swept.items()) {
@@ -63,8 +63,8 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps at which the run may have been completed: for each completed attempt, its last step and
-/// the largest step so far. These steps can differ if attempts of several stores were merged.
+/// Steps at which the run may have been completed: for each completed attempt, the step of its last
+/// checkpoint and the largest step of the run so far. After a merge these steps can differ.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
@@ -81,8 +81,8 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a checkpoint of its parent that is not at `steps`.
-/// After a merge the checkpoint may be unknown: merge() adds no second file of the same state.
+/// Throws StoreDamaged if the stage started from a parent checkpoint whose step is not in `steps`.
+/// Accepts an unknown checkpoint after a merge, because merge() keeps only one file of a state.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
@@ -125,7 +125,7 @@ struct CachedMeasure {
   DerivedObject object;
 };
 
-/// The cached measures of a checkpoint, for every checkpoint interval (`every`) of its run.
+/// The cached measures of a checkpoint, for each checkpoint interval (`every`) that is used.
 std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
                                            MeasureSources& sources) {
   sources.read_run(record.run);
@@ -204,12 +204,12 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
   if (cache.is_unread()) check.absent = 0;  // unknown
 }
 
-/// Returns why measures cannot be copied; "" if they can.
+/// Copies missing measures into the store. Returns why measures cannot be copied; "" if they can.
 std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  std::map<std::string, CheckpointRecord> unnamed;  // pruned, and no digests in the log
+  std::map<std::string, CheckpointRecord> unnamed;  // pruned; the log lacks a digest
   for (const Stage& stage : store.stages()) {
     for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {
@@ -244,7 +244,7 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed) {
   count = std::min(count, records.size());
-  // Uses remainders, because the distributions of <random> differ between standard libraries.
+  // The distributions of <random> differ between standard libraries, so this uses remainders.
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(records[i], records[i + random() % (records.size() - i)]);
@@ -281,7 +281,7 @@ std::vector<Finding> check_runs(const Store& store) {
       check_beginning(store, stage, ends->second);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
-    } catch (const UnreadableRecord& unknown) {  // another version recorded the parameters
+    } catch (const UnreadableRecord& unknown) {  // recorded by another version of the program
       note(Finding::Severity::note, unknown);
     } catch (const NotFound& parent) {
       note(Finding::Severity::note, parent);
@@ -303,7 +303,7 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
     if (wrong.empty()) continue;
     check.findings.push_back(
         {Finding::Severity::error, (folder / DerivedCache::kFile).string(), record.run,
-         fmt::format("checkpoint {:.12}, {}; delete this file and draw the figures again",
+         fmt::format("checkpoint {:.12}, {}; delete derived.sqlite and draw the figures again",
                      record.sha256, wrong)});
   }
   check_pruned(Store(folder, Access::read), cache, check);
@@ -316,7 +316,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // unpredictable for the sources
+  const std::uint64_t seed = seed_of(store.head());  // no source can predict it
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

@@ -19,8 +19,8 @@ namespace shearcell {
 /// a wrong state. Returns a note for each stage with unreadable parameters or a missing parent.
 std::vector<Finding> check_runs(const Store& store);
 
-/// Every checkpoint that this program can recompute bit for bit, pruned or not, by run and step.
-/// Checkpoints from LAMMPS or from a program with another bits_version are left out.
+/// All recorded and pruned checkpoints that this program can recompute bit for bit. This excludes
+/// checkpoints from LAMMPS or from a program with another bits_version. Order: stage, then step.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// A random sample of `count` different records, or all records if there are fewer. Equal seeds
@@ -32,21 +32,21 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
-  std::size_t cached = 0;       ///< checkpoints of the store with cached measures
-  std::size_t computed = 0;     ///< checkpoints whose measures were computed again
-  std::size_t not_covered = 0;  ///< pruned checkpoints without digests in the log
-  std::size_t absent = 0;       ///< measures that have a digest in the log but are not cached
+  std::size_t cached = 0;       ///< number of checkpoints that have cached measures
+  std::size_t computed = 0;     ///< number of checkpoints that were measured again
+  std::size_t not_covered = 0;  ///< number of pruned checkpoints without digests in the log
+  std::size_t absent = 0;       ///< number of measures with a digest in the log that are not cached
   std::vector<Finding> findings = {};  ///< errors
 };
 
-/// Recomputes measures of `count` sampled checkpoints of `store`. They must agree with the cached
-/// measures in folder/derived.sqlite to a relative 1e-9 (mathematical libraries differ in the last
-/// bits). Compares the cached measures of pruned checkpoints with the log of the store in `folder`.
+/// Recomputes measures of `count` sampled checkpoints of `store` and compares them with those in
+/// folder/derived.sqlite. The relative tolerance is 1e-9, because mathematical libraries differ in
+/// the last bits. Compares the cached measures of pruned checkpoints with the log in `folder`.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 
-/// Calls Store::merge(), then copies the cached measures of the sources. Copies no measures from a
-/// source in which check_measures(), with a sample of three checkpoints, finds an error. Appends
+/// Calls Store::merge(), then copies the cached measures of the sources. If check_measures() finds
+/// an error in a source (sample: three checkpoints), copies no measures from this source. Appends
 /// the errors, and notes on measures that could not be copied, to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,

@@ -32,12 +32,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program computes the stage. ended: the stage did not reach its target.
+// held: another program computes the stage. ended: this campaign does not complete the stage.
 enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// After this many failed starts, a stage that no program holds counts as blocked.
+// Number of failed starts after which a stage that no program holds counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -139,7 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // The next call tries again. The store rejects records of a stage that was taken over.
+        // The next call tries again. The store rejects our records of a stage that we have lost.
       }
     });
     {
@@ -153,12 +153,12 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    Clock::time_point check_at = {};  // next check of a stage that another program holds
+    Clock::time_point check_at = {};  // time of the next check; for JobState::held
     int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 
   // The first job that can begin; otherwise the first held job that is due for a check; otherwise
-  // null. Sets the state of a job that can no longer begin to JobState::ended.
+  // null. If a job can no longer begin, sets its state to JobState::ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {
@@ -177,7 +177,7 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started was done before. Measures nothing, to avoid a wait.
+  // Whether a job that will not be started is already done. Computes no measures (too slow).
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;
@@ -362,8 +362,8 @@ class Campaign {
   std::exception_ptr error_;
 };
 
-/// A job for each stage, named after the stage's first place. If several jobs have the same name,
-/// for example at several scales, the stage's id is appended to each of these names.
+/// A job for each stage, named after the first experiment, variant and seed that use the stage. If
+/// jobs have the same name, for example at several scales, each name ends with the stage's id.
 std::vector<StageJob> jobs_of(const std::vector<Stage>& stages, const VariantNames& names) {
   std::vector<StageJob> jobs;
   std::map<std::string, std::size_t> count;

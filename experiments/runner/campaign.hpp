@@ -23,10 +23,10 @@ struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
   std::size_t elsewhere = 0;  ///< stages that another program completed during this campaign
-  std::size_t failed = 0;     ///< stopped by the watchdog, or too large for this machine
+  std::size_t failed = 0;     ///< stages stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;
-  /// Not computed: the parent failed or was interrupted, LAMMPS is missing, the record cannot be
-  /// read, or a checkpoint that the stage needs was pruned or never recorded.
+  /// Stages that cannot be computed: the parent failed or was interrupted, LAMMPS is missing, the
+  /// record cannot be read, or a checkpoint that the stage needs was pruned or never recorded.
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< stages with a damaged file in the store
   std::size_t files_deleted = 0;      ///< checkpoint files deleted because of --keep-every
@@ -43,10 +43,10 @@ std::vector<StageJob> declare(Store& store, const Plan& plan);
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed
-/// stage. A stage that another program computes is left to that program; if that program ends or
-/// its lease expires before the stage is done, the stage is continued here. Shows progress on
-/// standard error unless `quiet`. Calls `when_done` with the id of each stage that this call
-/// completed, from several threads at once; an exception from `when_done` ends the campaign.
+/// stage. Waits for a stage that another program computes. If that program ends or its lease
+/// expires before the stage is done, continues the stage. Shows progress on standard error unless
+/// `quiet`. Calls `when_done` with the id of each stage that this call completed, from several
+/// threads at once. An exception from `when_done` ends the campaign.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
                             const Parallel& parallel = {}, bool quiet = false,
                             std::function<void(const std::string& stage)> when_done = {});

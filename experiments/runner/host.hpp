@@ -6,7 +6,7 @@
 
 namespace shearcell {
 
-/// {host, cpu, cores, simd, build{version, commit, compiler, flags, type}, libraries{...}}.
+/// {host, system, cpu, cores, simd, build{version, commit, compiler, flags, type}, libraries{}}.
 nlohmann::json host_facts();
 
 }  // namespace shearcell

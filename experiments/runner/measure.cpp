@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Results = std::vector<json>;
 
-// Results are cached in batches, because a transaction takes longer than a small analysis.
+// Results are cached in batches, because writing to the cache takes longer than a small analysis.
 constexpr std::size_t kBatch = 64;
 
 class Measuring {
@@ -99,7 +99,7 @@ class Measuring {
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
         throw MachineError(cache_.trouble() +
-                           "; this file has the only measures of pruned checkpoints");
+                           "; the measures of pruned checkpoints are only in derived.sqlite");
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :
@@ -111,7 +111,7 @@ class Measuring {
       json& result = results_[k / providers_.size()][k % providers_.size()];
       if (!found[k] || !result.is_null()) continue;
       const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
-      // A result without a digest in the log is used only while the checkpoint's file exists.
+      // A result that has no digest in the log is used only if the checkpoint was not pruned.
       const bool kept = record.state != CheckpointState::pruned;
       if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
       try {
@@ -170,12 +170,12 @@ class Measuring {
   MeasureSources sources_;
   const MeasureOptions& options_;
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
-  std::size_t wanted_ = 0;                  // number of requested providers
+  std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
   std::vector<ToMeasure> distinct_;
   std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
   std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // one per checkpoint in distinct_; one thread writes each
+  std::vector<Results> results_;  // one per checkpoint in distinct_, written by one thread
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;

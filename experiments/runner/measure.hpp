@@ -28,13 +28,13 @@ struct MeasureOptions {
   /// Names of further providers. Whenever a checkpoint is analysed, their results are also computed
   /// and cached for later calls. These providers must not need earlier checkpoints.
   std::vector<std::string> also = {};
-  /// First and last cycle at which measures that need a simulation (ComputedFrom::simulation) are
-  /// computed. Checkpoints at other cycles lack these measures. If empty, all cycles have them.
+  /// First and last cycle. Measures that need a simulation (ComputedFrom::simulation) are computed
+  /// only for checkpoints in this range; if empty, for all checkpoints.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
 };
 
 struct MeasureOutcome {
-  std::set<std::string> damage;    ///< a message for each unreadable checkpoint
+  std::set<std::string> damage;    ///< messages on unreadable checkpoints or measures
   std::set<std::string> pruned;    ///< a message for each pruned checkpoint
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints analysed in this call
   std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that measures used
@@ -43,8 +43,8 @@ struct MeasureOutcome {
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. A measure
-/// uses an earlier checkpoint at a whole cycle only if `every` divides this cycle.
+/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. An
+/// earlier checkpoint at a whole cycle is used only if this cycle is a multiple of `every`.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;
@@ -52,9 +52,9 @@ struct ToMeasure {
 
 /// Sets the measures of the checkpoints: the results of the providers, and the measures that need
 /// only the log (ComputedFrom::record). Sets `lacking` to the providers that gave no result.
-/// Results are cached under the checkpoint's recorded SHA-256. If all results are cached, the file
-/// is not read and may be missing. Throws StoreDamaged, with a remedy, if a provider cannot read a
-/// cached result, and MachineError if the cached measures of a pruned checkpoint cannot be read.
+/// Results are cached under the checkpoint's recorded SHA-256. If all results of a checkpoint are
+/// cached, its file is not read and may be missing. Throws StoreDamaged, with a remedy, if a cached
+/// result is invalid; MachineError if the cached measures of a pruned checkpoint cannot be read.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);

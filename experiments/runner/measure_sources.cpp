@@ -51,7 +51,7 @@ void MeasureSources::read_run(const std::string& run) {
     auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
     if (pruned.measures.empty()) continue;
     Digests& all = entry->second.digests[pruned.checkpoint.sha256];
-    pruned.measures.merge(all);  // keeps the digests of the later event
+    pruned.measures.merge(all);  // if both events have a digest, keeps the later one
     all = std::move(pruned.measures);
   }
   if (!entry->second.facts.drive) return;

@@ -27,8 +27,8 @@ class MeasureSources {
   /// run to another function. After that, any number of threads may call the other functions.
   void read_run(const std::string& run);
 
-  /// The earlier checkpoint of the same run that the provider needs. Null if it is not recorded, or
-  /// if it is at a whole cycle that `every` does not divide. Valid as long as this object exists.
+  /// The earlier checkpoint of the same run that the provider needs. Null if it was never recorded,
+  /// or if its cycle is whole but not a multiple of `every`. Valid as long as this object exists.
   const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
                                   std::uint64_t every) const;
 
@@ -38,16 +38,16 @@ class MeasureSources {
                  std::uint64_t every) const;
 
   /// Whether a cached object has the digest that was logged when the checkpoint was pruned. True if
-  /// the log has no digest for the whole checkpoint; empty if it has digests for other objects of
-  /// the checkpoint, but not for this one.
+  /// the log has no digests for this checkpoint. Empty if the log has digests for this checkpoint,
+  /// but none of them is for this object.
   std::optional<bool> is_as_pruned(const CheckpointRecord& record,
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< measures in the log; of these, not cached
+    std::size_t named = 0, absent = 0;  ///< measures with a digest in the log; absent: not cached
     std::string altered;  ///< message about a measure that differs from the log, or ""
   };
-  /// Compares the cached measures of a pruned checkpoint with the log.
+  /// Compares the cached measures of a pruned checkpoint with the digests in the log.
   PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;
 
   /// Checkpoint intervals [cycles] of the experiments that use the run; 1 is always included.
@@ -77,7 +77,7 @@ class MeasureSources {
   struct Run {
     RunFacts facts = {};
     std::set<std::uint64_t> cadences = {1};
-    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; empty if not a shear
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; only for a shear
     std::map<std::string, Digests> digests = {};                 // by SHA-256 of the checkpoint
   };
 

@@ -24,8 +24,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // longest checkpoint list, even for a forged store
-constexpr double kMostCounted = 10'000;         // largest exact count of future checkpoints
+constexpr std::size_t kMostListed = 1'000'000;  // maximum length of a list; a store may be forged
+constexpr double kMostCounted = 10'000;         // larger numbers of checkpoints are estimated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
@@ -34,13 +34,13 @@ std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   throw StoreDamaged(fmt::format("run {:.8}: invalid `until`: {}", stage.id, problem.what()));
 }
 
-/// The part of Outlook::ended that was read from a recorded completion.
+/// The contents of a recorded Outlook::ended.
 struct EarlyEnd {
   Until until;
   double reached = 0;  ///< the cycle at which `until` was reached
 };
 
-/// Empty if the stage did not end by `until`, or if this program cannot read the record.
+/// Empty if `until` did not end the stage, or if this program cannot read the record.
 std::optional<EarlyEnd> early_end(const json& ended) {
   const json measure = member_of(ended, "measure"), cycle = member_of(ended, "reached_at_cycle");
   if (member_of(ended, "by") != "until" || !measure.is_string() || !cycle.is_number()) return {};
@@ -62,11 +62,11 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
   return std::nullopt;
 }
 
-/// Where a stage ends for a single Ask (what one experiment wants of the stage).
+/// Where a stage ends if only one Ask (the request of one experiment) is considered.
 struct End {
-  double cycle = 0;                             ///< the ask's target_cycles, or an earlier cycle
+  double cycle = 0;                             ///< Ask::target_cycles, or an earlier cycle
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
-  const CheckpointRecord* undecided = nullptr;  ///< first checkpoint that may reach `until`
+  const CheckpointRecord* undecided = nullptr;  ///< first unmeasured checkpoint
 };
 
 End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord> checkpoints,
@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // For an ask that exceeds the stage's target, the checkpoints must be measured.
+      // If the request exceeds the stage's target, the recorded end is not used: measure first.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -92,14 +92,14 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     break;
   }
   if (end.reached) {
-    // The stage ends at its first checkpoint at or after cycle `last`.
+    // The stage ends at the first regular checkpoint at or after cycle `last`.
     const double last = *end.reached + static_cast<double>(until->extra_cycles);
     end.cycle = std::min(end.cycle, std::ceil(last / every) * every);
   }
   return end;
 }
 
-/// Whether the completed stage is long enough for `ask` because a recorded ask is at least as long.
+/// Whether the stage is completed and long enough for `ask` because a recorded request includes it.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -109,7 +109,7 @@ bool is_covered(const Stage& stage, const Ask& ask) {
 }
 
 /// Sets the outlook's `end`, `may_end_early`, `ended` and `undecided`. Returns whether the stage is
-/// long enough for every ask.
+/// long enough for all requests.
 bool find_end(const Stage& stage, std::span<const Ask> asks,
               std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures,
               Outlook& look) {
@@ -141,16 +141,17 @@ bool find_end(const Stage& stage, std::span<const Ask> asks,
   return long_enough;
 }
 
-/// Estimated simulated time [s] in which a packing settles. Within a third of the measured times:
-/// 0.9, 1.1, 1.6 and 2.8 s at N = 600, 2000, 5200 and 18200.
+/// Estimated simulated time [s] in which a packing settles. The estimate differs by less than a
+/// third from measured times: 0.9, 1.1, 1.6 and 2.8 s at N = 600, 2000, 5200 and 18200.
 double settling_time_s(const Parameters& p) {
   const double height = p.height_over_width * cell_width(geometry(p));
   const double time = 0.6 + 0.00175 * height * height;
   return std::min(std::max({time, damping_time_s(p), pressing_time_s(p)}), p.settle_time_limit_s);
 }
 
-/// Estimated force evaluations of one minimization at the default tolerance. Within a sixth of the
-/// means of the nine minimizations of B.2: 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
+/// Estimated number of force evaluations of one minimization at the default tolerance. Differs by
+/// less than a sixth from the measured means of nine minimizations in a stiffening (supplement
+/// B.2): 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
 double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }
@@ -299,8 +300,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Computes the measures that the `until` of these asks need, for `first` and further checkpoints
-/// at whole cycles (one checkpoint per worker), and adds them to `measures`.
+/// Adds to `measures` the measures that the `until` of these requests need: those of `first` and of
+/// the next checkpoints at whole cycles, at most one checkpoint per worker.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {
@@ -336,8 +337,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The largest number of cycles that an ask without this `until` demands and the stage has reached;
-/// 0 if there is none. Considers only asks that were recorded when the stage ended.
+/// The largest number of cycles that was requested without this `until` and that the stage has
+/// reached; 0 if there is none. Considers only requests that were recorded when the stage ended.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -405,7 +406,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options) {
-  // If the stage has a single ask, no other experiment has continued it beyond `until`.
+  // If only one experiment uses the stage, no other experiment has continued it beyond `until`.
   if (stage.memberships.size() < 2 || ask.until.is_null()) {
     return static_cast<double>(ask.target_cycles);
   }
@@ -471,8 +472,8 @@ std::optional<double> expected_end(std::span<const Stage> stages, const json& un
 
 namespace {
 
-// Rates [particle-steps/s] that are assumed until the store has measured rates. `bench speed` gave
-// them with rough cells on one core of an EPYC (Zen 4). LAMMPS: 29 Sep 2021 (SCALING.md).
+// Rates [particle-steps/s] that are assumed if the store has no measured rates. `bench speed` with
+// rough cells measured them on one core of an EPYC (Zen 4). LAMMPS (29 Sep 2021): SCALING.md.
 struct MeasuredRate {
   double grains, rate;
 };
@@ -491,7 +492,7 @@ double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
   return rates.back().rate;
 }
 
-// Measured size [bytes] of a checkpoint file: for each grain, for each wall grain, and the rest.
+// Measured size [bytes] of a checkpoint file: per grain, per wall grain, and a constant part.
 constexpr double kBytesPerGrain = 121;
 constexpr double kBytesPerWallGrain = 98;
 constexpr double kBytesPerFile = 18e3;

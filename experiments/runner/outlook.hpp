@@ -28,11 +28,11 @@ namespace shearcell {
 using KnownMeasures = std::map<std::string, Measures>;
 
 struct Outlook {
-  /// The stage is completed, is long enough for all asks, and lacks no checkpoint.
+  /// Whether the stage is completed, is long enough for all requests, and lacks no checkpoint.
   bool done = false;
-  /// Steps, ascending, of checkpoints that an experiment asks for and that were not recorded when
-  /// the stage passed these steps. A replay can compute them. Empty for LAMMPS, whose runs cannot
-  /// be replayed bit for bit.
+  /// Steps, ascending, at which an experiment requests a checkpoint, but which the stage has passed
+  /// without recording a checkpoint. A replay can compute these checkpoints. Empty for LAMMPS,
+  /// whose runs cannot be replayed bit for bit.
   std::vector<std::uint64_t> missing = {};
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
@@ -43,7 +43,7 @@ struct Outlook {
   /// `until` did. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
   /// "memberships"}.
   nlohmann::json ended = nullptr;
-  /// The first checkpoint that may have reached an `until`, but whose measures are unknown.
+  /// The first checkpoint with unknown measures that may have reached an `until`.
   std::optional<CheckpointRecord> undecided = {};
   // The remaining work: upper bounds for a shear, estimates for other kinds of stages.
   double checkpoints = 0;
@@ -54,12 +54,12 @@ struct Outlook {
   std::string unreadable = {};
 };
 
-/// Finds what remains to be computed of a stage for `asks` (Ask: what an experiment wants of a
-/// stage). `stage`: a recorded or a new stage; its recorded asks may differ from `asks`.
-/// `checkpoints`: all checkpoints of the stage except rejected ones, by step (Listed::and_pruned).
-/// A completed stage is also long enough for an ask if a recorded ask has the same `until`, at
-/// least as many cycles, and a `checkpoint_every` that is a multiple of the ask's. Throws
-/// StoreDamaged if an ask is invalid.
+/// Finds what remains to be computed of a stage for `asks` (Ask: the request of an experiment).
+/// `stage`: a recorded or a new stage; its recorded requests may differ from `asks`. `checkpoints`:
+/// all checkpoints of the stage except rejected ones, by step (Listed::and_pruned). A completed
+/// stage is also long enough for a request if the request has an `until` and a recorded request
+/// has the same `until`, at least as many cycles and a multiple of the requested
+/// `checkpoint_every`. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -67,34 +67,34 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// When checkpoints of a shear are due, for each ask with at least one cycle. Throws StoreDamaged.
+/// When checkpoints of a shear are due, for each request of at least one cycle. Throws
+/// StoreDamaged if a request is invalid.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
-/// The checkpoints of a stage that asks want: at the intervals, the phases and the last cycle of
-/// each ask. Checkpoints that were recorded only because of an interruption or another experiment
-/// are excluded, so that figures and tables do not depend on them.
+/// The requested checkpoints of a stage: those at the intervals, the phases and the last cycle of
+/// each request. Checkpoints that were recorded only because of an interruption or another
+/// experiment are excluded, so that figures and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
-  /// Steps, ascending, of missing checkpoints before the stage's last checkpoint; at most a
-  /// million.
+  /// Steps, ascending, of missing checkpoints that the stage has passed; at most a million.
   std::vector<std::uint64_t> missing = {};
   double to_come = 0;  ///< number of checkpoints not reached yet; an estimate if above 10,000
 };
 
-/// The checkpoints that asks want from cycle `first` to `last`. `checkpoints`: as for outlook(). If
-/// the stage is not a shear or `asks` is empty, returns all checkpoints at whole cycles.
+/// The checkpoints that `asks` request from cycle `first` to `last`. `checkpoints`: as for
+/// outlook(). If the stage is no shear or `asks` is empty, returns those at whole cycles.
 AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
                                    std::span<const CheckpointRecord> checkpoints, double first = 0,
                                    double last = StoreLimits::cycles);
 
-/// The longest interval [cycles] that divides the checkpoint intervals of all asks.
+/// Greatest common divisor of the checkpoint intervals [cycles] of all requests.
 std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
 // --- Outlooks of the stages of a store or a plan ---
 
-/// outlook() for all recorded asks, without measuring anything: an `until` counts as reached only
-/// if a completion recorded it. If an ask cannot be read, Outlook::unreadable says why.
+/// outlook() for all recorded requests, without measuring anything: an `until` counts as reached
+/// only if this was recorded. If a request cannot be read, sets Outlook::unreadable.
 Outlook look_at(const Store& store, const Stage& stage);
 
 /// A stage of one or more plans, with the store's records of this stage.
@@ -110,20 +110,19 @@ struct PlannedStage {
 /// null. Throws StoreDamaged like outlook().
 std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* store);
 
-/// outlook() with the measures that decide where `until` ends the stage. While a checkpoint is
-/// undecided, its measures are read from the cache, or computed and cached, and added to
-/// `measures`. Throws FilePruned or StoreDamaged, with the remedy, if a checkpoint that may end the
-/// stage cannot be read.
+/// outlook() with all measures that decide where `until` ends the stage. Missing measures are read
+/// from the cache, or computed and cached, and added to `measures`. Throws FilePruned or
+/// StoreDamaged, with the remedy, if a checkpoint that may end the stage cannot be read.
 Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const Ask> asks,
                          std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
                          const MeasureOptions& options);
 
-/// The cycle at which the stage ends if only this ask counts (Outlook::end). Throws like
+/// The cycle at which the stage ends if only this request is considered (Outlook::end). Throws like
 /// measured_outlook().
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that at least one ask wants, up to end_for() of the ask.
+/// The recorded and pruned checkpoints that `asks` request, each request up to its end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
@@ -154,7 +153,7 @@ double checkpoint_bytes(const Geometry& shape);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
-  bool measured;                     ///< whether it was measured in this store's runs
+  bool measured;                     ///< whether the rate was measured in these runs
 };
 
 /// Mean rates of recorded runs [particle-steps/s].
@@ -162,8 +161,8 @@ class Rates {
  public:
   explicit Rates(const std::vector<Stage>& stages);
 
-  /// The mean rate of the stage's engine in these runs. Without such runs, a rate that was measured
-  /// on another machine for this number of grains.
+  /// The mean rate of the stage's engine in these runs. If they took less than 1 s, a rate that was
+  /// measured on another machine for about this number of grains.
   Rate of(const Stage& stage) const;
 
  private:
@@ -179,7 +178,7 @@ struct Work {
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
-  double longest_seconds = 0;                ///< longest time of a stage including its parents
+  double longest_seconds = 0;                ///< longest time [s] of a stage and its parents
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< whether all rates were measured
   std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by stage id

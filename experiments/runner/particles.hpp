@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All particles of a state, including wall grains, and the cell, in units that the caller chooses.
-// For exports and LAMMPS.
+// Used for exports and for LAMMPS.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,15 +25,15 @@ struct Particles {
   double mass = 0;                  ///< of every grain
   Eigen::Matrix3Xd position;        ///< z is wrapped into the cell
   Eigen::Matrix3Xd velocity;        ///< a wall grain has the velocity of its wall
-  std::vector<std::int32_t> image;  ///< number of periods that unwrap z
+  std::vector<std::int32_t> image;  ///< number of periods that must be added to unwrap z
   std::vector<std::int32_t> type;   ///< 0 grain; wall grain: 1 left, 2 right, 3 bottom, 4 top
 
   std::size_t particles() const { return type.size(); }
 };
 
-/// `units`: diameter and mass of a grain in the units of the result. `shear_rate`: change of
-/// tan(theta) [1/s]. A wall grain at y is displaced by x = (y - y_top) tan(theta); its velocity
-/// follows from `shear_rate` and the moving wall.
+/// `units`: diameter and mass of a grain in the units of the result. `shear_rate`: time derivative
+/// of tan(theta) [1/s]. A wall grain at y is displaced by x = (y - y_top) tan(theta). Its velocity
+/// follows from `shear_rate` and the velocity of the moving wall.
 Particles particles_of(const Cell& cell, const WallPose& pose, const State& state,
                        double shear_rate, const Units& units);
 

@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// Used instead of the manifest in the Group of a packing, because the packings of all versions of
-// an experiment are named together.
+// Replaces the manifest in the Group of a packing. Thus packings of different versions of an
+// experiment are in one group and get different names.
 const std::string kPackings = "packings";
 
 /// All registered manifests, oldest first. A manifest appears twice if it was registered again
@@ -19,7 +19,7 @@ const std::string kPackings = "packings";
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");
-  // The log of a merged store is not in the order of time.
+  // The log of a merged store is not in chronological order.
   std::ranges::stable_sort(events, {}, &Event::recorded_at);
   for (const Event& event : events) {
     auto registered = std::get<events::ManifestRegistered>(events::decode(event));

@@ -22,7 +22,7 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of the variants of stages, from variant_names() for each manifest. A settled
+/// Display names of variants. variant_names() gives the names for each manifest. A settled
 /// packing is called "packing". If an experiment has different packings at one scale, the values
 /// that differ are added: "packing N=600".
 class VariantNames {
@@ -30,12 +30,12 @@ class VariantNames {
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// The display name of a stage at a place in an experiment; place.variant if no name is known.
+  /// The display name of a stage in the experiment and scale of `place`. If unknown, place.variant.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:
   using Group = std::tuple<std::string, std::string, std::string>;  // experiment, manifest, scale
-  /// The group in which the run's name must be unique, and the run's values within this group.
+  /// The group in which names must be unique, and the values that determine the run's name.
   static std::pair<Group, nlohmann::json> key_of(const Stage& stage, const Place& place);
 
   std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by the run's values

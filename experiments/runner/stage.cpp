@@ -73,8 +73,8 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
-// The watchdog's overlap limit [d]: the largest limit in the stage's manifests, with `otherwise`
-// for a manifest without a limit. The limit is not part of the run's id (see declare()).
+// The watchdog's overlap limit [d]: the largest limit in the manifests that use the stage. A
+// manifest without a limit counts as `otherwise`. The limit is not part of the run's id.
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {
@@ -238,8 +238,8 @@ class Engine {
   /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. A checkpoint is due afterwards, unless LAMMPS does not
-  /// answer. In this case the steps since the last checkpoint are lost.
+  /// Stops before the end of the stage. Afterwards a checkpoint is due. But if LAMMPS does not
+  /// answer, no checkpoint is due, and the steps since the last checkpoint are lost.
   virtual StageProgress halt() = 0;
 
   /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.
@@ -350,7 +350,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // Makes the frame the newest state. The watchdog checks it in our own engine, after one step.
+  // Makes the frame the newest state. Computes one step with our engine for the watchdog's checks.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -426,7 +426,7 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // This completion is valid for all memberships, including those declared after the stage ended.
+    // This completion is valid for all experiments, also for those declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -528,7 +528,7 @@ class StageAttempt {
     const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
     if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
     const nlohmann::json ended = measured_outlook(store_, now, asks, seen_, measures_, {}).ended;
-    recorded_.restart();  // the time of measuring is not part of the effort
+    recorded_.restart();  // excludes the time of measuring from the recorded effort
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }
@@ -583,7 +583,7 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// Whether the newest checkpoint can be read or was pruned. run_stage() reports a damaged one.
+// Whether the newest checkpoint can be read or was pruned. run_stage() reports damage.
 bool newest_is_sound(const Store& store, const Stage& stage) {
   const auto found = store.checkpoints(stage.id, Listed::and_pruned);
   return !found.empty() &&

@@ -17,7 +17,7 @@
 namespace shearcell {
 
 struct Parallel {
-  std::size_t threads = 1;  ///< of this program's engine; the results do not depend on it
+  std::size_t threads = 1;  ///< of this program's engine; results do not depend on the number
   std::size_t ranks = 1;    ///< LAMMPS processes; if more than one, they run under mpirun
 };
 
@@ -28,7 +28,7 @@ enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed
 struct StageOptions {
   Parallel parallel = {};
   bool restores = true;  ///< recompute a pruned checkpoint if the stage needs its file
-  std::function<void(const std::string&)> damaged = {};  ///< called for each skipped checkpoint
+  std::function<void(const std::string&)> damaged = {};  ///< called for each damaged checkpoint
   std::function<void()> begun = {};                      ///< called after the start is recorded
   /// Called if the stage continues from a state that this program cannot repeat bit for bit.
   std::function<void(const std::string&)> continuing = {};
@@ -39,14 +39,14 @@ struct StageOptions {
 };
 
 /// Computes the stage `id` up to its target, and then its missing earlier checkpoints. Starts from
-/// the newest valid checkpoint. Without one, starts from the last state of the parent, or fills a
-/// new cell. If the starting state was pruned, its file is restored first. About every 50 ms,
+/// the newest valid checkpoint. Without one, starts from a state of the parent, or fills a new
+/// cell. If the starting state was pruned, its file is restored first. About every 50 ms,
 /// checks stop_requested() and whether this program still holds the stage. If a stop is requested
 /// while the cell is filled, nothing is recorded. Throws before anything is recorded: StoreDamaged
-/// if the parent is not completed, its last state cannot be read, or the recorded parameters do not
-/// give the id; NotFound if the starting state was never recorded; FilePruned if it was pruned and
-/// cannot be recomputed; GeometryError if the cell cannot be filled; TooLittleMemory; ProgramError
-/// if the stage's engine is not installed.
+/// if the parent packing is not completed, the starting state is damaged, or the recorded
+/// parameters do not give the id; NotFound if the starting state was never recorded; FilePruned if
+/// it was pruned and cannot be recomputed; GeometryError if the cell cannot be filled;
+/// TooLittleMemory; ProgramError if the stage's engine is not installed.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is done (Outlook::done) and its last checkpoint can be read or was pruned.
@@ -59,7 +59,7 @@ std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& 
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< where the replay began; the states agree there
+  std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
   std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
   /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
   /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
@@ -76,7 +76,7 @@ struct Replay {
   std::optional<CheckpointRecord> from = {};  ///< empty if the replay began at step 0
   std::uint64_t steps = 0;                    ///< number of recomputed steps
   std::optional<Divergence> divergence = {};
-  bool interrupted = false;  ///< by a signal; there is no result, and nothing was recorded
+  bool interrupted = false;  ///< whether a signal stopped the replay; then nothing is recorded
 };
 
 /// Why this program cannot recompute the checkpoint bit for bit; empty if it can. `known` caches
@@ -87,12 +87,12 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 /// Recomputes a checkpoint from the nearest earlier checkpoint whose file exists, or from the
 /// beginning of the stage. Compares the state and the numbers that are recorded with it (cycle,
 /// time, tilt, observables), and records ReplayVerified or ReplayDiverged. Throws FilePruned if the
-/// replay needs the parent's state from which the stage starts and this state was pruned.
+/// replay would have to start from a state of the parent that was pruned.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// Like verify_by_replay(), but restores the file of a pruned, missing or damaged checkpoint with
-/// the same SHA-256, and the file of the parent's state if the replay needs this state and it was
-/// pruned. If the bytes differ, records ReplayDiverged and writes no file.
+/// the same SHA-256. If the replay starts from a pruned state of the parent, restores the file of
+/// this state first. If the bytes differ, records ReplayDiverged and writes no file.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -28,7 +28,7 @@ struct Character {
   std::size_t columns = 1;
 };
 
-/// The first character of a non-empty UTF-8 text, independent of the program's locale.
+/// Size of the first character of a non-empty UTF-8 text. Does not depend on the program's locale.
 Character first_character(std::string_view text) {
   static const locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
   const locale_t before = utf8 == nullptr ? nullptr : uselocale(utf8);
@@ -82,7 +82,7 @@ std::string_view first_columns(std::string_view text, std::size_t count) {
 }
 
 std::string filled(std::string_view help, std::size_t width) {
-  constexpr std::size_t kNarrowest = 24;  // least width of the last column
+  constexpr std::size_t kNarrowest = 24;  // minimum width of the last column
   std::vector<std::string> paragraphs;
   std::istringstream lines{std::string(help)};
   bool goes_on = false;  // whether the next line may continue the paragraph

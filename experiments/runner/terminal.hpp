@@ -49,7 +49,7 @@ void print_text(fmt::format_string<Arguments...> format, Arguments&&... argument
 /// a full disk must not end a campaign.
 void write_stderr(std::string_view text) noexcept;
 
-/// print_text() to standard error, with write_stderr().
+/// Like print_text(), but writes to standard error and ignores failed writes.
 template <typename... Arguments>
 void print_stderr(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));

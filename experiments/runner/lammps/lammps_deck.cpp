@@ -18,7 +18,7 @@
 namespace shearcell {
 namespace {
 
-// Atom types: Particles::type + 1; the last type is the atom of the moving wall.
+// Atom types: Particles::type + 1. kWall is the type of the atom that represents the moving wall.
 enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
 constexpr const char* kSides[] = {"left", "right", "bottom", "top"};
 
@@ -73,7 +73,7 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // Relative increase of a grain's mass that makes a drag of rate b/m [1/s] implicit: b dt/2m.
+  // A drag of rate b/m [1/s] becomes implicit if a grain's mass is increased by this part: b dt/2m.
   double added(double drag) const {
     return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
   }
@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // LAMMPS creates no atom outside the atoms' box, so this atom begins at a grain's x and y.
+    // LAMMPS creates no atom outside the box, so the wall's atom begins at x and y of a grain.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
@@ -134,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // The tilt depends on the step number. One plane has the height of the moving wall's atom.
+  // The moving plane has the height of the moving wall's atom. The tilt depends on the step number.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
@@ -157,21 +157,21 @@ pair_coeff * * ${{law}})",
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Moves the wall grains of a group. In x, the variable `x` is the displacement from the positions
-  // in the data file, and `vx` is the velocity. In y, a group that `rises` follows the moving wall.
+  // Moves the wall grains of a group. `x` and `vx` name the LAMMPS variables of the displacement
+  // (from the data file) and the velocity along x. If `rises`, grains follow the moving wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
   }
 
-  // The wall's atom moves first, because the wall grains follow its height.
+  // LAMMPS moves the wall's atom first, because wall grains follow the height of this atom.
   void motion() {
     add(text_,
         "\n# Velocity Verlet for grains and the moving wall. Wall grains follow their walls.");
     add(text_, "fix step free nve/sphere\nvariable zero equal 0");
     const double top = pose_.top * d_, shear = pose_.tan_theta;
-    // The side walls tilt about the top. If the top rises, points on a side move in x with the
-    // velocity -v_rising tan(theta).
+    // The side walls tilt about the top. If the top rises, all points of the side walls also move
+    // along x with the velocity -v_rising tan(theta).
     const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
     if ((has(WallSide::left) || has(WallSide::right)) && shears_) {
       add(text_, "variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
@@ -190,8 +190,9 @@ pair_coeff * * ${{law}})",
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
-  // A side plane turns about its upper end. Regions move relative to the pose at the start. Bottom
-  // and top use wall/harmonic, because fix wall/region reports its force for the first step only.
+  // A side plane turns about its upper end. The motion of a region is relative to the initial pose.
+  // In the engine's deck, the bottom and top planes use wall/harmonic, because fix wall/region
+  // reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -264,7 +265,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
                    : fmt::format("{:.17g}+f_{}_plane[1]", load + grains * carried * m_, moving);
     if (has(moving_side(cell_))) force += fmt::format("+fcm({},y)", moving);
     if (holds_) {
-      // This force and the drag stop the wall within one step.
+      // In a pause, this force and the drag stop the wall within one step.
       force = fmt::format("({0})*(v_phase<{1})+({2:.17g}-mass(wall)/dt)*vy[{3}]*(v_phase>={1})",
                           force, task_.drive.steps_per_cycle, scene_.wall_drag * area_ * m_, wall_);
     }
@@ -315,8 +316,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Output during one cycle, or during one second for a packing. Defined before the first `run`:
-  // later definitions need a second setup, which would compute the drag from changed velocities.
+  // Output during one cycle, or during one second for a packing. It is defined before the first
+  // `run`: otherwise a second setup would be needed and would use changed velocities for the drag.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes a state and its scene as a data file and an input deck for LAMMPS, and reads frames from
-// LAMMPS. README.md lists how each part of the scene is written, and why every mass is raised by b
-// dt/2.
+// LAMMPS. README.md explains how each part of the scene is written, and why masses are increased.
 #pragma once
 
 #include <cstdint>
@@ -47,9 +46,9 @@ std::string lammps_script(const LammpsTask& task, std::string_view data, std::st
 /// Size limit [bytes] for files that LAMMPS writes, far above their usual sizes.
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
-/// Reads a frame. Ids from 1 to `grains` belong to grains; one larger id belongs to the moving
-/// wall. Throws ProgramError, with the file's name, unless the file is a complete state of this
-/// number of grains.
+/// Reads a frame. Ids from 1 to `grains` belong to grains; the atom with a larger id represents the
+/// moving wall. Throws ProgramError, with the file's name, unless the file contains the complete
+/// state of `grains` grains.
 State read_lammps_frame(const std::filesystem::path& file, std::size_t grains);
 
 }  // namespace shearcell

@@ -34,8 +34,8 @@ std::string last_line(std::string_view text) {
   return std::string(newline == text.npos ? text : text.substr(newline + 1));
 }
 
-// Environment variables for LAMMPS and MPI, except those that are already set. Without them, Open
-// MPI would bind all runs on a machine to the same cores, and would keep cores busy while it waits.
+// Environment variables for LAMMPS and MPI that are not set yet. Without these variables, Open MPI
+// would bind all runs on a machine to the same cores, and waiting processes would keep cores busy.
 std::vector<std::string> variables() {
   std::vector<std::pair<std::string, std::string>> all = {
       {"OMP_NUM_THREADS", "1"},

@@ -42,7 +42,7 @@ class LammpsRun {
   /// Starts LAMMPS in a temporary folder with start_lammps().
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// Waits at most `patience` for the next frame; empty if there is none by then. Throws
+  /// Waits at most `patience` for the next frame; empty if none was written in this time. Throws
   /// ProgramError, with the message of LAMMPS, if LAMMPS has ended without another frame.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
@@ -52,7 +52,7 @@ class LammpsRun {
   /// The newest step in LAMMPS's log.
   std::uint64_t step();
 
-  /// Processor time of LAMMPS [s]; empty under mpirun, whose processes cannot be measured here.
+  /// Processor time of LAMMPS [s]; empty under mpirun, because the time is then not accessible.
   std::optional<double> core_seconds() const {
     return ranks_ > 1 ? std::nullopt : std::optional(process_->core_seconds());
   }
@@ -65,7 +65,7 @@ class LammpsRun {
   std::size_t grains_;
   std::size_t ranks_;
   std::uint64_t step_;
-  std::unique_ptr<ChildProcess> process_;  // last member: ends before folder_ is deleted
+  std::unique_ptr<ChildProcess> process_;  // last member: destroyed before folder_
 };
 
 }  // namespace shearcell
