@@ -24,7 +24,7 @@ inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
 struct PackingFile {
-  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; if there is a box, z is inside
+  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z is inside the box, if any
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in our exports, the wall planes
   LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
@@ -33,7 +33,7 @@ struct PackingFile {
 
 /// What the manifest and the parameters of the run say about a file.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< of lengths, if the file states none
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file states none
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };

@@ -25,8 +25,8 @@ struct Identity {
   /// The record omits the parameter if it has this value, written as in a manifest. All runs that
   /// are older than the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};
-  /// Every new record holds this value, whatever the value of the parameter. For a parameter that
-  /// is no longer part of the identity; records of older runs may hold other values.
+  /// Every new record holds this value, whatever the value of the parameter, because the parameter
+  /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
   /// No record holds the parameter: it selects the parent stage, whose id is in the record.
   bool selects_parent = false;
@@ -56,7 +56,7 @@ struct Field {
   std::span<const std::string_view> names = {};  ///< the values of a choice
   std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
-  std::span<const std::string_view> terms = {};  ///< names in expressions; empty: takes none
+  std::span<const std::string_view> terms = {};  ///< names for expressions; empty: none allowed
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
