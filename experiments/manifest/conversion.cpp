@@ -13,7 +13,8 @@
 namespace shearcell {
 namespace {
 
-/// Number (>= 1) of time steps in `duration`, at Table I's fraction of the stability limit.
+/// Number (>= 1) of time steps in `duration`. As in Table I, the time step is 0.3547 of the
+/// stability limit.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);

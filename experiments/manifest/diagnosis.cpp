@@ -71,7 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value that the manifest states for `key`, which is a parameter or "settle.PARAMETER".
+  // The value that the manifest states for `key` (a parameter or "settle.PARAMETER"), or null.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -262,7 +262,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // By the name as a reader sees it (as_seen()): the name itself, and its label or null.
+    // Maps as_seen(name) to the name and its label, which is null for a name without a label.
     std::map<string, std::pair<string, const VariantLabel*>> named;
     for (const json& variant : variants) {
       const string& name = names.at(variant);
@@ -399,7 +399,7 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   return advice;
 }
 
-// Adds the warnings about parameter values. Each warning appears once and names all its variants.
+// Adds the warnings about parameter values, each once, with the variants that it concerns.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::size_t seeds,
                         std::vector<string>& warnings) {
@@ -595,7 +595,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
 }
 
 struct ClaimProblems {
-  std::vector<string> refusals;  // why `shearcell figures` will refuse it
+  std::vector<string> refusals;  // why `shearcell figures` will refuse the claim
   std::vector<string> lacks;     // why the claim will be undecided
 };
 

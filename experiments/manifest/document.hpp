@@ -55,9 +55,9 @@ std::string without_controls(std::string_view text);
 /// Like without_controls(), but keeps line feeds.
 std::string for_terminal(std::string_view text);
 
-/// The text as a reader sees it, for comparing names: characters composed (Unicode NFC), invisible
-/// characters removed, each run of blanks as one space, no blanks at the ends, and characters that
-/// look alike, such as minus and hyphen, replaced by one of them. "" if nothing is visible.
+/// The text as a reader sees it, for comparing names. Composes characters (Unicode NFC), removes
+/// invisible characters and outer blanks, makes each run of blanks one space, and replaces similar
+/// characters, such as minus and hyphen, by one of them. Returns "" if nothing is visible.
 std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

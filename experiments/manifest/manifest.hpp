@@ -89,8 +89,8 @@ struct SweepAxis {
   std::vector<Setting> values;
 };
 
-/// The variants: each combination of values of the `grid` axes (the first axis varies slowest) with
-/// each row of values of the `zip` axes (which advance together).
+/// The variants are all combinations of the values of the `grid` axes (the first axis varies
+/// slowest) and the rows of the `zip` axes (which advance together).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;

@@ -28,8 +28,8 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can contain. In a column kWall, 0 or the first type marks a grain, and a larger
-/// value marks a wall grain.
+/// What a column can contain. In a kWall column, the value 0 or the first type marks a grain, and a
+/// larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
@@ -566,7 +566,7 @@ class PackingReader {
     read_rows();
   }
 
-  /// Sets the unit of lengths from the value of a key. The value "lj" leaves the unit open.
+  /// Sets the unit of lengths from the value of a key. The value "lj" sets no unit.
   void take_unit(const char* key, string_view text) {
     const string unit = lower(text);
     if (unit == "lj") return;

@@ -41,10 +41,10 @@ struct PackingFacts {
 /// Largest allowed size of a file [bytes].
 inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
-/// Reads a text in the format that its content shows. `file`: the name for messages. Positions are
-/// not changed, except that z is wrapped into the box. Throws ManifestError, with line, value and
-/// remedy, if the text is not a packing of equal grains inside its box, or if two grains (with a
-/// box, also across the periodic boundary) overlap by more than facts.largest_overlap.
+/// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
+/// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
+/// text is not a packing of equal grains inside its box, or if two grains overlap by more than
+/// facts.largest_overlap. If there is a box, overlaps across the periodic boundary are included.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

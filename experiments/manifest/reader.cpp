@@ -243,8 +243,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "name of a figure. Plots with this name are its panels (a), (b), ..., and claims "
-                "with this name are its claims. It has one caption. Default: a separate figure"});
+         .doc = "name of a figure. Plots that state the same figure are its panels (a), (b), ..., "
+                "with one caption. Claims can state it too. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
@@ -953,7 +953,7 @@ struct Reader {
     return true;
   }
 
-  // Reads the parameters of `base` or `settle`. A key of `start` is the parameter start_KEY.
+  // Reads the parameters of `base` or `settle`. KEY of `start` sets the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
       const string key = "start_" + in.key;

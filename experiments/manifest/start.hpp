@@ -40,10 +40,10 @@ struct PlacedGrains {
   std::string read;  ///< what was read, from describe()
 };
 
-/// Places the grains of the text in the cell of the parameters, with the wall grains of the seed.
-/// The box of the file must be as wide and deep as the cell. Without a box, the grains must fit
-/// into the cell, and the bottom and top walls touch the outermost grains. Throws ManifestError
-/// with the reason and the remedy.
+/// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions
+/// of the wall grains. The box of the file must be as wide and deep as the cell. Without a box, the
+/// grains must fit into the cell, and the bottom and top walls touch the outermost grains. Throws
+/// ManifestError with the reason and the remedy.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 
