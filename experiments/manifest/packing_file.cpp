@@ -37,7 +37,7 @@ constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
 /// The meaning of a column's name. If several columns can give a quantity, the columns whose
 /// meaning has the lowest rank are read.
 struct Meaning {
-  string_view names;        ///< lower case; if count is 1, names mean `first`, `first` + 1, ...
+  string_view names;        ///< lower case; if `count` is 1, they mean `first`, `first` + 1, ...
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii

@@ -233,7 +233,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption states how many runs lack such a `y`",
+              "and cycle, is subtracted. The caption states how many runs have no `y` to subtract",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",

@@ -225,7 +225,7 @@ std::span<const Field> schema() {
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
-          "whether the moving wall is held at its height during a pause or moves under its load"),
+          "whether, during a pause, the moving wall is held at its height or moves under its load"),
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "number of shear cycles; a larger value extends a run"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
