@@ -13,7 +13,8 @@
 namespace shearcell {
 namespace {
 
-/// Number (>= 1) of time steps in `duration`, at Table I's ratio of time step to stability limit.
+/// Number (>= 1) of time steps in `duration`. As in Table I, the time step is 0.3547 of the
+/// stability limit.
 double auto_steps(double duration, const Parameters& p) {
   const Parameters table1;
   const double part = shear_time_step_s(table1) / stability_limit_s(table1);
@@ -22,7 +23,7 @@ double auto_steps(double duration, const Parameters& p) {
   return steps >= 1 ? std::min(steps, most) : 1;
 }
 
-// Weight per area of a column of the nominal height with 1.2 grains per d^3 [m/(d s^2)].
+// Weight of the grains per area [m/(d s^2)], for the nominal cell height and 1.2 grains per d^3.
 double column_weight(const Parameters& p) {
   constexpr double grains_per_d3 = 1.2;
   const double height = p.height_over_width * cell_width(geometry(p));

@@ -31,7 +31,7 @@ inline constexpr double kMostPauseSteps = 1e9;
 /// Duration of a pause in time steps of the shear, not rounded.
 double pause_time_steps(const Parameters& parameters);
 
-/// Length of the stage after settling: number of shear cycles or, for `stiffen`, of stiffnesses.
+/// Length of the stage after settling: number of cycles or, for `stiffen`, number of stiffnesses.
 std::uint64_t target_cycles(const Parameters& parameters);
 
 Geometry geometry(const Parameters& parameters);
@@ -47,8 +47,8 @@ double stability_limit_s(const Parameters& parameters);
 bool depends_on_pressure_at(const Parameters& parameters);
 
 /// Whether the pressure under a moving bottom wall can carry the grains' weight: P d^2 > 1.2 (h/d)
-/// m g, with 1.2 grains per d^3. Also true for a moving top wall, which lifts no grains, and for
-/// `pressure_at: top`, where the load on the wall includes the grains' weight.
+/// m g, for 1.2 grains per d^3 and the nominal height h. Also true for a moving top wall, which
+/// lifts no grains, and for `pressure_at: top`, where the load includes the grains' weight.
 bool pressure_lifts_column(const Parameters& parameters);
 
 struct TimeStep {
@@ -75,16 +75,16 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
 /// packing with n grains per volume and z contacts per grain has the mean pressure p = n z k
 /// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.78 for n d^3 = 1.22 and z =
-/// 6.36 (found at N = 2000); because rough side walls bear a part of the pressure, 0.75 fits five
-/// settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
+/// 6.36 (for N = 2000). Rough side walls bear a part of the pressure, so 0.75 is used, which fits
+/// five settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
 /// weight per area if P acts on a moving bottom wall, P plus half this weight if P acts at the top.
 double expected_overlap(const Parameters& parameters);
 
 /// Time [s] after which drag has brought the grains to rest, 18 m/b; infinite without drag. The
 /// energy of weakly damped vibrations falls as exp(-b t/m), and must fall by a factor of about
 /// exp(18) to reach the default settle_kinetic_tolerance. At the time step of Table I, 300 grains
-/// take 18.8 s at m/b = 1 s and 3.0 s at m/b = 0.156 s. Larger time steps heat the grains (6.6 s at
-/// 0.81 of the stability limit).
+/// take 18.8 s at m/b = 1 s and 3.0 s at m/b = 0.156 s. Larger time steps heat the grains: at 0.81
+/// of the stability limit, the 3.0 s become 6.6 s.
 double damping_time_s(const Parameters& parameters);
 
 /// pressing_time() of protocols/settle.hpp [s]: the shortest time in which settling can end. If the

@@ -41,8 +41,8 @@ bool is_wide_enough(const Parameters& p) {
   return cell_width(geometry(p)) >= kShallowestCell;
 }
 
-/// "Use at least N grains." with the smallest N for which `enough` is true, or "Use more grains."
-/// if N is beyond the range of `grains`. `enough` must be true for all larger N.
+/// Returns "Use at least N grains." with the smallest N for which `enough` is true, or "Use more
+/// grains." if this N is beyond the range of `grains`. `enough` must be true for all larger N.
 string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
   const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
   std::uint64_t few = p.grains, many = most + 1;
@@ -71,7 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value that the manifest states for a parameter or "settle.KEY". Null if it states none.
+  // The value that the manifest states for `key` (a parameter or "settle.PARAMETER"), or null.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -103,14 +103,14 @@ struct VariantCheck {
     problems.add(at, key, problem, "", remedy);
   }
 
-  // The last key of the list that the manifest states; "" if it states none of them.
+  // The last of `keys` that the manifest states; "" if the manifest states none of them.
   string_view last_stated(std::initializer_list<string_view> keys) const {
     string_view last;
     for (const string_view key : keys) last = find(key) != nullptr ? key : last;
     return last;
   }
 
-  // Returns whether all numbers that were computed for `auto` are in range. Reports the others.
+  // Reports each number computed for `auto` that is out of range. Returns true if all are in range.
   bool autos_are_in_range() {
     bool sound = true;
     for (const auto& [key, setting] : scale.settings) {
@@ -241,8 +241,8 @@ bool is_formula(const string& text) {
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Checks that each label names a variant of some scale and has visible characters, and that the
-/// names of the variants of a scale look different.
+/// Checks that each label fits a variant of some scale and has visible characters, and that no two
+/// variants of one scale have names that look the same.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
@@ -262,7 +262,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // For each name as a reader sees it: the name itself, and its label or null.
+    // Maps as_seen(name) to the name and its label, which is null for a name without a label.
     std::map<string, std::pair<string, const VariantLabel*>> named;
     for (const json& variant : variants) {
       const string& name = names.at(variant);
@@ -291,8 +291,8 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
 }
 
-/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters: "has an
-/// effect only under protocol paused", for example. "" if it has an effect.
+/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters, such as
+/// "has an effect only under protocol paused". "" if the key has an effect.
 string without_effect(string_view key, const Parameters& p) {
   const Field* field = find_field(key);
   const Identity identity = field == nullptr ? Identity{} : field->identity;
@@ -399,7 +399,7 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   return advice;
 }
 
-// Adds each warning about parameter values once, with the variants that it concerns.
+// Adds the warnings about parameter values, each once, with the variants that it concerns.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::size_t seeds,
                         std::vector<string>& warnings) {
@@ -432,7 +432,7 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// Returns the largest b for which the column's value at cycle c needs the checkpoint at c - b.
+/// Number of cycles between a value of the column and the earliest checkpoint that it requires.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -449,8 +449,8 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles before it. All multiples of `every_cycles` give the same answer, so only the first
-// multiple, the first cycle and the last cycle are tried.
+// `back` cycles earlier. If the first multiple of `every_cycles` fails, all later multiples fail
+// too. So only this multiple, the first cycle and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
@@ -511,8 +511,8 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message about variants whose packings differ from the packings of the subtracted variant; ""
-/// if all packings are equal.
+/// A message about the variants that have other packings than the subtracted variant (`minus`); ""
+/// if all variants have the same packings.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -595,7 +595,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
 }
 
 struct ClaimProblems {
-  std::vector<string> refusals;  // why `figures` will refuse the claim
+  std::vector<string> refusals;  // why `shearcell figures` will refuse the claim
   std::vector<string> lacks;     // why the claim will be undecided
 };
 
@@ -617,7 +617,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
 }
 
 /// The plots or claims of the figures that the manifest lists, then the plots or claims of the
-/// manifest itself. Each comes with a prefix for messages: the place of its statement.
+/// manifest itself. Each is paired with the text that begins the messages about it.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -661,7 +661,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
     warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
   }
-  std::map<string, string> said;  // from the statement of a claim to its id
+  std::map<string, string> said;  // ids of claims, by statement
   std::vector<string> ids;
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
@@ -671,7 +671,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       // A claim of a listed figure may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
-      // Small scales are for trying out. Warn only if no other scale can decide the claim.
+      // Small scales are for trials, so warn only if no other scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);

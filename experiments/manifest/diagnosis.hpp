@@ -19,10 +19,10 @@ void check_variants(const Manifest& manifest);
 /// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// Warnings about the variants in `planned`, one line each: about parameters that make settling
-/// fail, are outside the advised range or have no effect on any variant; about figures, plots and
-/// claims that will have no data; and about entries of `primary` that are not ids of claims. `all`:
-/// all variants of the scale.
+/// Returns warnings about the variants in `planned`, one line each. They concern parameters that
+/// make settling fail, are outside the advised range, or have no effect on any variant; figures,
+/// plots and claims that will have no data; and entries of `primary` that are not ids of claims.
+/// `all`: all variants of the scale.
 std::vector<std::string> warnings_of(const Manifest& manifest, const Scale& scale,
                                      std::span<const Variant> all, std::span<const Variant> planned,
                                      std::size_t seeds);

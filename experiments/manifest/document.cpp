@@ -90,7 +90,7 @@ class TreeBuilder : public YAML::EventHandler {
   Node take() { return std::move(root_); }
 
   [[noreturn]] void refuse_reference(const YAML::Mark& mark) {
-    refuse(file_, position(mark), "", "is not an anchor, or an alias of an earlier anchor", "",
+    refuse(file_, position(mark), "", "is neither an anchor nor an alias of an earlier anchor", "",
            "Write the value out, and quote a text that begins with & or *.");
   }
 
@@ -109,7 +109,7 @@ class TreeBuilder : public YAML::EventHandler {
   // Adds a copy of the anchored value. The limits count the copy like a value that is written out.
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchored_.find(anchor);
-    if (known == anchored_.end()) refuse_reference(mark);  // an alias in the value that it names
+    if (known == anchored_.end()) refuse_reference(mark);  // an alias inside its own value
     check_size(known->second, position(mark), open_.size());
     add(known->second);
   }
@@ -191,7 +191,7 @@ class TreeBuilder : public YAML::EventHandler {
     anchored_[anchor] = node;
   }
 
-  // Counts the values and bytes of a copy, and checks the limits. `depth`: levels above the copy.
+  // Counts the values and bytes of a copy, and checks the limits. `depth`: depth of the copy.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     copied_ += node.text.size() + node.key.size();
@@ -263,7 +263,7 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-// Number of the first line up to `last` that is indented with a tab; 0 if there is none. The
+// Returns the first of the lines 1 to `last` that is indented with a tab, or 0 if none is. The
 // messages of yaml-cpp about such lines vary.
 int tab_indented_line(string_view text, int last) {
   for (int line = 1; line <= last && !text.empty(); ++line) {

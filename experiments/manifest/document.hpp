@@ -29,10 +29,10 @@ struct Node {
   const Node* find(std::string_view name) const;
 };
 
-/// Reads one YAML document within ManifestLimits, without tags and repeated keys. An alias becomes
-/// a copy of the anchored value, with the positions of the anchored value. Texts of nodes are
-/// UTF-8, and have no noncharacters of Unicode, no control characters other than line feeds and no
-/// characters that change the direction of text. Throws ManifestError.
+/// Reads one YAML document within ManifestLimits. Tags and repeated keys are errors. An alias
+/// becomes a copy of the anchored value, with the positions of the anchored value. Texts of nodes
+/// are UTF-8, and have no noncharacters of Unicode, no control characters other than line feeds and
+/// no characters that change the direction of text. Throws ManifestError.
 Node read_document(std::string_view text, std::string_view file);
 
 /// The remedy for a key that is a number: YAML reads `{amplitude_rad: 0,05}` as a map with key 05.
@@ -43,10 +43,9 @@ inline constexpr const char* kDecimalPoint =
 /// than tabs and line ends. `remedy` is for control characters.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Replaces by
-/// escapes such as \x1b or \u202e: control characters, characters that change the direction of
-/// text, bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the
-/// space.
+/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Escapes
+/// such as \x1b or \u202e replace control characters, characters that change the direction of text,
+/// bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the space.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text safe to print in a terminal. Escapes less than printable(): blanks and invisible
@@ -56,9 +55,9 @@ std::string without_controls(std::string_view text);
 /// Like without_controls(), but keeps line feeds.
 std::string for_terminal(std::string_view text);
 
-/// The text as a reader sees it, for comparing names: characters composed (Unicode NFC), invisible
-/// characters removed, each run of blanks as one space, no blanks at the ends, and characters that
-/// look alike, such as minus and hyphen, replaced by one of them. "" if nothing is visible.
+/// The text as a reader sees it, for comparing names. Composes characters (Unicode NFC), removes
+/// invisible characters and outer blanks, makes each run of blanks one space, and replaces similar
+/// characters, such as minus and hyphen, by one of them. Returns "" if nothing is visible.
 std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

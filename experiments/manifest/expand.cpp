@@ -81,8 +81,8 @@ void set_engine(const Manifest& manifest, const std::string& engine, Scale& scal
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: experiment, scale, manifest and checkpoints of all runs. `recorded`: the run with whose
-// state this run begins, or null. `file`: the file with which the packing begins.
+// `common`: experiment, scale, manifest and checkpoints of all runs. `recorded`: the run whose
+// state is the initial state of this run, or null. `file`: the initial grains, if read from a file.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
@@ -140,7 +140,7 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    // With `start`, the packing is not known yet, and several variants may share it.
+    // With `start`, packings are not known yet and may be shared, so the id is left empty.
     if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = planned.prepare->id;
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
     if (planned.parameters.protocol == ProtocolKind::stiffen) run.ask.checkpoint_every = 1;
@@ -176,7 +176,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   common.ask.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by id of the last stage
-  std::set<std::string> fitted;                   // ids of packings for which the file was checked
+  std::set<std::string> fitted;                   // ids of packings already checked with the file
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds = seeds;
   std::erase_if(chosen_seeds,

@@ -24,13 +24,13 @@ struct ExpandOptions {
   std::vector<std::string> variants = {};    ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
   std::optional<std::string> engine = {};      ///< replaces the engine; becomes a swept key
-  /// Stages in the store, and stages that the same command computes before this manifest. If this
-  /// version of the manifest asked for more cycles before, warnings assume the larger number.
+  /// Stages in the store, and stages that the same command computes before this manifest. If an
+  /// earlier command requested more cycles of the same manifest, warnings assume the larger number.
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest states it. Each stage of the run has one membership. The name of the scale
-/// is empty if the manifest has no scales; the name of the variant is "base" if nothing is swept.
+/// A run as a manifest states it. Each of its stages has one Membership, that of this manifest. The
+/// scale is "" if the manifest has no scales; the variant is "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;
@@ -40,7 +40,7 @@ struct PlannedRun : Run {
 struct Plan {
   Manifest manifest;
   std::string scale;
-  std::optional<PackingText> file = {};  ///< the file with which all packings begin
+  std::optional<PackingText> file = {};  ///< the initial grains of all packings
   std::vector<PlannedRun> runs;          ///< by variant, then by seed, as the manifest lists them
   std::vector<std::string> warnings;     ///< about probable mistakes; one line each
   std::string read = {};                 ///< what was read from the file of grains, in one line

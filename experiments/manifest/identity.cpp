@@ -86,8 +86,8 @@ UnreadableRecord damaged(std::string_view key, std::string_view problem) {
   return UnreadableRecord(fmt::format("record of a stage: {} {}", key, problem));
 }
 
-// A parameter that does not affect the stage keeps its default. A parameter that affects the stage
-// and is missing from the record gets the value at which records omit it (omitted_at).
+// Parameters that do not affect the stage keep their default. If the record lacks a parameter that
+// affects the stage, the parameter gets the value `omitted_at`, since records omit this value.
 void read_parameters(const json& values, StageInputs& record) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   Parameters& p = record.parameters;

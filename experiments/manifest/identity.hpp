@@ -16,7 +16,7 @@ namespace shearcell {
 
 /// The file of grains that a packing begins with, instead of loose grains.
 struct StartFile {
-  std::string sha256;                   ///< of the text of the file, which the store keeps
+  std::string sha256;                   ///< of the file's text; the store keeps the text
   std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest states one
   bool settles = false;                 ///< whether the grains settle further
 };
@@ -29,7 +29,7 @@ struct StageInputs {
   std::string parent;
   std::uint64_t seed = 0;
   Parameters parameters;
-  std::optional<StartFile> file = {};  ///< of a packing that begins with a file
+  std::optional<StartFile> file = {};  ///< only if a packing begins with a file
 };
 
 /// The stage that makes the packing, from loose grains or from the grains of a file. The result has
@@ -54,9 +54,9 @@ struct UnreadableRecord : std::runtime_error {
 /// or out of range. Does not compare stage_key(resolved) with the run's id.
 StageInputs read_stage(const nlohmann::json& resolved);
 
-/// The parameters that affect the stage: the parameters in the record, and omitted parameters with
-/// the value at which records omit them (Identity::omitted_at). Constants of the record
-/// (Identity::recorded_as) are left out, since the run may have had other values. If the record is
+/// The parameters that affect the stage. A parameter that the record omits has the value
+/// Identity::omitted_at. Parameters that every record holds with the same value
+/// (Identity::recorded_as) are left out, since the run may have had another value. If the record is
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 

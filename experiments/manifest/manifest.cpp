@@ -111,7 +111,7 @@ Until until_from_json(const nlohmann::json& json) {
     if (!fits || !value.is_number() || !why_not_until(name).empty()) continue;
     return {name, value.get<double>(), extra.get<std::uint64_t>()};
   }
-  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N at most 1000000");
+  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N <= 1000000");
 }
 
 std::string describe(const Until& until) {

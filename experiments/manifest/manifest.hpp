@@ -89,8 +89,8 @@ struct SweepAxis {
   std::vector<Setting> values;
 };
 
-/// The variants: each combination of values of the `grid` axes (the first axis varies slowest) with
-/// each row of values of the `zip` axes (which advance together).
+/// The variants are all combinations of the values of the `grid` axes (the first axis varies
+/// slowest) and the rows of the `zip` axes (which advance together).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
@@ -126,7 +126,7 @@ Until until_from_json(const nlohmann::json& json);
 /// "crystalline_percent >= 10 and 15 more cycles".
 std::string describe(const Until& until);
 
-/// The value of `until` and its position in the text. `until: none` in a scale has no value.
+/// The value of `until` and its position in the text. `until: none` in a scale gives no value.
 struct StatedUntil {
   std::optional<Until> until;
   Position at;
@@ -158,7 +158,7 @@ struct Start {
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
   std::string scale = {};    ///< "" for the scale of the shear
-  std::string variant = {};  ///< swept values; "" if the experiment has one variant
+  std::string variant = {};  ///< swept values; "" if not stated
   /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
@@ -181,7 +181,7 @@ struct Scale {
   StatedUntil until = {};
   /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
   std::vector<std::string> primary = {};
-  /// Looks (interim analyses), each as its number of seeds, ascending. Empty: one, with all seeds.
+  /// Numbers of seeds of the looks (interim analyses), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
 };

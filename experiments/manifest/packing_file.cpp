@@ -28,8 +28,8 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can contain. In a column kWall, 0 or the first type marks a grain, and a larger
-/// value marks a wall grain.
+/// What a column can contain. In a kWall column, the value 0 or the first type marks a grain, and a
+/// larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
@@ -37,7 +37,7 @@ constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
 /// The meaning of a column's name. If several columns can give a quantity, the columns whose
 /// meaning has the lowest rank are read.
 struct Meaning {
-  string_view names;        ///< in lower case; if count is 1, name k is the quantity `first` + k
+  string_view names;        ///< lower case; if `count` is 1, they mean `first`, `first` + 1, ...
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
@@ -55,7 +55,7 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"wall_side", kWall}};
 
 // The structs below hold what is found in a file. Each string_view is a constant or a part of the
-// file's text. From a part, a message finds the line.
+// file's text. The position of this part in the text gives the line number for messages.
 
 struct Column {
   string_view name;             ///< "" for a column without a name
@@ -67,7 +67,7 @@ struct GrainTable {
   string_view header = {};  ///< the line that names the columns
   const char* remedy = "";  ///< of the message about missing columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< name of further values in a row; null: none allowed
+  const char* more = nullptr;  ///< what further values in a row are; null: an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
   double first_wall = 1;       ///< smallest kWall of a wall grain
   std::vector<string_view> rows = {};
@@ -77,7 +77,7 @@ struct Box {
   string_view line;            ///< last line that states a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
-  /// Axes along which LAMMPS fits the box to the grains. A dump may have an earlier box.
+  /// Axes along which LAMMPS fits the box to the grains. The box in a dump may be outdated there.
   std::array<bool, 3> follows{};
 };
 
@@ -101,7 +101,7 @@ string_view unquoted(string_view text) {
   return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
-/// The end of the first field. If the field begins with a quote, separators in quotes do not count.
+/// The end of the first field. If the field begins with a quote, separators in quotes are ignored.
 std::size_t field_end(string_view text, string_view separators) {
   std::size_t from = std::min(text.find_first_not_of(' '), text.size());
   while (from < text.size() && text[from] == '"') {  // "" in quotes is one quote
@@ -123,9 +123,9 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed may still
-/// mean a diameter, which is compared with the diameter of the run, or a velocity. Such a velocity
-/// is refused: earlier versions ignored it, so reading it would change the packings of old ids.
+/// `units`: whether listed names may end in a unit, as in x_m. An unlisted name may also mean a
+/// diameter or a velocity. Diameters are only checked. Velocities under unlisted names are refused:
+/// earlier versions ignored them, so reading them now would change the packings of existing ids.
 Meaning meaning_of(string_view column, bool units) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
@@ -566,7 +566,7 @@ class PackingReader {
     read_rows();
   }
 
-  /// Sets the unit of lengths from the value of a key. The value "lj" leaves the unit open.
+  /// Sets the unit of lengths from the value of a key. The value "lj" sets no unit.
   void take_unit(const char* key, string_view text) {
     const string unit = lower(text);
     if (unit == "lj") return;
@@ -801,7 +801,7 @@ class PackingReader {
 
   PackingFile packing() {
     interpret_box();
-    std::vector<string> aside = std::exchange(not_read_, {});  // listed after the columns
+    std::vector<string> aside = std::exchange(not_read_, {});  // added again after the columns
     uses_ = interpret(grains_);
     require_columns();
     rows_ = rows_of(grains_, uses_);
@@ -875,7 +875,7 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no images without box
+    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no box: no periodic images
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {

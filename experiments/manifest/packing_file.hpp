@@ -24,7 +24,7 @@ inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
 struct PackingFile {
-  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; if there is a box, z is inside
+  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z is inside the box, if any
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in our exports, the wall planes
   LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
@@ -33,7 +33,7 @@ struct PackingFile {
 
 /// What the manifest and the parameters of the run say about a file.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< of lengths, if the file states none
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file states none
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };
@@ -41,10 +41,10 @@ struct PackingFacts {
 /// Largest allowed size of a file [bytes].
 inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
-/// Reads a text in the format that its content shows. `file`: the name for messages. Positions are
-/// not changed, except that z is wrapped into the box. Throws ManifestError, with line, value and
-/// remedy, if the text is not a packing of equal grains inside its box, or if two grains (with a
-/// box, also across the periodic boundary) overlap by more than facts.largest_overlap.
+/// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
+/// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
+/// text is not a packing of equal grains inside its box, or if two grains overlap by more than
+/// facts.largest_overlap. If there is a box, overlaps across the periodic boundary are included.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

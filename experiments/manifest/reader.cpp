@@ -152,8 +152,8 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: more checkpoints in the cycle that follows "
-                "each checkpoint, at these fractions of the cycle and its pause; default none",
+                "always has a checkpoint. `phases`: each of these checkpoints is followed by more "
+                "checkpoints, at these fractions of the next cycle (pause included); default none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
          .wanted = "a map of settings"});
   visit(scale.until,
@@ -211,9 +211,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.also, {.name = "y",
                     .doc = "required; a [measure](#measures), with values at checkpoints or one "
                            "value for each run (`onset_size_phi`), or an expression of measures "
-                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption counts "
-                           "runs that end before the onset. A list draws several columns; a map "
-                           "also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
+                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption states "
+                           "how many runs end before the onset. A list draws several columns; a "
+                           "map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
                     .names = can_be_y,
                     .terms = terms,
                     .required = true});
@@ -233,7 +233,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption counts runs for which no such `y` exists",
+              "and cycle, is subtracted. The caption states how many runs have no `y` to subtract",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
@@ -243,15 +243,15 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "name of a figure. Plots with this name are its panels (a), (b), ..., and claims "
-                "with this name are its claims. It has one caption. Default: a separate figure"});
+         .doc = "name of a figure. Plots that state the same figure are its panels (a), (b), ..., "
+                "with one caption. Claims can state it too. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
                      .names = can_be_by});
   visit(plot.show,
         {.name = "show",
-         .doc = "`mean` (default) or `rms`: mean or root mean square with its standard error; "
+         .doc = "`mean` (default), `rms`: mean or root mean square, each with a standard error; "
                 "`traces`: every run as a line; `scatter`: every value as a point. If `y` is a "
                 "curve measure, or `x` has one value for each run, the CSV file has the means"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
@@ -269,8 +269,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
-         .doc = "published numbers that the plot shows: a `value` with an `error`, or `points` [x, "
-                "y] or [x, y, error], each with its `source`",
+         .doc = "published numbers that the plot shows: each has a `source` and either a `value` "
+                "with an `error`, or `points` [x, y] or [x, y, error]",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
                     .doc = "further columns in the CSV file of a plot of means; a map also gives "
@@ -286,9 +286,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
        .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
-                     .doc = "the cycle at which a curve measure is drawn, or `y` if `x` has one "
-                            "value for each run. Default: the last cycle that all runs have, as "
-                            "stated in the CSV file and the caption"});
+                     .doc = "the cycle at which a curve measure is drawn. If `x` has one value for "
+                            "each run, `y` is drawn at this cycle. Default: the last cycle that "
+                            "all runs have; the CSV file and the caption state it"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
@@ -318,13 +318,13 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                         .terms = terms,
                         .required = true});
   visit(claim.estimator, {.name = "estimator",
-                          .doc = "what is estimated; by default the other keys imply it",
+                          .doc = "the quantity to estimate; by default, the other keys decide it",
                           .names = estimators});
   visit(
       claim.against,
       {.name = "against",
-       .doc = "with `estimator: slope`: the column of the x axis, at the first checkpoint of each "
-              "run; with `spread_ratio`: the column whose standard deviation is the denominator",
+       .doc = "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of "
+              "each run. With `spread_ratio`: the column whose standard deviation is the divisor",
        .names = can_be_compared,
        .terms = terms});
   visit(claim.where, {.name = "where",
@@ -353,13 +353,13 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
         {.name = "margin",
          .range = {0, kInfinity, true},
          .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
-                "applies to log2 of the ratio of the two waiting times, so 1 means a factor of 2 "
-                "(log-rank test, which includes runs that end before the event)"});
+                "applies to log2 of the ratio of the two waiting times, so 1 means a factor of 2. "
+                "The test is the log-rank test, which includes runs that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
                               "%. The difference is computed from means of logarithms"});
-  visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "the cycle that is compared"});
+  visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "cycle of the comparison"});
   visit(claim.cycles, {.name = "cycles",
                        .range = kCycles,
                        .doc = "instead of `at_cycle`: the first and the last cycle of a range. The "
@@ -509,7 +509,7 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// The valid expression for a text in another notation, such as phi^2 for phi**2. "" if none fits.
+// The expression that a text in another notation means: phi^2 if the text is phi**2. "" if none.
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
@@ -953,7 +953,7 @@ struct Reader {
     return true;
   }
 
-  // Reads the parameters of `base` or `settle`. A key of `start` is the parameter start_KEY.
+  // Reads the parameters of `base` or `settle`. KEY of `start` sets the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
       const string key = "start_" + in.key;
@@ -1272,7 +1272,7 @@ struct Reader {
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
-    reject_if(!of_runs || of_run, cycles, "can only be used if each run is drawn along its cycles",
+    reject_if(!of_runs || of_run, cycles, "can only be used if x changes within each drawn run",
               "Use `show: traces`, and `cycle` or a measure as x.");
     reject_if(!plot.figure.empty(), cycles, "cannot be used with figure",
               "Give the plot a separate figure.");
@@ -1330,7 +1330,7 @@ struct Reader {
     reject_if(published.label.empty(), &in, "lacks label",
               "State the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
-              "does not have either a value or points", "State one of them.");
+              "must have a value or points, but not both", "State one of them.");
   }
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
@@ -1451,7 +1451,7 @@ struct Reader {
     for (const auto& [own, of] : names) {
       const string& text = own->text;
       if (!is_claim_id(text)) continue;
-      // Whether any manifest states the figure `of`, and whether this manifest lists the figure.
+      // A figure that is not computed by C++ code is stated by a manifest.
       const bool is_stated = find_named(computed_figures(), of) == nullptr;
       const bool is_listed = std::ranges::count(listed, of) > 0;
       const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {

@@ -85,8 +85,8 @@ std::string takes(const Field& field) {
                                     : fmt::format("It takes {}.", expected_values(field));
 }
 
-// What to write instead of an invalid number, such as a number with a decimal comma, thousands
-// separators, a unit or `x 10^`, or a calculation.
+// What to write instead of a text that is not a valid number. The text may have a decimal comma,
+// thousands separators, a unit or `x 10^`, or may be a calculation.
 std::string number_remedy(const Field& field, const std::string& text) {
   static const std::pair<std::regex, const char*> habits[] = {
       {std::regex("[ _']|\xc2\xa0|\xe2\x80[\x89\xaf]"), ""},  // spaces, also narrow ones
@@ -168,8 +168,8 @@ std::span<const Field> schema() {
           "volume fraction at which N grains fill the nominal cell; fixes L"),
       row<&P::wall_grain_area_fraction>(
           "wall_grain_area_fraction", "", "1", {0, 0.53}, kPrepare,
-          "area fraction of a rough wall covered by wall grains; random sequential addition jams "
-          "at 0.547"),
+          "fraction of the area of a rough wall that wall grains cover; random sequential "
+          "addition jams at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
           "largest distance of wall grain centres behind the wall plane. Measures that need the "
@@ -191,8 +191,8 @@ std::span<const Field> schema() {
                                   "`auto` keeps Table I's fraction of the stability limit"),
       row<&P::settle_force_tolerance>(
           "settle_force_tolerance", "", "1", above(0, 1), kPrepare,
-          "settling ends when the force imbalance and the drag force of the moving wall, both "
-          "divided by P A_w, are below this value"),
+          "settling ends when the force imbalance of the moving wall and the drag force on this "
+          "wall, both divided by P A_w, are below this value"),
       row<&P::settle_kinetic_tolerance>("settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
                                         "settling ends only if the kinetic energy per grain, "
                                         "divided by P d^3, is also below this value"),
@@ -211,7 +211,7 @@ std::span<const Field> schema() {
           "(B.2)"),
       row<&P::amplitude_rad>("amplitude_rad", "A", "rad", {0, 0.5}, kShear,
                              "amplitude of the tilt theta = A sin(omega t)"),
-      // The smallest settle_time_step_s is the smallest period_s / the largest steps_per_cycle.
+      // Smallest settle_time_step_s = smallest period_s / largest steps_per_cycle.
       row<&P::period_s>("period_s", "T", "s", {1e-6, 1e6}, kShear,
                         "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row<&P::steps_per_cycle>(
@@ -225,7 +225,7 @@ std::span<const Field> schema() {
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
-          "whether the moving wall is held at its height during a pause or moves under its load"),
+          "whether, during a pause, the moving wall is held at its height or moves under its load"),
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "number of shear cycles; a larger value extends a run"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},

@@ -25,8 +25,8 @@ struct Identity {
   /// The record omits the parameter if it has this value, written as in a manifest. All runs that
   /// are older than the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};
-  /// Every new record holds this value, whatever the value of the parameter. For a parameter that
-  /// is no longer part of the identity; records of older runs may hold other values.
+  /// Every new record holds this value, whatever the value of the parameter, because the parameter
+  /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
   /// No record holds the parameter: it selects the parent stage, whose id is in the record.
   bool selects_parent = false;
@@ -56,13 +56,13 @@ struct Field {
   std::span<const std::string_view> names = {};  ///< the values of a choice
   std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
-  std::span<const std::string_view> terms = {};  ///< names in expressions; empty: takes none
+  std::span<const std::string_view> terms = {};  ///< names that expressions may use; empty: none
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
   std::size_t longest = 0;  ///< of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// Convert a parameter to JSON, and back if check_value() accepts the JSON. Null for other keys.
+  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 

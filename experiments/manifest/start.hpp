@@ -17,10 +17,10 @@
 
 namespace shearcell {
 
-/// The run in `known` with whose state the variant begins. If several runs fit `start`, returns the
-/// run that has the variant's value for each key that both experiments sweep. Throws ManifestError
-/// if not exactly one run remains, if the run has no checkpoint at the cycle, or if the cell or
-/// grains of the run differ.
+/// The run in `known` whose state is the initial state of the variant. If several runs fit `start`,
+/// returns the run that has the variant's value for each key that both experiments sweep. Throws
+/// ManifestError if not exactly one run remains, if the run has no checkpoint at the cycle, or if
+/// its cell or grains differ from the cell or grains of the variant.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 
@@ -40,10 +40,10 @@ struct PlacedGrains {
   std::string read;  ///< what was read, from describe()
 };
 
-/// Places the grains of the text in the cell of the parameters, with the wall grains of the seed.
-/// The box of the file must be as wide and deep as the cell. Without a box, the grains must fit
-/// into the cell, and the bottom and top walls touch the outermost grains. Throws ManifestError
-/// with the reason and the remedy.
+/// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions
+/// of the wall grains. The box of the file must be as wide and deep as the cell. Without a box, the
+/// grains must fit into the cell, and the bottom and top walls touch the outermost grains. Throws
+/// ManifestError with the reason and the remedy.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 

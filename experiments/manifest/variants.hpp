@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// The value of a parameter that the scale does not sweep, or "auto".
+/// The value of a parameter at this scale, which must not sweep the parameter. May be "auto".
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// A combination of swept values, with the parameters that result from it.
@@ -39,14 +39,14 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether to select the value. A text may also have parts of the value's display name `name`.
+  /// Whether the value is selected. Parts of its display name `name` also count as its parts.
   /// Texts with equal keys are alternatives: for the texts "a=1", "a=2" and "b=3", the value must
   /// have b=3, and a=1 or a=2. True if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first text that no value has fitted so far, or null.
   const std::string* unfound() const;
-  /// The values that were given to passes(), each once, in order. A value is followed by its
-  /// display name, if the name has other parts.
+  /// The values that were given to passes(), each once, in order. A display name follows its value
+  /// if the name has parts that the value lacks.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
@@ -66,10 +66,10 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 /// Variant::swept of each variant.
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 
-/// Returns the display names of variants, which are objects of swept keys and values and may be
-/// repeated. A name begins with labels (those with the most keys first) in place of the keys that
-/// they state. Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". The
-/// name is "no sweep" if nothing is swept. (Ids and CSV files use Variant::name.)
+/// Returns the display name of each variant. A variant is an object of swept keys and values, and
+/// may occur several times. Labels replace the keys that they state and begin the name; the label
+/// with the most keys comes first. Other keys follow if they distinguish the variants: "fluid at
+/// rest, A=0.05 rad". A name is "no sweep" if nothing is swept. (Ids and CSV use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 
