@@ -37,7 +37,7 @@ struct GrainMeasures {
   std::vector<std::int32_t> contacts;   ///< contacts with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
-  std::vector<Structure> structure;    ///< also of grains near the walls
+  std::vector<Structure> structure;    ///< also set for grains near the walls
   std::vector<std::uint8_t> interior;  ///< 1 for interior grains, else 0
   Crystallites crystallites;           ///< of crystalline interior grains
 };

@@ -78,8 +78,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim states why it cannot be decided, the verdict is undecidable and the note has the reason.
 /// `runs_needed` runs would decide the claim with 90 % probability if the true value is 0 (for
-/// Relation::same) or twice the margin. If the interval excludes 0, or if that many runs exist
-/// already, the true value is assumed to be the estimate. `runs_needed` exceeds Estimate::runs.
+/// Relation::same) or twice the margin. If the interval excludes 0, or if this number of runs
+/// exists already, `runs_needed` is computed for a true value equal to the estimate. It is always
+/// more than Estimate::runs.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
