@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Smallest descendant [grains]. A state with only smaller crystallites is a control. [choice]
+/// Smallest descendant [grains]. A state without such crystallites is a control. [choice]
 inline constexpr std::int32_t least_descendant = 3;
 /// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;
@@ -38,10 +38,10 @@ struct Followed {
 ///
 /// Remembered grains are the grains of all descendants in the last `remembered_cycles` cycles that
 /// had a descendant. A crystallite with at least `least_descendant` grains and a remembered grain
-/// is a descendant, unless it continues another crystallite. This is the case if more of its grains
-/// come from one crystallite of the previous cycle that was not a descendant than are remembered
-/// grains. The followed crystallite has merged if there is no descendant, and at least half of the
-/// grains of the last descendants are in one crystallite that continues another crystallite.
+/// is a descendant, unless it continues another crystallite. It continues a crystallite X of the
+/// previous cycle that was not a descendant if it has more grains of X than remembered grains. The
+/// followed crystallite has merged if there is no descendant, and at least half of the grains of
+/// the last descendants are in one crystallite that continues another crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

@@ -71,14 +71,14 @@ Scalar over_cycles(const std::string& name, const std::string& column, double fi
 /// are joined by straight lines, which are integrated. `name`: the column's name for sentences.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
-/// Decides on the mean of `a` minus the mean of `b`. Runs of `a` and `b` that share a packing form
+/// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
 /// verdict needs least_runs runs or pairs. At least three quarters of each group must have
 /// the number and, if there are pairs, a partner. Missing runs may bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
-/// Decides on the mean over runs minus the published number.
+/// Decides the claim from the mean over runs minus the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
 /// Returns for each run the first cycle at which the column is at least `level`. A run without such

@@ -48,7 +48,7 @@ struct Frame {
   /// Planned runs that have not ended. Only their variants, seeds, names and parameters are used.
   std::vector<FrameRun> pending = {};
   /// Seeds of the experiments at this scale, in order. A planned look (an interim analysis) is
-  /// given by the number of seeds that it includes. If empty, each verdict uses all runs
+  /// given by the number of seeds that it includes. Without seeds, each verdict uses all runs
   /// in the frame.
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::size_t> looks = {};
@@ -72,7 +72,6 @@ struct RunValue {
   /// Lower limit of the number if the run ended before the event (censored). NaN: unknown.
   double above = std::numeric_limits<double>::quiet_NaN();
 
-  /// `value`, or NaN if it is missing.
   double or_nan() const;
 };
 /// Makes a RunValue. A value that is not finite is missing (`undefined`).

@@ -30,9 +30,8 @@ constexpr std::string_view style =
     // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// A single-quoted gnuplot string, in which each quote must be doubled. gnuplot misreads a text
-/// that begins with a quote or contains `''`. markup() avoids both: it puts a `\` before each
-/// quote.
+/// A single-quoted gnuplot string. Each quote in it is doubled. gnuplot misreads a text that begins
+/// with a quote or contains `''`. markup() avoids both: it puts a `\` before each quote.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
@@ -236,8 +235,7 @@ class Script {
   }
 
   /// Sets the ranges of both axes. gnuplot places each end that is not fixed a little beyond the
-  /// data, but it ignores horizontal lines. The script fixes both ends of y if there are such
-  /// lines.
+  /// data, but ignores horizontal lines. If there are such lines, the script fixes both ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {

@@ -69,8 +69,7 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< for a measure of each grain
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// The name for use in sentences; if empty, `name` is used. Required for kinds `run` and
-  /// `grains`.
+  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
   bool waits = false;           ///< true for the cycle of an event that some runs do not reach
