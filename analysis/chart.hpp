@@ -35,7 +35,7 @@ Text operator+(Text first, const Text& second);
 /// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
 Text formula(std::string_view text);
 
-/// A number, a whole number, text, or empty. Empty: not measured, or the error of a single run.
+/// A number, a whole number, text, or empty (not measured, or the error of a single run).
 struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
   TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT

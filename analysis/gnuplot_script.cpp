@@ -337,7 +337,7 @@ class Script {
     }
     if (series.band) return;
     // Error bars are drawn as arrows. The arrow heads are the caps, 2 px to each side. `yerrorbars`
-    // is not used, since gnuplot 5.4 paints a white disc behind each point that hides other curves.
+    // is not used, since gnuplot 5.4 paints white discs behind the points, which hide other curves.
     const auto add_bars = [&](const std::string& columns) {
       plots.push_back(fmt::format(
           "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "

@@ -49,7 +49,7 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size of GrowthCurve::critical_size(); infinity if there is none. Minus infinity if delta_rho
-/// is positive at size 1 and the excess of all sizes exceeds the excess above each rise.
+/// is positive at size 1 and the excess of all sizes exceeds that above each rise through zero.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);

@@ -13,7 +13,7 @@
 namespace shearcell {
 
 /// Whether the onset of a run was observed. A run is censored if its onset is before its first
-/// checkpoint /// (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is
+/// checkpoint (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is
 /// between these checkpoints, but the method finds no phi.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>

@@ -252,8 +252,8 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. Variants of
-/// manifests have no special character except the comma. Variants in other stores may have others.
+/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. The comma is
+/// the only special character in variants of manifests. Variants in other stores may have others.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
