@@ -440,7 +440,7 @@ class Tessellation {
   std::vector<Eigen::Vector3d> point_;
   std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
-  double reach_ = 0;  // largest distance by which a sphere around a corner exceeds the period in z
+  double reach_ = 0;  // largest distance by which a sphere around a corner exceeds the z period [d]
   std::vector<std::vector<Side>> sides_;          // by measured site
   std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
   std::vector<Corner> polygon_;                   // current face
