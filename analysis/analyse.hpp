@@ -17,7 +17,7 @@ namespace shearcell {
 /// Measures of one packing. A mean over zero grains is NaN.
 struct PackingMeasures {
   std::size_t grains = 0;               ///< N
-  std::size_t interior_grains = 0;      ///< N_inves, grains at least 1.5 d from the wall surfaces
+  std::size_t interior_grains = 0;      ///< N_inves: grains at least 1.5 d from the wall surfaces
   double phi = 0;                       ///< volume fraction of interior grains, Eq. S4
   double phi_uncorrected = 0;           ///< phi_u, Eq. S2, of interior grains
   double crystalline_percent = 0;       ///< FCC and HCP grains among interior grains [%]
@@ -37,7 +37,7 @@ struct GrainMeasures {
   std::vector<std::int32_t> contacts;   ///< contacts with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
-  std::vector<Structure> structure;    ///< also of grains near the walls
+  std::vector<Structure> structure;    ///< also set for grains near the walls
   std::vector<std::uint8_t> interior;  ///< 1 for interior grains, else 0
   Crystallites crystallites;           ///< of crystalline interior grains
 };

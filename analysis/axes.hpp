@@ -34,7 +34,7 @@ void add_size(const std::optional<Estimate>& size, TableRow& row);
 /// A quantity with the columns NAME_mean_UNIT (or NAME_rms_UNIT) and NAME_standard_error_UNIT.
 struct MeasureColumn {
   std::string name;
-  std::string unit;  ///< as in the names of the columns: "d", "percent" or ""
+  std::string unit;  ///< as in column names: "d", "percent" or ""
   bool rms = false;  ///< root mean square over runs instead of the mean
 
   RunStatistics over(std::span<const double> values) const;  ///< `values`: one per run

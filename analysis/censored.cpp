@@ -43,8 +43,8 @@ Term gumbel(double z, bool censored) {
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// z of value k is row k of `terms` times the vector of parameters. The parameters are h = 1 /
-/// sigma and two components of g = mu / sigma. A fixed parameter has a column of zeros in `terms`.
+/// z is linear in three parameters: h = 1 / sigma, and the two components of g = mu / sigma. Row k
+/// of `terms` has the coefficients for value k. A fixed parameter has a column of zeros in `terms`.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;

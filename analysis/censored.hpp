@@ -43,17 +43,17 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
 /// Pairs with a censored value are included. The residual of a censored value is its expectation
-/// value. To treat a[k] - b[k] as one censored value would give a bias, since b[k] decides whether
-/// the difference is censored. Without censoring the interval is Welch's interval or, for pairs,
-/// Student's interval. Empty if a group has fewer than two observed values.
+/// value. Treating a[k] - b[k] as one censored value would give a bias, since b[k] decides whether
+/// the difference is censored. If no value is censored, the interval is Welch's interval or, for
+/// pairs, Student's interval. Empty if a group has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);
 
 /// Slope b of values[k] ~ a + b x[k]. sigma is the same for all x. Empty for fewer than three
 /// observed values, or if all x are equal. If all observed values have the same x, and all other x
-/// lie on one side of this x, L has no maximum, because it increases with the steepness of the
-/// slope. The estimate and one end of the interval are then infinite.
+/// are larger (or all are smaller), the likelihood has no maximum: it increases with the steepness
+/// of the slope. The estimate and one end of the interval are then infinite.
 std::optional<Estimate> censored_slope(std::span<const CensoredValue> values,
                                        std::span<const double> x, double level = confidence_level);
 

@@ -35,7 +35,7 @@ Text operator+(Text first, const Text& second);
 /// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
 Text formula(std::string_view text);
 
-/// A number, a whole number, text, or empty. Empty: not measured, or the error of a single run.
+/// A number, a whole number, text, or empty (not measured, or the error of a single run).
 struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
   TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
@@ -66,7 +66,7 @@ struct Axis {
   Text unit = {};    ///< empty: no unit
   bool log = false;
   bool whole = false;                        ///< only whole numbers are meaningful
-  std::optional<double> low = std::nullopt;  ///< the axis ends here unless data lie beyond
+  std::optional<double> low = std::nullopt;  ///< lower end of the axis, unless data lie below
   std::optional<double> high = std::nullopt;
   bool clip = false;  ///< the axis ends at low and high even if data lie beyond
 };
@@ -158,7 +158,7 @@ struct Table {
   Chart chart = {};
   TextTable text = {};
 
-  /// The index of a column; the number of columns if no column has that name.
+  /// Returns the index of a column, or the number of columns if no column has this name.
   std::size_t place(std::string_view column) const {
     return static_cast<std::size_t>(std::ranges::find(columns, column, &TableColumn::name) -
                                     columns.begin());
@@ -178,17 +178,17 @@ std::string to_csv(const Table& table, Digits digits = Digits::enough);
 /// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// The points of one series that have finite x and y, without the series' shift.
+/// The points of one series that have finite x and y. Series::shift is not added.
 std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
 /// this number varies or is less than Series::runs. Readers need this number, since a mean may
-/// change along a curve only because it includes other runs. If all series have the same numbers,
-/// the caption states them once.
+/// change along a curve only because other runs contribute to it. If all series have the same
+/// numbers, the caption states them once.
 void name_run_counts(Table& table);
 
 /// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to
-/// show high - low with five digits. A difference below 1e-11 of the values is rounding error.
+/// show high - low with five digits. A difference below 1e-11 times the values is rounding error.
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 

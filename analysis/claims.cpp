@@ -26,7 +26,7 @@ bool is_of(const ClaimSpec& claim, const FrameRun& run) {
           (!has_one_side(claim) && has_parameters(run, claim.between[1])));
 }
 
-/// The name of the estimated quantity in sentences.
+/// Returns the name of the estimated quantity, for use in sentences.
 std::string words_of(const ClaimSpec& claim) {
   const Estimator& estimator = estimator_of(claim);
   return estimator.words != nullptr ? estimator.words(claim) : estimator.scalar(claim).name;
@@ -96,7 +96,7 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
 
 namespace {
 
-/// The verdict on the runs of both sides; `b` is empty if the claim has one side.
+/// The verdict on the claim from the runs of its sides; `b` is empty if the claim has one side.
 Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Estimator& estimator = estimator_of(claim);
   if (estimator.decide != nullptr) return estimator.decide(claim, stated, a, b);
@@ -116,8 +116,8 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 
 /// A look (interim analysis) at n seeds uses the runs of the first n seeds, after these have ended.
 /// Returns the verdict of the first look that decides the claim. If no looks are planned, there is
-/// one look, at all seeds. Until the next look the verdict is undecided, and its numbers are for
-/// the seeds before the first unfinished seed. Only the note includes runs of unplanned seeds.
+/// one look, at all seeds. Before a look decides, the verdict is undecided, and its numbers are for
+/// the seeds before the first unfinished seed. Seeds beyond the plan are used only in the note.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
@@ -177,7 +177,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  add_note(verdict.note, fmt::format("an unplanned look, with {} beyond the plan, gives: {}",
+  add_note(verdict.note, fmt::format("an unplanned look that includes {} beyond the plan gives: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }
@@ -224,8 +224,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 
 namespace {
 
-/// The values of the swept keys that side `k` of the claim does not state. A claim may average over
-/// these values if both sides have the same values.
+/// For each run of side `k`: the values of the swept keys that this side does not state. A claim
+/// may average over such values if they are the same on both sides.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

@@ -23,11 +23,10 @@ struct PublishedSpec {
   std::vector<std::vector<double>> points = {};  ///< {x, y} or {x, y, error of y}
 };
 
-/// A claim that a manifest states.
 struct ClaimSpec {
-  std::string id;            ///< "S2.phi"; the same in every manifest that lists its figure
+  std::string id;            ///< "S2.phi"; the same in every manifest that lists the figure
   std::string figure = {};   ///< like PlotSpec::figure
-  std::string compare = {};  ///< what is compared: like PlotSpec::y, but not a curve
+  std::string compare = {};  ///< the compared quantity, given like PlotSpec::y; not a curve
   /// The estimator's name; "": the other keys imply the estimator (estimator_of()).
   std::string estimator = {};
   /// A claim states at most one of the next four members: `cycles` (first and last), `phi` (lower
@@ -52,9 +51,10 @@ struct ClaimSpec {
   std::string statement = {};
   Relation is = Relation::same;
   bool optional = false;               ///< no verdict if a side has no runs
-  std::string cannot_be_decided = {};  ///< like Claim::cannot_be_decided
-  /// Like PlotSpec::listed. If problems_of_sides() finds a problem, the verdict on a listed claim
-  /// uses no runs. For any other claim the problem is an error.
+  std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
+  /// The claim belongs to a shipped manifest, and the user's manifest lists the claim's figure. If
+  /// problems_of_sides() finds a problem, the verdict on a listed claim uses no runs. For any other
+  /// claim the problem is an error.
   bool listed = false;
 };
 
@@ -67,16 +67,16 @@ std::string figure_of(const ClaimSpec& claim);
 /// The groups of runs that a claim compares. The second is empty if the claim has one side.
 struct ClaimSides {
   std::array<std::vector<const FrameRun*>, 2> runs;
-  std::array<std::string, 2> names;  ///< names of the sides in sentences; "" for all runs
+  std::array<std::string, 2> names;  ///< names for use in sentences; "" if a side has all runs
   bool lacks_one = false;            ///< a side has no runs
 };
 ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Resolves `for_each`: one claim for each value among the runs. Returns the claim itself if it has
-/// no `for_each`, or if no run has a value.
+/// Returns one claim for each value that the `for_each` key has among the runs. Returns the claim
+/// itself if it has no `for_each`, or if no run has this key.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Returns the claim with its sentence and a signed margin. `sides`: ClaimSides::names.
+/// Makes the Claim. Its margin is negative for Relation::lower. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: the sides hold planned

@@ -38,10 +38,10 @@ struct Followed {
 ///
 /// Remembered grains are the grains of all descendants in the last `remembered_cycles` cycles that
 /// had a descendant. A crystallite with at least `least_descendant` grains and a remembered grain
-/// is a descendant, unless it continues another crystallite. It continues a crystallite of the
-/// previous cycle if that crystallite was not a descendant and contributes more grains than are
-/// remembered. The followed crystallite has merged if there is no descendant, and at least half of
-/// the grains of the last descendants are in one crystallite that continues another crystallite.
+/// is a descendant, unless it continues another crystallite. It continues a crystallite X of the
+/// previous cycle that was not a descendant if it has more grains of X than remembered grains. The
+/// followed crystallite has merged if there is no descendant, and at least half of the grains of
+/// the last descendants are in one crystallite that continues another crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

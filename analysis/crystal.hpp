@@ -20,7 +20,7 @@ namespace shearcell {
 /// and 0.35355 (simple cubic).
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface);
 
-/// Crystalline grains: Rietz et al., Phys. Rev. Lett. 120, 055701 (2018), as in supplement A.
+/// Limits for crystalline grains: Rietz et al., Phys. Rev. Lett. 120, 055701 (2018); supplement A.
 inline constexpr double crystalline_phi_local = 0.72;  ///< lower limit of phi_local
 inline constexpr double q6_fcc = 0.575;
 inline constexpr double q6_hcp = 0.485;

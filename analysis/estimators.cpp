@@ -92,8 +92,8 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   const bool equal_sides = no_scatter && two_sides && estimate->value == 0;
   if (no_scatter) {
     add_note(note, equal_sides
-                       ? "the numbers of both sides are equal to all digits, usually because both "
-                         "sides are the same computation; this is no evidence that they agree"
+                       ? "the numbers of the two sides agree in every digit, usually because both "
+                         "sides are the same computation; this is no evidence that the sides agree"
                        : "the numbers have no scatter, so the interval has no width");
   }
   Verdict verdict =

@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// One number per run.
+/// A rule that gives each run one number.
 struct Scalar {
   std::string name;   ///< "phi at cycle 10"
   std::string reach;  ///< what a run must reach to have the number: "cycle 10"
@@ -29,7 +29,7 @@ struct Estimator {
   std::string_view name;      ///< its name in manifests
   std::string_view meaning;   ///< its description in REFERENCE.md
   std::string_view key = {};  ///< a key that its claims must state; "": no such key
-  /// Whether its claims compare measures of whole runs (true) or of checkpoints; empty: either.
+  /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   bool one_side = false;       ///< its claims have one group, even without a published number
@@ -38,7 +38,7 @@ struct Estimator {
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Returns the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// Names the estimated quantity in sentences. If null, Scalar::name is used.
+  /// Returns the name of the estimated quantity, for use in sentences. If null, it is Scalar::name.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 
@@ -64,21 +64,21 @@ RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first
                    PointStatistic statistic);
 
 /// Mean of a column over the checkpoints at the whole cycles first .. last. A run that lacks one of
-/// these cycles has no value. `name`: the column's name in sentences.
+/// these cycles has no value. `name`: the column's name, for use in sentences.
 Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
 /// Mean of a column over phi from `low` to `high`. The means in the run's bins of phi (binning.hpp)
-/// are joined by straight lines, and these are integrated. `name`: the column's name in sentences.
+/// are joined by straight lines, which are integrated. `name`: the column's name for sentences.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
-/// Decides on the mean of `a` minus the mean of `b`. Runs of `a` and `b` that share a packing form
+/// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
 /// verdict needs least_runs runs or pairs. At least three quarters of each group must have
 /// the number and, if there are pairs, a partner. Missing runs may bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
-/// Decides on the mean over runs minus the published number.
+/// Decides the claim from the mean over runs minus the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
 /// Returns for each run the first cycle at which the column is at least `level`. A run without such
@@ -99,14 +99,14 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
 /// The number of a run. For a run that ended before the event, the result is the lower bound
-/// RunValue::above and is censored. NaN if neither number is known.
+/// RunValue::above and is censored. NaN if neither the number nor the bound is known.
 CensoredValue censored_value(const RunValue& value);
 
-/// Averages the values of runs, one per run, over the runs of each packing; a mean is censored if
-/// one of its values is censored. Values that are not finite are left out.
+/// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the
+/// averaged values is censored. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 
-/// The name of a column in sentences: Measure::words, or the column's text.
+/// The name of a column, for use in sentences: Measure::words, or the column's text.
 std::string words_of_column(const std::string& column);
 
 /// An empty table for the numbers that enter a verdict. It has the columns group (the run's

@@ -13,22 +13,22 @@ namespace shearcell {
 /// Whether the text has an operator or a bracket, or begins with a digit. Otherwise it is a name.
 bool is_expression(std::string_view text);
 
-/// The names of numbers in the text, each once, in the order in which they appear.
+/// The names in the text except functions and pi, each once, in the order in which they appear.
 std::vector<std::string> names_in(std::string_view text);
 
 /// Describes for error messages what an expression may contain.
 std::string expression_syntax();
 
 /// Returns why the text cannot be evaluated, such as "is not an expression: ..."; "" if it can be
-/// evaluated. The meaning of names is not checked. A text that does not follow expression_syntax()
-/// or has more than 200 bytes is an error.
+/// evaluated. Whether the names exist is not checked. A text that does not follow
+/// expression_syntax() or has more than 200 bytes is an error.
 std::string wrong_in_expression(const std::string& text);
 
 using ValueOf = std::function<double(const std::string& name)>;
 
-/// Makes an evaluator for a name or an expression that wrong_in_expression() accepts. The result is
-/// NaN if the result or the number of a name is not finite. The locale has no effect. Only one
-/// thread at a time may call an evaluator.
+/// Makes an evaluator for a name or an expression that wrong_in_expression() accepts. The evaluator
+/// returns NaN if the computed value, or the value of a name in the expression, is not finite. The
+/// locale has no effect. Only one thread at a time may call an evaluator.
 using Evaluate = std::function<double(const ValueOf& value_of)>;
 Evaluate evaluator_of(const std::string& text);
 

@@ -27,8 +27,8 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table`: uses the runs of all experiments, each with its last checkpoint and without measures.
-/// `curves`: uses the runs of one experiment, with one curve for each variant. `groups`: uses the
+/// `table`: uses the last checkpoint of each run of all experiments, without measures. `curves`:
+/// uses the runs of one experiment, with one curve for each variant. `groups`: uses the
 /// runs of one experiment and averages over variants with equal values of Figure::keys.
 enum class FigureForm { table, curves, groups };
 
@@ -38,7 +38,7 @@ struct Figure {
   std::string title;
   std::function<FigureResult(const Frame& frame)> make;
   FigureForm form = FigureForm::curves;
-  std::vector<std::string> keys = {};    ///< parameters in which its curves differ
+  std::vector<std::string> keys = {};    ///< parameters in which the curves differ
   std::vector<std::string> claims = {};  ///< ids of its claims, without the part after '@'
   /// Names of the providers (measures.hpp) that the figure needs besides scalars_provider.
   std::vector<std::string> needs = {};

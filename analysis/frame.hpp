@@ -33,7 +33,7 @@ struct FrameRun : Run {
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far; the frame may lack a checkpoint there
+  double end = 0;  ///< last cycle of the run so far; its checkpoint may be missing in the frame
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -42,14 +42,14 @@ using RunGroup = std::span<const FrameRun* const>;
 
 struct Frame {
   std::vector<FrameRun> runs;
-  /// Swept values of all variants of the experiments at this scale, also if a variant has no runs.
-  /// They determine the colours of variants. If empty, the variants of `runs` are used.
+  /// Swept values of all variants of the experiments at this scale, including variants without
+  /// runs. They determine the colours of variants. If empty, the variants of `runs` are used.
   std::vector<nlohmann::json> variants;
-  /// Planned runs that have not ended. Only their places and parameters are set.
+  /// Planned runs that have not ended. Only their variants, seeds, names and parameters are used.
   std::vector<FrameRun> pending = {};
   /// Seeds of the experiments at this scale, in order. A planned look (an interim analysis) is
-  /// given by the number of seeds that it includes. Without seeds, all runs in the frame decide
-  /// each claim.
+  /// given by the number of seeds that it includes. Without seeds, each verdict uses all runs
+  /// in the frame.
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::size_t> looks = {};
 
@@ -72,7 +72,6 @@ struct RunValue {
   /// Lower limit of the number if the run ended before the event (censored). NaN: unknown.
   double above = std::numeric_limits<double>::quiet_NaN();
 
-  /// `value`, or NaN if it is missing.
   double or_nan() const;
 };
 /// Makes a RunValue. A value that is not finite is missing (`undefined`).
@@ -115,8 +114,8 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// [0.04, 0.05], "grains": {"min": 6000}}. A list matches any of its values. A range has `min`,
 /// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
-/// The runs whose parameters match `where`. If these are runs of one variant and runs that
-/// `run --engine` added, the added runs are left out.
+/// The runs whose parameters match `where`. Runs that `run --engine` added are left out if the
+/// other matching runs belong to one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.

@@ -30,8 +30,8 @@ constexpr std::string_view style =
     // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// A single-quoted gnuplot string, in which each quote must be doubled. gnuplot misreads two quotes
-/// in a row and a quote at the beginning. Texts from markup() are safe: each quote follows a `\`.
+/// A single-quoted gnuplot string. Each quote in it is doubled. gnuplot misreads a text that begins
+/// with a quote or contains `''`. markup() avoids both: it puts a `\` before each quote.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
@@ -235,7 +235,7 @@ class Script {
   }
 
   /// Sets the ranges of both axes. gnuplot places each end that is not fixed a little beyond the
-  /// data. It ignores horizontal lines. If there are such lines, the script fixes both ends of y.
+  /// data, but ignores horizontal lines. If there are such lines, the script fixes both ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
     const auto outside = [&](double at, double share) {
@@ -336,8 +336,8 @@ class Script {
                       k, series.colour));
     }
     if (series.band) return;
-    // Bars are arrows, and their heads are the caps, 2 px to each side. With `yerrorbars`, gnuplot
-    // 5.4 paints a white disc behind each point, which hides parts of other curves.
+    // Error bars are drawn as arrows. The arrow heads are the caps, 2 px to each side. `yerrorbars`
+    // is not used, since gnuplot 5.4 paints white discs behind the points, which hide other curves.
     const auto add_bars = [&](const std::string& columns) {
       plots.push_back(fmt::format(
           "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "
@@ -367,7 +367,7 @@ class Script {
 
   const Chart& chart_;
   std::vector<std::vector<ChartPoint>> points_;  ///< of each series
-  std::size_t longest_ = 0;                      ///< most points of a series
+  std::size_t longest_ = 0;                      ///< largest number of points of a series
   Extent x_;
   Extent y_;
   bool lines_ = false;  ///< y_ includes horizontal lines

@@ -15,7 +15,7 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess of growing crystallites, and the excess summed from the size of the row upwards.
+/// the excess of growing crystallites, and the sum of the excess over this and larger sizes.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -48,8 +48,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size at which delta_rho rises through zero; infinity if no size grows, minus infinity if all
-/// sizes grow.
+/// The size of GrowthCurve::critical_size(); infinity if there is none. Minus infinity if delta_rho
+/// is positive at size 1 and the excess of all sizes exceeds that above each rise through zero.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -67,8 +67,8 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size at which the summed excess has its maximum. Minus infinity if size 1 has the
-/// same maximum; infinity if no excess is positive.
+/// The largest size at which the summed excess has its maximum. Minus infinity if the summed excess
+/// at size 1 equals the maximum; infinity if the maximum is not positive.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);

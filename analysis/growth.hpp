@@ -19,7 +19,7 @@ namespace shearcell {
 /// counted if, for example, most of its grains are in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Like `grew`, but the later crystallite has most grains from a larger earlier crystallite.
+  /// Like `grew`, but the main contributor to the later crystallite was a larger crystallite.
   std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
   std::size_t vanished = 0;  ///< like `shrank`, but including grains in no crystallite
@@ -59,8 +59,8 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
 
 /// delta_rho as a smooth function of ln(size), by local linear regression: a line is fitted to
 /// delta_rho around each size (J. Fan, J. Am. Stat. Assoc. 87, 998 (1992)). Weights are the number
-/// of crystallites times a Gaussian of the distance in ln(size). This assumes no shape of the
-/// curve. All errors come from the bootstrap over runs.
+/// of crystallites times a Gaussian of the distance in ln(size). The fit assumes no
+/// particular shape of the curve. All errors come from the bootstrap over runs.
 class GrowthCurve {
  public:
   /// Standard deviation of the Gaussian in ln(size), which is about 20 % of the size. [choice]
@@ -78,11 +78,11 @@ class GrowthCurve {
   /// The size at which delta_rho rises through zero. If there are several such sizes, it is the one
   /// above which the excess of growing over shrinking crystallites is largest. Empty for fewer than
   /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
-  /// An end is infinite if all sizes grow, or no size grows, in too many bootstrap selections.
+  /// An end is infinite if too many bootstrap selections have no such size.
   std::optional<Estimate> critical_size() const;
   /// The size for which the excess of growing over shrinking crystallites of this size and above is
-  /// largest. There the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer
-  /// et al., Ann. Math. Stat. 26, 641 (1955)). A less precise check of critical_size().
+  /// largest. At this size the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero
+  /// (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). A less precise check of critical_size().
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -69,10 +69,10 @@ struct Measure {
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< for a measure of each grain
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// The name used in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
+  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
-  bool waits = false;           ///< true for the cycle of an event; a run may end before it
+  bool waits = false;           ///< true for the cycle of an event that some runs do not reach
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
@@ -85,8 +85,8 @@ struct CycleEnergies {
 struct RunFacts {
   nlohmann::json parameters = {};   ///< by key of the manifest
   std::optional<Drive> drive = {};  ///< only of a shear
-  /// Simulates `seconds` after the checkpoint, between upright walls that are held in place. Both
-  /// `rest` and `next_cycle` throw NumericalFailure.
+  /// Continues the simulation from the checkpoint for `seconds`, between upright walls that are
+  /// held in place. Both `rest` and `next_cycle` throw NumericalFailure.
   std::function<State(const Checkpoint& from, double seconds)> rest = {};
   /// Simulates the cycle that begins at the checkpoint, with a sample every `stride` steps.
   std::function<CycleEnergies(const Checkpoint& from, std::uint64_t stride)> next_cycle = {};
@@ -106,19 +106,19 @@ struct MeasureInput {
   const RunFacts* run = nullptr;
 };
 
-/// SI values of the units of Mechanics, with the raised stiffness if the checkpoint was stiffened.
-/// NaN if the run's parameters are unknown.
+/// SI values of the units of Mechanics. If the checkpoint was stiffened, the raised stiffness is
+/// used. NaN if the run's parameters are unknown.
 MechanicalUnits mechanical_units(const MeasureInput& input);
 
 /// What a provider needs. `record`: the checkpoint's record in the log. `checkpoint`: its file.
-/// `simulation`: a simulation that begins at the checkpoint, which takes longer than an analysis.
+/// `simulation`: a simulation that begins at the checkpoint (slower than an analysis).
 /// `history`: the measured checkpoints of a whole run.
 enum class ComputedFrom { record, checkpoint, simulation, history };
 
 struct Provider {
   std::string name;
   nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
-  std::vector<Measure> measures = {};  ///< either all or none are measures of each grain
+  std::vector<Measure> measures = {};  ///< either all are per-grain measures, or none is
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
   /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
   /// the measure needs.
@@ -131,8 +131,8 @@ struct Provider {
 
   /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Results from `record` and `history` are not, since they are cheap
-  /// to compute. Measures of each grain are not, since they need more space than the checkpoint.
+  /// Whether results are stored. Not stored: results from `record` and `history`, which are cheap
+  /// to compute, and measures of each grain, which need more space than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
   /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.
@@ -149,9 +149,9 @@ inline constexpr const char* scalars_provider = "scalars";
 /// Provider of the computing time, which is read from the log (FrameRun::core_time_s).
 inline constexpr const char* cost_provider = "cost";
 
-/// The measures of one kind from all providers. Numbers include counts.
+/// The measures of one kind from all providers. Kind `number` includes `count`.
 std::vector<const Measure*> all_measures(MeasureKind kind);
-/// The measure with this name and kind, or null. Numbers include counts.
+/// The measure with this name and kind, or null. Kind `number` includes `count`.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
 /// The provider that computes `measure`, which must belong to a provider.
 const Provider& provider_of(const Measure& measure);

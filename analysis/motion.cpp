@@ -24,7 +24,7 @@ constexpr double reversible_d = 0.01;
 /// One column or entry per grain, by grain id.
 struct Motion {
   /// Displacement in the frame of the tilted walls [d], with x - (y - y_top) tan(theta) in place of
-  /// x. Affine shear of the whole cell displaces no grain.
+  /// x. In this frame, affine shear of the whole cell displaces no grain.
   Eigen::Matrix3Xd displacement;
   /// D^2_min of Falk and Langer, Phys. Rev. E 57, 7192 (1998) [d^2]: the mean, over the neighbours
   /// at the earlier time, of the squared relative motion that remains after the best affine

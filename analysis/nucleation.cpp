@@ -58,8 +58,8 @@ struct Likelihood {
   std::map<std::string, double> score_of;  ///< score of each packing
 };
 
-/// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c. It is
-/// concave in them. Newton's method halves a step that would lower the log-likelihood.
+/// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c, in which it
+/// is concave. Newton's method halves a step that would lower the log-likelihood.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {
@@ -118,9 +118,10 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. There must be a larger cell and a smaller
-/// cell, each at the amplitude and about the phi of at least one event. Cells are compared by N,
-/// since the number of interior grains differs slightly between seeds of one N.
+/// Whether the runs show how the rate depends on size. They must include a cell that is larger than
+/// a cell with an event, and a cell that is smaller than a cell with an event, both at the
+/// amplitude and about the phi of the event. Cells are compared by N, since the number of interior
+/// grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

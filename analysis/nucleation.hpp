@@ -83,9 +83,9 @@ inline constexpr double rate_step = 0.0005;
 /// which the log-likelihood is within a limit of its maximum. If runs share a packing, the
 /// limit is multiplied by the ratio of the variance of the score between packings to that of
 /// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
-/// (2011)). Empty for fewer than least_runs packings. Also empty unless a larger cell (more grains
-/// N) and a smaller cell were observed, each at the amplitude and about the phi of at least one
-/// event.
+/// (2011)). Empty for fewer than least_runs packings. Also empty unless the runs include a cell
+/// that is larger (more grains N) than a cell with an event, and a cell that is smaller than a cell
+/// with an event, both at the amplitude and about the phi of the event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -12,9 +12,9 @@
 
 namespace shearcell {
 
-/// Whether a run shows its onset. The run is censored if its onset is before its first checkpoint
-/// (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is between these
-/// checkpoints, but the method finds no phi.
+/// Whether the onset of a run was observed. A run is censored if its onset is before its first
+/// checkpoint (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is
+/// between these checkpoints, but the method finds no phi.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>
 inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",

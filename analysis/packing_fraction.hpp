@@ -11,8 +11,8 @@
 
 namespace shearcell {
 
-/// Mean distance from a rough wall's plane to the inner surface of the wall grains [d]. Their
-/// centres lie 0 to d/4 behind the plane.
+/// Mean distance from a rough wall's plane to the inner surface of the wall grains [d]. The
+/// centres of the wall grains lie 0 to d/4 behind the plane.
 inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
@@ -32,7 +32,7 @@ inline double interior_margin(const Cell& cell) {
 /// not count.
 struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
-  std::vector<std::int32_t> contacts;  ///< of each grain, with grains and wall grains
+  std::vector<std::int32_t> contacts;  ///< contacts of each grain with grains and wall grains
   double mean = 0;  ///< Eq. S3 over touching pairs of grains [d]; 0 without pairs
 };
 

@@ -164,8 +164,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
-  // In a packing the sum of `most` is at most a third of this limit. In a manipulated file the cell
-  // may be far larger.
+  // Limits the computing time if a manipulated file has a far larger cell than any packing. For
+  // packings the sum of `most` is at most a third of this limit.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;

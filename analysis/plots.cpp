@@ -56,7 +56,7 @@ bool draws_runs(const PlotSpec& plot) {
 struct Selected {
   const FrameRun* run;
   std::vector<const CheckpointMeasures*> checkpoints = {};
-  /// The runs whose mean is subtracted; several if runs with one packing differ only by noise.
+  /// Runs of the variant PlotSpec::minus with the same packing. Their mean is subtracted.
   std::vector<const FrameRun*> partners = {};
 };
 
@@ -74,8 +74,8 @@ double value_of(const NumberColumn& column, const Selected& one,
   return own - over_runs(values).mean.value_or(std::nan(""));
 }
 
-/// Selects runs and checkpoints. With PlotSpec::minus, each run needs a partner with its packing,
-/// and each checkpoint needs a partner at its cycle. Sets a note for the caption.
+/// Selects runs and checkpoints. With PlotSpec::minus, each run needs a partner with the same
+/// packing, and each checkpoint needs a partner at the same cycle. Sets a note for the caption.
 std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
   std::vector<Selected> selected;
   json of_runs = plot.where;
@@ -156,13 +156,13 @@ struct Sample {
 struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< why y is missing, if it is a measure of the whole run
+  Missing missing = Missing::nothing;  ///< why y is missing, if y is a measure of the whole run
   /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
 
 struct Curve {
-  std::string variant;  ///< its name in the CSV, with ';' for ','
+  std::string variant;  ///< name of the variant in the CSV, with ';' instead of ','
   Text title = {};
   Look look = {};
   std::vector<Trace> traces = {};
@@ -252,8 +252,8 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. Variants of
-/// manifests have no special character except the comma. Variants of other stores may have more.
+/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. The comma is
+/// the only special character in variants of manifests. Variants in other stores may have others.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -552,8 +552,8 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// The axis of a measure: the axis of "largest_crystallite" is named "largest crystallite". If the
-/// measure's name ends in its unit, the axis has this unit.
+/// The axis of a measure: the axis of "largest_crystallite" is named "largest crystallite". A unit
+/// at the end of the measure's name becomes the unit of the axis.
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
   const bool has_unit = name.size() < measure.size();
@@ -613,7 +613,7 @@ Series series_of(const Curve& curve) {
           .filter = {"variant", curve.variant}};
 }
 
-/// Removes the symbols of a curve, since symbols at every point would hide it.
+/// Removes the symbols of a curve, since symbols at every point would hide the line.
 void leave_out_symbol(const Curve& curve, Series& series) {
   series.point = 0;
   series.join = curve.look.join;

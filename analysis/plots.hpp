@@ -29,8 +29,8 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// The style of the curve whose variants have the parameters `where`. Members that are "" follow
-/// from the swept values (styles.hpp).
+/// The style of the curve whose variants have the parameters `where`. Members that are "" are
+/// chosen by the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
   std::string column = {};  ///< instead of `where`: the name of one of several y columns

@@ -33,18 +33,18 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.0667, 13, 40},
     PublishedAmplitude{
         0.0833, 16, 15,
-        "the size in 8 runs, about as many as the supplement has, scatters over both "
-        "sides of the lower edge of the margin, 12 grains, however many runs we have"},
+        "in studies with 8 runs, about as many as the supplement has, the size may be above "
+        "or below 12 grains, the lower edge of the margin; more runs of ours do not change this"},
     PublishedAmplitude{
         0.1, 20, 1,
-        "our size, 25.3 grains in 40 runs, is at the upper edge of the margin, 25 "
-        "grains, and in 8 runs, about as many as the supplement has, it scatters over "
-        "both sides of the edge"}};
+        "our size, 25.3 grains in 40 runs, is near the upper edge of the margin, 25 grains; in "
+        "studies with 8 runs, about as many as the supplement has, the size may be above or "
+        "below this edge"}};
 /// Why the claim that the critical size grows with A cannot be decided.
 inline constexpr const char* growth_cannot_be_decided =
-    "whether the size grows with A depends on the cycles that crystallites are followed: followed "
-    "over one cycle it grows, over 20 it falls, and over 5 the ratio is near 1, the edge of the "
-    "claim";
+    "whether the size grows with A depends on the number of cycles over which crystallites are "
+    "followed: with 1 cycle the size grows, with 20 cycles it falls, and with 5 cycles the "
+    "ratio of the sizes is near 1, the threshold of the claim";
 
 /// Returns the published amplitude nearest to `amplitude_rad`. Its numbers are used. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {

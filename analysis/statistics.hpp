@@ -119,8 +119,8 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
 /// computed from the other two errors: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
-/// Number of runs per group, or of pairs, for which an interval excludes, with 90 % probability, a
-/// value that differs from the true value by `distance`. With `both_sides` the interval must
+/// Number of runs per group (or of pairs) that are needed so that, with 90 % probability, the
+/// interval excludes a value at `distance` from the true value. With `both_sides` the interval must
 /// exclude both values at this distance. A normal distribution is assumed, with Student's t for
 /// type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
 /// (2008), section 3.2. Empty if the number is more than 10000. The spread of a few runs is
@@ -148,7 +148,7 @@ struct SurvivalStep {
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
 /// Returns the first cycle after which fewer than half of the runs still wait. If exactly half wait
-/// between two events, returns the mean of both cycles. Empty if more than half wait at the end.
+/// between two events, returns the mean of their cycles. Empty if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
 /// The log-rank statistic: the events of `a`, minus the events expected if both groups wait equally

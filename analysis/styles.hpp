@@ -51,7 +51,7 @@ class Looks {
   explicit Looks(const Frame& frame);
 
   /// The look of a curve. If all its runs belong to one variant, the variant's swept values decide
-  /// the look. Otherwise `key` decides; it has the values that all runs of the curve share.
+  /// the look. Otherwise `key` decides: the values that all runs of the curve share.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

@@ -92,7 +92,7 @@ std::string order_of_waits(const Verdict& verdict) {
   }
   const double end = std::isfinite(low) ? low : high;
   if (!std::isfinite(end)) return fmt::format("no bound on the ratio of the cycles ({})", level);
-  // An interval that allows both "earlier" and "later" has a bound on only one of them.
+  // If the interval includes both "earlier" and "later", its finite end bounds only one of them.
   const bool least = std::isfinite(low) ? low >= 0 : high < 0;
   return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
                      least     ? ""

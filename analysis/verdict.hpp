@@ -66,9 +66,9 @@ struct Verdict {
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< seeds at each planned look (interim analysis)
   std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
-  std::string note;                        ///< how the runs were compared, and which are missing
-  bool primary = false;                    ///< the runs were made to decide this claim
-  Table entered = {};                      ///< rows with the numbers that the verdict uses
+  std::string note;      ///< how the runs were compared, and which runs are missing
+  bool primary = false;  ///< the runs were made to decide this claim
+  Table entered = {};    ///< rows with the numbers that the verdict uses
 };
 
 /// Returns agrees or supported if the interval lies in the range that the claim expects; differs or
@@ -78,8 +78,8 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim states why it cannot be decided, the verdict is undecidable and the note has the reason.
 /// `runs_needed` runs would decide the claim with 90 % probability if the true value is 0 (for
-/// Relation::same) or twice the margin. If the interval excludes 0, or if that many runs exist
-/// already, the true value is assumed to be the estimate. `runs_needed` exceeds Estimate::runs.
+/// Relation::same) or twice the margin. If the interval excludes 0, or if this many runs exist
+/// already, the assumed true value is the estimate. `runs_needed` exceeds Estimate::runs.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

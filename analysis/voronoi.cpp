@@ -56,7 +56,7 @@ constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
 constexpr std::array<std::array<std::uint8_t, 4>, 4> edge_bit = {
     {{0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}}};
 
-/// Number of the corner of t with this vertex; one of the four corners must have it.
+/// Index (0 to 3) of the corner of t at `vertex`, which must be a vertex of t.
 std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
   return (t.vertex[1] == vertex ? 1U : 0U) + (t.vertex[2] == vertex ? 2U : 0U) +
          (t.vertex[3] == vertex ? 3U : 0U);
@@ -440,7 +440,7 @@ class Tessellation {
   std::vector<Eigen::Vector3d> point_;
   std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
-  double reach_ = 0;  // largest extent of a sphere around a corner beyond the period in z [d]
+  double reach_ = 0;  // largest distance by which a sphere around a corner exceeds the z period [d]
   std::vector<std::vector<Side>> sides_;          // by measured site
   std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
   std::vector<Corner> polygon_;                   // current face

@@ -192,9 +192,9 @@ TEST(Compare, EqualSidesAreNoEvidence) {
   EXPECT_EQ(same.ruling, Ruling::undecided);
   EXPECT_FALSE(same.runs_needed);
   EXPECT_EQ(same.note,
-            "4 pairs of runs that share a packing; the numbers of both sides are equal to all "
-            "digits, usually because both sides are the same computation; this is no evidence that "
-            "they agree");
+            "4 pairs of runs that share a packing; the numbers of the two sides agree in every "
+            "digit, usually because both sides are the same computation; this is no evidence that "
+            "the sides agree");
   Runs constant = group(4, 0);
   for (FrameRun& run : constant) {
     for (CheckpointMeasures& checkpoint : run.checkpoints) checkpoint.measures.numbers["phi"] = 0.5;
@@ -434,7 +434,8 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(has(verdict.note, "an unplanned look, with 4 seeds beyond the plan, gives: 0.04"));
+  EXPECT_TRUE(
+      has(verdict.note, "an unplanned look that includes 4 seeds beyond the plan gives: 0.04"));
 }
 
 }  // namespace

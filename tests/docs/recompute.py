@@ -439,7 +439,7 @@ def ruling(claim, interval, seeds):
     margin = claim["margin"]
     if claim["verdict"] == "cannot be decided":  # for the reason that the note states
         return claim["verdict"]
-    if low == high == 0 and "equal to all digits" in claim["note"]:
+    if low == high == 0 and "agree in every digit" in claim["note"]:
         return "undecided"
     if claim.get("looks") and seeds > claim["look"]:  # between two looks there is no verdict
         return "undecided"
