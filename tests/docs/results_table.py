@@ -40,7 +40,7 @@ HEADLINES = [
     ("C", "C.critical_size@amplitude_rad=0.0833",
      "critical size [grains], A = 0.0833: as many crystallites of this size grow as shrink", "about 16"),
     ("committor", "committor.size@amplitude_rad=0.0833",
-     "critical size [grains], A = 0.0833: half of the crystallites in cloned states grow",
+     "critical size [grains], A = 0.0833: a crystallite of this size grows in half of the copies of a state",
      "16 by the first definition", "another observable"),
     ("S7", "S7.inner", "share of nuclei in the inner half of the width minus the share in the outer half", "0"),
     ("S7", "S7.top", "share of nuclei in the upper third of the height minus the share in the lower third", "over 0.2"),
