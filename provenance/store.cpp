@@ -51,9 +51,10 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
         kLogFile));
   }
   if (access != Access::create) {
-    throw NotFound(fmt::format(
-        "{}: there is no store here; create one with `shearcell run`, or name another with --store",
-        name));
+    throw NotFound(
+        fmt::format("{}: there is no store here; create one with `shearcell run`, or set its "
+                    "folder with --store",
+                    name));
   }
   if (const std::string other = other_file_in(folder); !other.empty()) {
     throw UsageError(fmt::format(
@@ -64,8 +65,9 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw MachineError(fmt::format("{}: cannot create the store: {}; name another with --store",
-                                   name, error.message()));
+    throw MachineError(
+        fmt::format("{}: cannot create the store: {}; choose another folder with --store", name,
+                    error.message()));
   }
   return folder;
 }
@@ -207,7 +209,7 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
-        fmt::format("run {}: this program does not hold the run; start it first", id));
+        fmt::format("run {}: this process must start the run before it records", id));
   }
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);
