@@ -51,10 +51,9 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
         kLogFile));
   }
   if (access != Access::create) {
-    throw NotFound(
-        fmt::format("{}: there is no store here; create one with `shearcell run`, or set its "
-                    "folder with --store",
-                    name));
+    throw NotFound(fmt::format(
+        "{}: there is no store here; make one with `shearcell run`, or choose a store with --store",
+        name));
   }
   if (const std::string other = other_file_in(folder); !other.empty()) {
     throw UsageError(fmt::format(
@@ -65,9 +64,8 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw MachineError(
-        fmt::format("{}: cannot create the store: {}; choose another folder with --store", name,
-                    error.message()));
+    throw MachineError(fmt::format("{}: cannot create the store: {}; set --store to another folder",
+                                   name, error.message()));
   }
   return folder;
 }

@@ -319,8 +319,7 @@ Verdict size_is_published(const Amplitude& one) {
                    one.published),
        margin_critical_size, Relation::same,
        fmt::format("committor.size@amplitude_rad={}", one.amplitude)},
-      fmt::format("size at which half of the crystallites grow, relative difference from {} grains",
-                  one.published),
+      fmt::format("size at which 50 % grow, relative difference from {} grains", one.published),
       size, packings, note, fates_of({&one}));
 }
 

@@ -385,8 +385,7 @@ void add_export(CLI::App& app, Context& context) {
           "Only checkpoints of these cycles (default: all that the experiments request; not with "
           "ro-crate)")
       ->type_name("A[:B[:STEP]]");
-  command->add_flag("--metres", options->metres,
-                    "Write extended XYZ in SI units, not in diameters");
+  command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);

@@ -223,8 +223,7 @@ struct VariantCheck {
     const auto& [every, phases, at] = scale.checkpoints;
     constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse(at, key, "cannot be used with protocol stiffen, which has no cycles",
-             "Remove this key.");
+      refuse(at, key, "protocol stiffen has no cycles", "Remove this key.");
     } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
       refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {

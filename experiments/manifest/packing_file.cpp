@@ -772,10 +772,9 @@ class PackingReader {
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
             ? fmt::format("It would be right in {}. Is the unit right?", in_m ? "d" : "m")
-        : in_m
-            ? fmt::format("In the manifest it is {:.6g} m. Change `diameter_m`, or scale the file.",
-                          expected)
-            : "Lengths in d are divided by the diameter, so the diameter must be 1.";
+        : in_m ? fmt::format("It should be {:.6g} m. Change `diameter_m`, or scale the file.",
+                             expected)
+               : "Lengths in d are divided by the diameter, so the diameter must be 1.";
     refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),
                 remedy + about_diameter_);
   }

@@ -133,13 +133,11 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
                 "of its keys; `zip` combines the k-th values of all its keys",
          .example = "{grid: {fluid: [still, cell]}}"});
-  visit(scale.settle,
-        {.name = "settle",
-         .doc = "parameters and their values while the packing settles, if these differ "
-                "from the values during the shear. The parameters must act on the "
-                "grains or on the moving wall. Variants that differ only in the "
-                "shear then share a packing",
-         .example = "{drag_kg_per_s: 1.28e-3}"});
+  visit(scale.settle, {.name = "settle",
+                       .doc = "parameter values that apply only while the packing settles. The "
+                              "parameters must act on the grains or on the moving wall. Variants "
+                              "that differ only in the shear then share a packing",
+                       .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
          .doc = "initial state, if not loose grains that settle: the state of a recorded run, "
@@ -315,8 +313,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; a measure or an expression, as in `y` of a plot. A curve "
-                               "such as pair_correlation cannot be compared",
+                        .doc = "required; like `y` of a plot, but curve measures are not allowed",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
@@ -382,7 +379,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                           "`lower`: the first side is higher or lower by more than the margin"});
   visit(claim.statement,
         {.name = "statement",
-         .doc = "what the claim says, as a sentence for readers; default: made from the other keys",
+         .doc = "what the claim says, for human readers; default: made from the other keys",
          .longest = 300,
          .folds = true});
   visit(claim.optional, {.name = "optional",
@@ -400,12 +397,11 @@ void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.experiment, {.name = "experiment",
                               .doc = "required; its name: letters, digits, - and _",
                               .example = "drag"});
-  visit(manifest.question,
-        {.name = "question",
-         .doc = "the question that the experiment answers, as a sentence for readers",
-         .example = "Does the fluid matter?",
-         .longest = 2'000,
-         .folds = true});
+  visit(manifest.question, {.name = "question",
+                            .doc = "the question that the experiment answers, for human readers",
+                            .example = "Does the fluid matter?",
+                            .longest = 2'000,
+                            .folds = true});
   visit(manifest.of,
         {.name = "of",
          .doc = "experiments in the store whose runs the plots and claims use, instead of the keys "
@@ -1057,8 +1053,7 @@ struct Reader {
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
         if (is_auto(*field, item)) {
           reject(item, "cannot be swept as `auto`",
-                 "Set the parameter to `auto` in `base` or in a scale. Each variant then gets its "
-                 "own value.");
+                 "Set it to `auto` in `base` or a scale. Each variant gets its own value.");
         } else if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
@@ -1227,7 +1222,7 @@ struct Reader {
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
     if (file != nullptr && start.file.empty()) {
-      return reject_key(*file, "is empty", "Write the path of a file.");
+      return reject_key(*file, "is not a path", "Write the path of a file.");
     }
     if (checkpoint == nullptr) return;
     const string_view text = checkpoint->text;

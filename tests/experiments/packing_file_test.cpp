@@ -164,8 +164,7 @@ const std::vector<BadPacking> kBad = {
     {"RadiusOfZero", "a.csv", "x,y,z,radius\n1,2,3,0\n",
      "a.csv:2:1: the diameter is 0. It must be positive."},
     {"DiameterOfAnotherRun", "a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,0.002\n",
-     "a.csv:2:1: the diameter is 0.002 m. In the manifest it is 0.003 m. Change `diameter_m`, or "
-     "scale the "
+     "a.csv:2:1: the diameter is 0.002 m. It should be 0.003 m. Change `diameter_m`, or scale the "
      "file.",
      kUnstated},
     {"DiameterNotOne", "a.csv", "x,y,z,radius\n1,2,3,1\n",
