@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots and claims that a manifest states.
+// Plots and claims that a manifest defines.
 #pragma once
 
 #include <array>

@@ -90,13 +90,13 @@ struct SweepAxis {
 };
 
 /// The variants are all combinations of the values of the `grid` axes (the first axis varies
-/// slowest) and the rows of the `zip` axes (which advance together).
+/// slowest) and the rows of the `zip` axes (row k has the k-th value of each `zip` axis).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest states a count, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
