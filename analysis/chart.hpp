@@ -54,7 +54,7 @@ struct TableColumn {
   std::string name;
   std::string meaning = {};
 
-  TableColumn(std::string of, std::string means = {})  // NOLINT: most columns are names alone
+  TableColumn(std::string of, std::string means = {})  // NOLINT: most columns need only a name
       : name(std::move(of)), meaning(std::move(means)) {}
   TableColumn(const char* of) : name(of) {}  // NOLINT
   bool operator==(const TableColumn&) const = default;

@@ -168,8 +168,8 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
       add_note(verdict.note,
-               fmt::format("if this estimate is the true value, the claim is decided by then "
-                           "with probability {:.2f}",
+               fmt::format("if this estimate is the true value, the claim is decided at or "
+                           "before that look with probability {:.2f}",
                            there.as_claimed + there.against));
     }
   }
@@ -224,8 +224,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 
 namespace {
 
-/// For each run of side `k`: the values of the swept keys that this side does not state. A claim
-/// may average over such values if they are the same on both sides.
+/// The values of the swept keys that `between` does not set for side `k`, for each of its runs. A
+/// claim may average over these values if both sides have the same values.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

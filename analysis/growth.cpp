@@ -112,7 +112,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
   struct Outcome {
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains by later size of crystallite
     std::int32_t most = 0;                           // grains shared with crystallite `end`
     std::size_t end = 0;                             // later crystallite with most shared grains
   };

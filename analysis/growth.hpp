@@ -22,7 +22,7 @@ struct GrowthCount {
   /// Like `grew`, but the main contributor to the later crystallite was a larger crystallite.
   std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
-  std::size_t vanished = 0;  ///< like `shrank`, but including grains in no crystallite
+  std::size_t vanished = 0;  ///< not in `shrank`, but most grains are in smaller or no crystallites
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
   std::size_t smaller() const { return shrank + vanished; }  ///< "shrinking" in the supplement

@@ -79,13 +79,13 @@ inline constexpr double rate_step = 0.0005;
 /// Maximum-likelihood estimate of the exponent a in rate = c(amplitude, phi) n^a, where n is the
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
-/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It holds the exponents for
-/// which the log-likelihood is within a limit of its maximum. If runs share a packing, the
+/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It contains all exponents
+/// for which the log-likelihood is within a limit of its maximum. If runs share a packing, the
 /// limit is multiplied by the ratio of the variance of the score between packings to that of
 /// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
-/// (2011)). Empty for fewer than least_runs packings. Also empty unless the runs include a cell
-/// that is larger (more grains N) than a cell with an event, and a cell that is smaller than a cell
-/// with an event, both at the amplitude and about the phi of the event.
+/// (2011)). Empty for fewer than least_runs packings. Also empty unless, for some event, there is a
+/// cell with fewer grains N and, for some event, a cell with more grains N, each at the same
+/// amplitude and nearly the same phi as the event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

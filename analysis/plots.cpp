@@ -318,8 +318,8 @@ std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> 
 }
 
 /// For each group, the index of its style in PlotSpec::series. The index is the number of styles if
-/// no style fits, or if the style fits another group too. The styles of a listed plot are used only
-/// if PlotSpec::series contains every parameter in which the groups differ.
+/// no style matches the group, or if the style matches several groups. If PlotSpec::listed, styles
+/// are used only if PlotSpec::series contains every parameter in which the groups differ.
 std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group> groups) {
   std::vector<json> keys;
   for (const Group& group : groups) keys.push_back(group.key);
@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets colour and symbol if the series states them.
+/// Sets the colour and the symbol that the series entry gives.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest states the colour of a curve, no other curve may have this colour.
+  // If a manifest sets the colour of a curve, no other curve may have this colour.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {
@@ -870,7 +870,7 @@ Table draw(const Panel& panel) {
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, after the first run of a curve has ended";
+      table.chart.note = "Thin lines: single runs, after the end of the shortest run of the curve";
     }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
@@ -945,7 +945,7 @@ void note_equal_looks(const Panel& panel, Table& table) {
           std::string("Some curves look the same, since there are more curves than styles");
 }
 
-/// Adds a column with the value of the panel's parameter, after the variant.
+/// Inserts a column with the value of the panel's parameter after the column of the variant.
 void add_panel_column(const std::string& parameter, const json& value, Table& table) {
   if (table.place(parameter) < table.columns.size()) return;
   table.columns.insert(table.columns.begin() + 1, parameter);

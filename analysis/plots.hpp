@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots and claims that a manifest states.
+// Plots and claims that a manifest defines.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y"
 /// chosen by the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameters and their values
-  std::string column = {};  ///< instead of `where`: the name of one of several y columns
+  std::string column = {};  ///< selects a curve by its y column, instead of by `where`
   std::string label = {};   ///< may have formulas (formula())
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names

@@ -181,14 +181,14 @@ std::vector<Provider> profile_providers() {
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains against the upper limit of |q6 - q6 of a lattice|", curve,
+                     "crystalline grains for each upper limit of |q6 - q6 of a lattice|", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains against the lower limit of phi_local", curve,
+                     "crystalline grains for each lower limit of phi_local", curve,
                      "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
-                     "grains in the largest crystallite against the smallest connecting face, as a "
-                     "fraction of the mean cell surface",
+                     "grains in the largest crystallite for each lower limit of connecting faces, "
+                     "as a fraction of the mean cell surface",
                      curve, "connecting_face", "1"}},
        .compute = sensitivity}};
 }

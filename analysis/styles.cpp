@@ -65,7 +65,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
   Rank first = rank_of(variant, variants_, all.first(std::min<std::size_t>(1, all.size())));
   Rank rest = rank_of(variant, variants_, all.subspan(std::min<std::size_t>(1, all.size())));
   // Colour and symbol change together if only one key varies, or if the keys have more values than
-  // there are colours or symbols. 7 colours and 10 symbols then give 70 different looks.
+  // there are colours or symbols. 7 colours and 10 symbols then give 70 combinations.
   std::size_t dashes = rest.rank;
   if (rest.count <= 1 || first.count > safe_colours.size() || rest.count > curve_symbols) {
     first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;

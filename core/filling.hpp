@@ -31,7 +31,7 @@ struct Geometry {
 };
 
 /// Width L [d] of a cell that holds the grains at nominal_packing_fraction. The depth is also L,
-/// and the height is height_over_width * L. Each rough wall takes a layer of 0.175 d from the cell.
+/// and the height is height_over_width * L. A layer of 0.175 d at each rough wall holds no grains.
 double cell_width(const Geometry& geometry);
 
 /// Callback, called about once per millisecond while grains are placed. It may throw to stop.

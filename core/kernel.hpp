@@ -67,7 +67,7 @@ struct StepTask {
   std::size_t grains = 0;
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
-  std::array<WallPlane, 4> planes;  ///< the plane of the moving wall first
+  std::array<WallPlane, 4> planes;  ///< planes[0] belongs to the moving wall
   /// Output for each grain of a block near the moving wall: y component of the sum over the grain's
   /// contacts with this wall [d].
   double* moving_wall_force_y = nullptr;
@@ -126,7 +126,7 @@ struct PruneTask {
   std::size_t outer_stride = 0;
   const std::uint16_t* outer_count = nullptr;   ///< per grain
   std::int32_t first_wall = 0, moving_end = 0;  ///< range of the moving wall's row offsets
-  std::array<WallPlane, 4> planes;              ///< the plane of the moving wall first
+  std::array<WallPlane, 4> planes;              ///< planes[0] belongs to the moving wall
   double wall_margin = 0;                       ///< margin of the wall planes [d]
   std::int32_t* inner = nullptr;                ///< output, laid out as in NeighbourRows
   std::size_t inner_stride = 0;                 ///< largest number of slots of a block

@@ -134,7 +134,7 @@ class Simulation {
   StepTask task_;
   std::array<AlignedVector<double>, 3> sum_;  // contact sums for forces()
   Forces forces_;
-  bool was_set_ = false;  // the lists have not been checked since set_state()
+  bool was_set_ = false;  // set_state() was called after the last check of the lists
   std::uint64_t evaluations_ = 0;
   ListCounts counts_;
 };

@@ -19,7 +19,7 @@ using nlohmann::json;
 namespace events {
 namespace {
 
-/// A member that only payloads of layout 2 have. body() sets it to null in payloads of layout 1.
+/// A member that layout 2 added. body() adds it with the value null to payloads of layout 1.
 struct Added {
   std::string_view type;
   const char* member;

@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// `lost`: a later attempt started, but no event ended this attempt (a kill, a power cut).
+/// `lost`: no event records the end of the attempt (kill, power cut), and a later attempt started.
 enum class AttemptOutcome { running, completed, interrupted, failed, lost };
 template <>
 inline constexpr auto kNames<AttemptOutcome> =
@@ -44,9 +44,9 @@ struct Attempt {
   std::string why;  ///< reason for a failure or interruption; "" otherwise
   /// Host, build and libraries as recorded: a JSON object, which may be empty.
   nlohmann::json host = nlohmann::json::object();
-  std::string from_run;            ///< run of the initial state; "" for loose grains or a file
-  std::string from_checkpoint;     ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;  ///< core/bits_version.hpp; derived for old events
+  std::string from_run;                  ///< run that recorded the initial state; "" if no run did
+  std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
+  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; derived for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 

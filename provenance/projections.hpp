@@ -54,7 +54,7 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 /// Whether `wanted` has a place that the stage does not have, or requests for its place a larger
 /// target or another checkpoint interval. `known` is the stored stage; nothing if there is none.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether `run` was the last run declared for `place`, which runs from other packings can share.
+/// Whether no other run was declared for `place` after `run`, for example from another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.

@@ -86,7 +86,7 @@ inline bool has_ended(StageState state) {
 /// A stage as a manifest states it or as its events describe it.
 struct Stage {
   std::string id;                                      ///< 64 hex digits
-  std::string parent;                                  ///< id of the stage before it; "" if none
+  std::string parent;                                  ///< id of the preceding stage; "" if none
   std::string kind;                                    ///< "prepare", "shear", ...
   nlohmann::json resolved = nlohmann::json::object();  ///< parameters; the id is their hash
   /// `declared`: not started, or completed and later found incomplete (a larger target, or a

@@ -311,7 +311,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   make_folder(folder);
   if (!fs::is_empty(folder) && !is_crate_of(folder, facts.stages.back().stage.id)) {
     throw std::invalid_argument(folder.string() +
-                                ": the folder is not an export of this run; name another one");
+                                ": the folder is not an export of this run; name another folder");
   }
   std::vector<std::string> written;
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);

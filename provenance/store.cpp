@@ -52,7 +52,7 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   }
   if (access != Access::create) {
     throw NotFound(fmt::format(
-        "{}: there is no store here; create one with `shearcell run`, or name another with --store",
+        "{}: there is no store here; make one with `shearcell run`, or choose a store with --store",
         name));
   }
   if (const std::string other = other_file_in(folder); !other.empty()) {
@@ -64,7 +64,7 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw MachineError(fmt::format("{}: cannot create the store: {}; name another with --store",
+    throw MachineError(fmt::format("{}: cannot create the store: {}; set --store to another folder",
                                    name, error.message()));
   }
   return folder;
@@ -207,7 +207,7 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
-        fmt::format("run {}: this program does not hold the run; start it first", id));
+        fmt::format("run {}: this process must start the run before it records", id));
   }
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);

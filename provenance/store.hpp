@@ -178,7 +178,7 @@ class Store {
   /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
   /// file. Throws FilePruned if the checkpoint is pruned, even if `record` is older.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
-  /// Decodes read_file() and compares it with the record. Throws StoreDamaged with the file's path.
+  /// Decodes the file and compares the content with the record. Throws StoreDamaged with the path.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;

@@ -65,8 +65,8 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 const Estimator spread_ratio = {
     .name = "spread_ratio",
     .meaning =
-        "standard deviation of the number within variants, divided by the standard deviation of "
-        "`against` in the same runs, minus 1",
+        "s/t - 1, where s is the standard deviation of the number within variants, and t is the "
+        "standard deviation of `against` within variants",
     .key = "against",
     .of_run = true,
     .over_variants = true,

@@ -32,7 +32,7 @@ constexpr double rare = 0.1;
 /// Number of clones in which a crystallite has each outcome (Fate).
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;                 ///< `gone`, but a descendant grew later
+  std::size_t revived = 0;  ///< clones with fate `gone` in which a descendant grew later
 
   std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
   void add(const Ending& end) {
@@ -319,7 +319,7 @@ Verdict size_is_published(const Amplitude& one) {
                    one.published),
        margin_critical_size, Relation::same,
        fmt::format("committor.size@amplitude_rad={}", one.amplitude)},
-      fmt::format("size at which half grow, relative difference from {} grains", one.published),
+      fmt::format("size at which 50 % grow, relative difference from {} grains", one.published),
       size, packings, note, fates_of({&one}));
 }
 

@@ -84,7 +84,7 @@ Check writing(const std::string& store, const fs::path& place) {
   const int file = mkstemp(name.data());
   if (file < 0) {
     return {"writing", fmt::format("not possible in {} ({})", place.string(), std::strerror(errno)),
-            "missing", "the program cannot write to this folder; name another with --store"};
+            "missing", "the program cannot write to this folder; choose another with --store"};
   }
   constexpr int count = 10;
   const Stopwatch watch;

@@ -55,12 +55,12 @@ const std::array kFormats = {
     ExportFormat{"extxyz",
                  "extended XYZ, one file for OVITO, ASE, MDAnalysis; lengths in diameters", ".xyz",
                  [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
-    ExportFormat{"vtk", "VTK PolyData and run.json, a folder for ParaView; SI units", "",
+    ExportFormat{"vtk", "a folder for ParaView: VTK PolyData files and run.json; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "LAMMPS data and scripts, a folder for LAMMPS and OVITO; SI units", "",
+    ExportFormat{"lammps", "a folder for LAMMPS and OVITO: LAMMPS data and scripts; SI units", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
-    ExportFormat{"contacts", "overlaps and forces as CSV, and run.json, a folder for pandas", "",
-                 [](const auto& out, auto, auto) { return contacts_writer(out); }},
+    ExportFormat{"contacts", "a folder for pandas: overlaps and forces as CSV files, and run.json",
+                 "", [](const auto& out, auto, auto) { return contacts_writer(out); }},
     ExportFormat{"ro-crate", "RO-Crate 1.1 with Process Run Crate 0.5", "", nullptr},
 };
 
@@ -385,7 +385,7 @@ void add_export(CLI::App& app, Context& context) {
           "Only checkpoints of these cycles (default: all that the experiments request; not with "
           "ro-crate)")
       ->type_name("A[:B[:STEP]]");
-  command->add_flag("--metres", options->metres, "Write extended XYZ in SI units, not diameters");
+  command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")
       ->type_name("URI")
       ->check(check_uri);

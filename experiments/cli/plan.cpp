@@ -31,7 +31,7 @@ std::string state_of(const Line& line) {
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
-// Number of cycles of the completed stage, if no `until` ends it earlier.
+// Number of cycles after which the stage is complete, unless an `until` ends it earlier.
 double cycles_of(const Line& line) {
   return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
 }
@@ -178,7 +178,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer particle-steps; an estimate needs a run that this `until` has ended\n");
+    fmt::print("fewer particle-steps; estimated only after this `until` has ended a run\n");
   } else {
     fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end like earlier runs\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);

@@ -448,7 +448,7 @@ void require_no_experiment(const std::string& name, const std::vector<Stage>& st
 
 struct ShowOptions {
   std::string name;
-  bool list = false;  ///< whether to list every checkpoint behind a figure
+  bool list = false;  ///< whether to list every checkpoint that a figure uses
 };
 
 void show(const ShowOptions& options, Context& context) {

@@ -233,7 +233,7 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 }
 
 /// The scale of the run that was declared last. Runs of older manifest versions are considered only
-/// if there is no run of a newest version.
+/// if no run belongs to a newest version.
 std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
     return std::ranges::count(manifests, run.place.manifest, &ReadManifest::sha256) > 0;

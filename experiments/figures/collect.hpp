@@ -52,9 +52,9 @@ struct WantedFigures {
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// Returns figures, plots and claims of the newest manifests: those that have one of `names` and
-/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, the
-/// manifests need not list the figures in `names`. Throws NotFound for an unknown figure or
+/// Returns the figures, plots and claims of the newest manifests that have one of `names` and
+/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, `names`
+/// may contain figures that these manifests do not list. Throws NotFound for an unknown figure or
 /// experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});

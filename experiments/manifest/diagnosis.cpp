@@ -223,7 +223,7 @@ struct VariantCheck {
     const auto& [every, phases, at] = scale.checkpoints;
     constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
-      refuse(at, key, "protocol stiffen has no phases of a cycle", "Leave them out.");
+      refuse(at, key, "protocol stiffen has no cycles", "Remove this key.");
     } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
       refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
@@ -286,8 +286,8 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
   for (const VariantLabel& label : manifest.labels) {
     if (used.contains(&label)) continue;
-    reject(label, "names no variant of any scale", words_of(label.where),
-           "A label states swept keys and one value of each, such as `\"fluid=still\"`.");
+    reject(label, "does not match a variant of any scale", words_of(label.where),
+           "A label has swept keys with one value each, such as `\"fluid=still\"`.");
   }
 }
 
@@ -399,7 +399,7 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   return advice;
 }
 
-// Adds the warnings about parameter values, each once, with the variants that it concerns.
+// Adds each warning about parameter values once, with the variants that the warning concerns.
 void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                         std::span<const Variant> variants, std::size_t seeds,
                         std::vector<string>& warnings) {
@@ -522,8 +522,8 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   }
   if (alone.empty()) return "";
   return format(
-      "{} {} other packings than {}, so the plot omits {}. Under `settle`, state the parameters "
-      "that all packings must share.",
+      "{} {} different packings from {}, so the plot omits {}. To use one packing for all "
+      "variants, give the swept parameters fixed values under `settle`.",
       some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
       alone.size() == 1 ? "this variant" : "these variants");
 }

@@ -90,13 +90,13 @@ struct SweepAxis {
 };
 
 /// The variants are all combinations of the values of the `grid` axes (the first axis varies
-/// slowest) and the rows of the `zip` axes (which advance together).
+/// slowest) and the rows of the `zip` axes (row k has the k-th value of each `zip` axis).
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest states a count, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
@@ -159,7 +159,7 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};    ///< "" for the scale of the shear
   std::string variant = {};  ///< swept values; "" if not stated
-  /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
+  /// Start of the run's id in `checkpoint`, given instead of experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -209,8 +209,8 @@ inline std::vector<Scale> scales_of(const Manifest& manifest) {
 
 inline constexpr std::size_t kLongestName = 64;
 
-/// Whether the text can name an experiment, its folder and its figures: 1 to kLongestName letters,
-/// digits, '-' and '_', not beginning with '-'.
+/// Whether the text is a valid name of an experiment, a folder or a figure: 1 to kLongestName
+/// letters, digits, '-' and '_', not beginning with '-'.
 bool is_name(std::string_view text);
 
 /// Whether the text can be the id of a claim: names (is_name()) joined by dots, at most

@@ -587,7 +587,7 @@ class PackingReader {
           in, fmt::format("states lengths in {}", name_of(unit)),
           unit_ ? fmt::format("The file also has lengths in {}. Write all lengths in one unit.",
                               name_of(*other))
-                : fmt::format("The manifest states `unit: {}`. Remove that key.", name_of(*other)));
+                : fmt::format("The manifest has `unit: {}`. Remove this key.", name_of(*other)));
     }
     unit_ = unit;
   }
@@ -772,7 +772,7 @@ class PackingReader {
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
             ? fmt::format("It would be right in {}. Is the unit right?", in_m ? "d" : "m")
-        : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
+        : in_m ? fmt::format("It should be {:.6g} m. Change `diameter_m`, or scale the file.",
                              expected)
                : "Lengths in d are divided by the diameter, so the diameter must be 1.";
     refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),

@@ -27,14 +27,14 @@ struct PackingFile {
   Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z is inside the box, if any
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in our exports, the wall planes
-  LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
+  LengthUnit unit = LengthUnit::d;           ///< unit of lengths in the file
   std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
 };
 
 /// What the manifest and the parameters of the run say about a file.
 struct PackingFacts {
   std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file states none
-  double diameter_m = 0;                ///< of the run's grains
+  double diameter_m = 0;                ///< diameter of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };
 

@@ -131,17 +131,17 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.sweep,
         {.name = "sweep",
          .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
-                "of its keys; `zip` advances all its keys together",
+                "of its keys; `zip` combines the k-th values of all its keys",
          .example = "{grid: {fluid: [still, cell]}}"});
   visit(scale.settle, {.name = "settle",
-                       .doc = "parameters that have other values while the packing settles. They "
-                              "must act on the grains or on the moving wall. Variants that differ "
-                              "only in the shear then share a packing",
+                       .doc = "parameter values that apply only while the packing settles. The "
+                              "parameters must act on the grains or on the moving wall. Variants "
+                              "that differ only in the shear then share a packing",
                        .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "instead of loose grains that settle: the state of a recorded run, with different "
-                "noise for each seed, or the grains of a file",
+         .doc = "initial state, if not loose grains that settle: the state of a recorded run, "
+                "with different noise for each seed, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(
@@ -313,7 +313,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; like `y` of a plot, but not a curve",
+                        .doc = "required; like `y` of a plot, but curve measures are not allowed",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
@@ -379,7 +379,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                           "`lower`: the first side is higher or lower by more than the margin"});
   visit(claim.statement,
         {.name = "statement",
-         .doc = "what the claim says, for people; default: made from the other keys",
+         .doc = "what the claim says, for human readers; default: made from the other keys",
          .longest = 300,
          .folds = true});
   visit(claim.optional, {.name = "optional",
@@ -398,7 +398,7 @@ void fields(Manifest& manifest, const auto& visit) {
                               .doc = "required; its name: letters, digits, - and _",
                               .example = "drag"});
   visit(manifest.question, {.name = "question",
-                            .doc = "the question that the experiment answers, for people",
+                            .doc = "the question that the experiment answers, for human readers",
                             .example = "Does the fluid matter?",
                             .longest = 2'000,
                             .folds = true});
@@ -535,7 +535,7 @@ struct Reader {
   const Scale& base;                             // the keys that are stated for all scales
   std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
 
-  // Reports keys that a manifest with `of` must not have.
+  // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of(const Node& document) {
     if (document.find("of") == nullptr) return;
     for (const char* key :
@@ -901,7 +901,7 @@ struct Reader {
       if (!read) continue;
       const T number = read->template get<T>();
       if (phases && !(number > 0 && number < 1)) {
-        reject_value(item, "is not within a cycle", "It takes fractions p of a cycle, 0 < p < 1.");
+        reject_value(item, "is not within a cycle", "Write fractions p of a cycle, 0 < p < 1.");
       } else if (!numbers.empty() && number <= numbers.back()) {
         reject_value(item,
                      fmt::format("is not greater than the {} before it", phases ? "phase" : "look"),
@@ -1053,7 +1053,7 @@ struct Reader {
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
         if (is_auto(*field, item)) {
           reject(item, "cannot be swept as `auto`",
-                 "Set it in `base` or in a scale. The value then depends on the variant.");
+                 "Set it to `auto` in `base` or a scale. Each variant gets its own value.");
         } else if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
@@ -1110,7 +1110,7 @@ struct Reader {
       return problems.add(axis.at, path + "." + axis.key,
                           fmt::format("differs in length from {}, which has {}", first.key, rows),
                           counted(axis.values.size(), "value"),
-                          "The lists of a zip advance together. Make them equally long.");
+                          "Give all lists of a zip the same length.");
     }
     check_rows(zip, path, "row of values");
   }
@@ -1222,7 +1222,7 @@ struct Reader {
     }
     const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
     if (file != nullptr && start.file.empty()) {
-      return reject_key(*file, "names no file", "State its path.");
+      return reject_key(*file, "is not a path", "Write the path of a file.");
     }
     if (checkpoint == nullptr) return;
     const string_view text = checkpoint->text;
@@ -1330,7 +1330,7 @@ struct Reader {
     reject_if(published.label.empty(), &in, "lacks label",
               "State the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
-              "must have a value or points, but not both", "State one of them.");
+              "must have a value or points, but not both", "Give one of these keys.");
   }
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
@@ -1344,7 +1344,7 @@ struct Reader {
         const Node* one = in.find(key);
         if (one != nullptr && first != nullptr) {
           return reject(*one, fmt::format("cannot be used with {}", first->key),
-                        "State one of them.");
+                        "Give one of these keys.");
         }
         if (one != nullptr) first = one;
       }
@@ -1472,9 +1472,9 @@ struct Reader {
                           ? fmt::format("Leave {} out of `figures`, since this manifest states "
                                         "it, or choose another name.",
                                         of)
-                          : "Choose another one.");
+                          : "Choose another name.");
       reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
-                      "is the name of another plot or claim", "Choose another one.");
+                      "is the name of another plot or claim", "Choose another name.");
     }
   }
 };

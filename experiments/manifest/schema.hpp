@@ -62,7 +62,7 @@ struct Field {
   bool required = false;
   std::size_t longest = 0;  ///< of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null for other keys.
+  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null if not a parameter.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 

@@ -22,7 +22,7 @@ std::span<const Figure> all_figures();
 /// The figure with this name ("S2"), or null.
 const Figure* find_figure(std::string_view name);
 
-/// The figures that the manifest's own plots and claims state, in the order of the text.
+/// The figures that the manifest defines by `plots` and `claims`, in the order of the text.
 std::vector<Figure> stated_figures(const Manifest& manifest);
 
 }  // namespace shearcell

@@ -39,7 +39,7 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     refuse(manifest.file, scale.start.at, "start",
            fmt::format("this version of the program cannot read run {:.8}: {}", recorded.id,
                        problem.what()),
-           "", "Use the version that computed it, or begin with another run.");
+           "", "Use the version that computed this run, or choose another run.");
   }
   for (const Field& field : schema()) {
     const bool of_packing = field.identity.stage == StageKind::prepare &&
@@ -49,7 +49,7 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
     if (mine == its) continue;
     refuse(manifest.file, scale.start.at, std::string(field.name),
-           fmt::format("differs from the value of run {:.8}, whose state this run begins with",
+           fmt::format("differs from the value of run {:.8}, which gives the initial state",
                        recorded.id),
            value_text(mine), fmt::format("State {}.", value_text(its)));
   }

@@ -54,7 +54,7 @@ std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
   return found;
 }
 
-/// "A=0.05 rad", "fluid=cell"; "" for a key that the variant does not have.
+/// Writes a setting as "A=0.05 rad" or "fluid=cell". Returns "" if the variant lacks the key.
 std::string setting_text(const std::string& key, const json& variant, bool brief) {
   if (!variant.contains(key)) {  // --engine adds `engine` to some runs
     return key == "engine" ? "engine=shearcell" : "";

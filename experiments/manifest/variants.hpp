@@ -45,8 +45,8 @@ class Filter {
   bool passes(const std::string& value, const std::string& name = "");
   /// The first text that no value has fitted so far, or null.
   const std::string* unfound() const;
-  /// The values that were given to passes(), each once, in order. A display name follows its value
-  /// if the name has parts that the value lacks.
+  /// The values that were given to passes(), each once, in order. If the display name of a value
+  /// has parts that the value lacks, the list has the name after the value.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

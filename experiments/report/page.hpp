@@ -23,7 +23,7 @@ struct ReportOptions : MeasureOptions {
 /// Whether this program was built with the front end, which needs Node.
 bool has_front_end();
 
-/// A page. MeasureOutcome names the checkpoints that figures, tables and packings leave out.
+/// A page. MeasureOutcome lists the checkpoints that figures, tables and packings leave out.
 struct Report : MeasureOutcome {
   /// The whole page: markup, style, data and, if the page is interactive, the front end. Texts from
   /// a store or a file are escaped.
@@ -36,9 +36,9 @@ struct Report : MeasureOutcome {
   std::set<std::string> notes;     ///< lines about runs, figures and tables
 };
 
-/// Makes the report. The same program, store and options give the same bytes; drawings also need
-/// the same gnuplot. Writes only measures, into derived.sqlite. Throws NotFound if the store
-/// has no experiment or a run of `packings.runs` is unknown.
+/// Makes the report. The same program, store and options give the same bytes, if static drawings
+/// use the same gnuplot. Stores nothing but measures, in derived.sqlite. Throws NotFound if the
+/// store has no experiment or a run of `packings.runs` is unknown.
 Report make_report(const Store& store, const ReportOptions& options);
 
 }  // namespace shearcell

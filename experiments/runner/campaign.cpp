@@ -37,7 +37,7 @@ enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another program holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// Number of failed starts after which a stage that no program holds counts as blocked.
+// If a stage fails to start more often than this and no program computes it, it is blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -139,7 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // The next call tries again. The store rejects our records of a stage that we have lost.
+        // Tried again later. If another program took over a stage, the store rejects our records.
       }
     });
     {

@@ -39,7 +39,7 @@ std::vector<StageJob> declare(Store& store, const Plan& plan);
 
 /// Without `prefixes`: the stages of the store that are not done (Outlook::done), and their
 /// parents. Otherwise: the stages whose ids begin with one of the prefixes, and their parents.
-/// Throws NotFound if a prefix fits no stage or several stages.
+/// Throws NotFound if a prefix matches no stage or several stages.
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed

@@ -44,7 +44,7 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< measures with a digest in the log; absent: not cached
+    std::size_t named = 0, absent = 0;  ///< digests in the log; digests of uncached measures
     std::string altered;  ///< message about a measure that differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the digests in the log.

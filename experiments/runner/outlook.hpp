@@ -43,7 +43,7 @@ struct Outlook {
   /// `until` did. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
   /// "memberships"}.
   nlohmann::json ended = nullptr;
-  /// The first checkpoint with unknown measures that may have reached an `until`.
+  /// The first checkpoint whose measures are unknown and may fulfil an `until`.
   std::optional<CheckpointRecord> undecided = {};
   // The remaining work: upper bounds for a shear, estimates for other kinds of stages.
   double checkpoints = 0;

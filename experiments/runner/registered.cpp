@@ -71,7 +71,7 @@ VariantNames::VariantNames(const std::vector<Stage>& stages, const Labels& label
         variant_names(vary, stated == labels.end() ? std::vector<VariantLabel>() : stated->second);
     if (std::get<1>(group) == kPackings) {
       for (auto& [parameters, name] : names) name = "packing " + name;
-      if (names.size() < 2) continue;  // of() then returns place.variant: "packing"
+      if (names.size() < 2) continue;  // a single packing has the name "packing"
     }
     names_[group] = std::move(names);
   }

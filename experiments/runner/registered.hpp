@@ -30,7 +30,7 @@ class VariantNames {
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// The display name of a stage in the experiment and scale of `place`. If unknown, place.variant.
+  /// Display name of a stage in the experiment and scale of `place`; place.variant if unknown.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:

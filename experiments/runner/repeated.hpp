@@ -27,7 +27,7 @@ class Repeated {
  private:
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::jthread thread_;  // last member, so that it ends before the others
+  std::jthread thread_;  // last member: ends before the other members are destroyed
 };
 
 }  // namespace shearcell

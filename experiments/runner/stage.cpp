@@ -73,8 +73,8 @@ Protocol make_protocol(const StageInputs& inputs, const Stage& stage, const Scen
   return cyclic_shear(drive(p), cycles, cadences_of(stage, asks_of(stage.memberships), drive(p)));
 }
 
-// The watchdog's overlap limit [d]: the largest limit in the manifests that use the stage. A
-// manifest without a limit counts as `otherwise`. The limit is not part of the run's id.
+// The watchdog's overlap limit [d]: the largest limit in the manifests that use the stage.
+// `otherwise`: the limit for a manifest that sets none. The limit is not part of the run's id.
 double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {

@@ -94,7 +94,7 @@ class NewFile {
 /// A new temporary folder that only this user can read; the destructor deletes it with its content.
 /// The folder lies in TMPDIR (by default /tmp), unless `prefix` is an absolute path. The name is
 /// `prefix` + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the
-/// parent folder and throws std::system_error, which names it, when no folder can be created.
+/// parent folder and throws std::system_error with its path when no folder can be created.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");
