@@ -71,8 +71,8 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. Command-line options override sbatch's environment variables. If an
-/// option is given twice, sbatch uses the last. So a user's options can replace only --export.
+/// Adds the command to the job. sbatch prefers options to environment variables, and uses the last
+/// of repeated options. The user's options follow --export only, so they can replace only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;

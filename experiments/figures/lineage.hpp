@@ -53,7 +53,7 @@ struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest states the plots
+  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest defines the plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< of the inputs, without duplicates
