@@ -311,7 +311,7 @@ void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
-    // The report is only for information, and is written again soon.
+    // Not an error: the report is only for information and is written again soon.
   }
 }
 

@@ -226,9 +226,8 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
       if (same == run.place.variant || seed != chosen_seeds.front()) continue;
-      plan.warnings.push_back(
-          fmt::format("{}: variants {} and {} share their runs; these are computed once",
-                      manifest.file, same, run.place.variant));
+      plan.warnings.push_back(fmt::format("{}: variants {} and {} share all runs (computed once)",
+                                          manifest.file, same, run.place.variant));
     }
   }
   if (const std::string* missing = wanted.unfound()) {

@@ -1274,8 +1274,7 @@ struct Reader {
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
     reject_if(!of_runs || of_run, cycles, "can only be used if x changes within each drawn run",
               "Use `show: traces`, and `cycle` or a measure as x.");
-    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure",
-              "Give the plot a separate figure.");
+    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
       reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {

@@ -493,8 +493,7 @@ TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
   runs.erase(runs.begin());  // the reference of packing 1
   const Table table = errors_of(runs);
   expect_row(table, "engine=shearcell", 25, 0.004, 0, 2);
-  EXPECT_TRUE(
-      table.chart.note.ends_with("with the same packing; 3 of 9 runs have none to subtract"))
+  EXPECT_TRUE(table.chart.note.ends_with("same packing; 3 of 9 runs have none to subtract"))
       << table.chart.note;
   for (FrameRun& run : runs) run.packing.clear();
   EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
