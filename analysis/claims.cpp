@@ -116,8 +116,8 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 
 /// A look (interim analysis) at n seeds uses the runs of the first n seeds, after these have ended.
 /// Returns the verdict of the first look that decides the claim. If no looks are planned, there is
-/// one look, at all seeds. Before a look decides, the verdict is undecided, and its numbers are for
-/// the seeds before the first unfinished seed. Seeds beyond the plan are used only in the note.
+/// one look, at all seeds. Until a look decides, the verdict is undecided. Its numbers are then
+/// those of the seeds before the first unfinished seed. Unplanned seeds are used only in the note.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
@@ -255,9 +255,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
       continue;
     problems.push_back(
         (claim.between[k].empty()
-             ? fmt::format("there are {} variants; `of` must name one variant.", variants)
+             ? fmt::format("there are {} variants; `of` must select one variant.", variants)
              : fmt::format(
-                   "{}; `{}` must name one variant{}.", variants_have(variants, claim.between[k]),
+                   "{}; `{}` must select one variant{}.", variants_have(variants, claim.between[k]),
                    claim.published ? "of" : "between", claim.published ? "" : " on each side")));
   }
   const auto& [a, b] = sides.runs;

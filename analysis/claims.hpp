@@ -61,7 +61,7 @@ struct ClaimSpec {
 /// Whether the claim has only one group of runs (a published number, or Estimator::one_side).
 bool has_one_side(const ClaimSpec& claim);
 
-/// The figure of the claim: `figure` if stated, otherwise the id up to its first dot.
+/// The figure of the claim: `figure` if not empty, otherwise the id up to its first dot.
 std::string figure_of(const ClaimSpec& claim);
 
 /// The groups of runs that a claim compares. The second is empty if the claim has one side.

@@ -123,9 +123,9 @@ std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::stri
   }
   const std::size_t all = frame.runs.size() - others.size(), alone = all - selected.size();
   const std::string& name = others.front()->name;
-  note = fmt::format("Differences from {} with the same packing{}",
-                     name.empty() ? words_of(plot.minus) : name,
-                     alone == 0 ? "" : fmt::format("; {} of {} runs have no partner", alone, all));
+  note = fmt::format(
+      "Differences from {} with the same packing{}", name.empty() ? words_of(plot.minus) : name,
+      alone == 0 ? "" : fmt::format("; {} of {} runs have none to subtract", alone, all));
   return selected;
 }
 
@@ -271,7 +271,7 @@ struct Group {
   std::vector<const Selected*> runs = {};
 };
 
-/// The curves of a panel. If PlotSpec::by is stated, runs with equal values of `by` share a curve.
+/// The curves of a panel. If PlotSpec::by is set, runs with equal values of `by` share a curve.
 /// Otherwise each variant has a curve. In a plot with panels, or with one value of x for each run,
 /// runs that differ only in x or in the panel's parameter share a curve.
 std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets the colour and the symbol that the series entry gives.
+/// Sets colour and symbol if the series entry has them.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -1100,7 +1100,7 @@ std::string variants_have(std::size_t variants, const nlohmann::json& where) {
 
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
   if (plot.minus.empty() || variants == 1) return "";
-  return fmt::format("{}; `minus` must name one variant.", variants_have(variants, plot.minus));
+  return fmt::format("{}; `minus` must select one variant.", variants_have(variants, plot.minus));
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {

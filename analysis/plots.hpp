@@ -29,11 +29,11 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// The style of the curve whose variants have the parameters `where`. Members that are "" are
-/// chosen by the swept values (styles.hpp).
+/// The style of the curve whose variants have the parameters `where`. A member that is "" is
+/// replaced by a style that depends on the swept values (styles.hpp).
 struct SeriesSpec {
-  nlohmann::json where;     ///< parameters and their values
-  std::string column = {};  ///< selects a curve by its y column, instead of by `where`
+  nlohmann::json where;     ///< parameter -> value, for all variants of the curve
+  std::string column = {};  ///< instead of `where`: the name of one of several y columns
   std::string label = {};   ///< may have formulas (formula())
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names
@@ -72,8 +72,8 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV; the first `drawn` of them are also drawn. If x and y have one
-  /// value for each run, measures of checkpoints are taken at the first checkpoint of the run.
+  /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one
+  /// value for each run, these columns have the measures of the first checkpoint of the run.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
@@ -84,13 +84,13 @@ struct PlotSpec {
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
-  /// The plot belongs to a shipped manifest, and the user's manifest lists the plot's figure.
-  /// Labels of the user's manifest then replace the labels of `series`. The styles of `series` are
+  /// True if the plot belongs to a shipped manifest and the user's manifest lists its figure. Then
+  /// labels in the user's manifest replace the labels in `series`. The styles in `series` are
   /// used only if `series` contains every parameter in which the curves differ.
   bool listed = false;
 };
 
-/// The name of the plot's figure: `figure` if stated, otherwise `name`.
+/// The name of the plot's figure: `figure`, or `name` if `figure` is empty.
 inline const std::string& figure_of(const PlotSpec& plot) {
   return plot.figure.empty() ? plot.name : plot.figure;
 }

@@ -43,9 +43,9 @@ struct Look {
 /// figures. A curve of another amplitude has the look of the k-th curve.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
-/// Gives each variant a look by the values of the keys that vary in the frame. The rank of the
-/// first key's value decides the colour. The rank of the other values decides the symbol. The
-/// amplitudes of the supplement have the colours of amplitude_look().
+/// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
+/// rank of the first key's value decides the colour. The rank of the other values decides the
+/// symbol. The amplitudes of the supplement have the colours of amplitude_look().
 class Looks {
  public:
   explicit Looks(const Frame& frame);

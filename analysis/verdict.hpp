@@ -58,7 +58,7 @@ struct Verdict {
   std::string waits_for = {};
   double margin = 0;
   Ruling ruling = Ruling::undecided;
-  std::size_t runs = 0;  ///< in units of `counted`
+  std::size_t runs = 0;  ///< number of runs, or of pairs, as `counted` says
   Counted counted = Counted::runs;
   std::size_t censored = 0;                ///< runs that ended before the event
   std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown
@@ -76,7 +76,7 @@ struct Verdict {
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
-/// claim states why it cannot be decided, the verdict is undecidable and the note has the reason.
+/// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
 /// `runs_needed` runs would decide the claim with 90 % probability if the true value is 0 (for
 /// Relation::same) or twice the margin. If the interval excludes 0, or if this many runs exist
 /// already, the assumed true value is the estimate. `runs_needed` exceeds Estimate::runs.

@@ -227,7 +227,7 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // With a measured site as origin, only the edges to guards are long.
+    // The origin is a measured site, so that only edges to the far guard points are long.
     if (!is_measured(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
                        return is_measured(vertex);

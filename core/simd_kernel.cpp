@@ -177,7 +177,7 @@ HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);
 }
 
-// Advances velocities and positions of the block that starts at grain g. Returns the new excess.
+// Advances velocities and positions of the block that starts at grain g. Returns raise_excess().
 HWY_INLINE V advance_block(V excess, const StepTask& t, std::size_t g, const Vectors& own, V margin,
                            const Vectors& sum) {
   const V factor = hn::Set(kD, t.velocity_factor);

@@ -31,7 +31,7 @@ class Walls {
   void place_all(const WallPose& pose, double margin, double* rows) const;
 
   /// Selects the wall grains that place() updates: those between the bottom and the top plane, and
-  /// those at most `reach` [d] below or above. (Side walls extend farther past the moving wall.)
+  /// those at most `reach` [d] outside these planes. (Side walls extend past the moving wall.)
   void choose_active(const WallPose& pose, double reach);
   const std::vector<std::int32_t>& active() const { return active_; }
 

@@ -56,7 +56,7 @@ class DerivedCache {
 
   /// Why nothing can be stored; "" if objects can be stored.
   const std::string& trouble() const { return trouble_; }
-  /// Whether reading or writing failed because of the machine. The file itself may be intact.
+  /// Whether reading or writing failed for a reason outside the file, such as a full disk.
   bool is_unread() const { return unread_; }
   /// A warning if a damaged file was ever renamed and replaced; otherwise "".
   std::string replaced() const;

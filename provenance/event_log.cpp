@@ -93,7 +93,7 @@ void require_own_schema(sqlite::Database& database) {
     const bool derived = std::ranges::count(projected_tables, name) > 0;
     if (known.contains(sql) || (older && derived && sql.starts_with("CREATE TABLE "))) continue;
     throw StoreDamaged(fmt::format(
-        "{}: the database holds '{}', which no store of schema {} has; restore it from a backup",
+        "{}: the database contains '{}', which is not part of schema {}; restore it from a backup",
         database.name(), name, kSchemaVersion));
   }
 }

@@ -130,7 +130,7 @@ struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
-  std::set<std::uint64_t> attempts;  ///< events of copied attempts: their seq in the source
+  std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
   bool source_wins = false;          ///< the run has a later step or state in the source
 
   bool wants(const Database& into, const Event& event) const {
@@ -221,7 +221,7 @@ bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. If `runs` is not empty, keeps only `runs`, manifests and packings.
+/// Reads and checks a source. Keeps the manifests, packing files and `runs` (if empty, everything).
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {

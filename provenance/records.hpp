@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// The place of a stage in an experiment. A stage that two experiments share has two places.
+/// Experiment, scale, variant and seed of a stage. A stage of two experiments has two Places.
 struct Place {
   std::string experiment = {};
   std::string scale = {};                           ///< "" if the manifest has no scales
@@ -115,7 +115,7 @@ struct Run {
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
   bool named = false;     ///< whether the manifest states this name as a label
-  /// False if the manifest has a newer version, or another run was declared later for this place.
+  /// False if this manifest has a newer version, or if a run declared later has an equal Place.
   bool newest = true;
 };
 

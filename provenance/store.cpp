@@ -278,7 +278,7 @@ void Store::declare_stage(const Stage& declared) {
   }
   if (known && !same_computation(*known, declared)) {
     throw std::invalid_argument(
-        fmt::format("run {}: the store has this id with other parameters", declared.id));
+        fmt::format("run {}: the store has other parameters for this id", declared.id));
   }
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
@@ -600,8 +600,8 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   const std::string state = state_hash(checkpoint), sha256 = sha256_hex(bytes);
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
     throw StoreDamaged(
-        fmt::format("checkpoint {:.12} of run {:.12}: the regenerated checkpoint has state {:.12} "
-                    "(recorded: {:.12}) and file {:.12}, so it was not stored",
+        fmt::format("checkpoint {:.12} of run {:.12}: the regenerated state has hash {:.12} "
+                    "(recorded: {:.12}), the file has hash {:.12}; the file was not stored",
                     record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {

@@ -101,8 +101,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
 const Estimator pooled_difference = {
     .name = "pooled_difference",
     .meaning =
-        "difference between the sides of `between`, compared among runs whose other parameters are "
-        "equal, and averaged over these parameters; each side may have several variants",
+        "difference between the two sides of `between`, averaged over groups of runs that agree in "
+        "all other parameters; each side may have several variants",
     .of_run = std::nullopt,
     .over_variants = true,
     .decide = decide_pooled,

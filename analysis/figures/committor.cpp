@@ -64,7 +64,7 @@ struct Amplitude {
   double published = 0;  ///< the supplement's critical size
   std::vector<Subject> crystallites = {}, controls = {};
   std::size_t states = 0;
-  std::size_t left_out = 0;  ///< states that begin with a grown crystallite
+  std::size_t left_out = 0;  ///< states not used: they begin with a crystallite of grown_size
 };
 
 /// The crystallite maps of cycles 0, 1, 2, ... up to the first missing map.
@@ -175,7 +175,7 @@ std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t 
 /// Why no critical size is defined; "" if it is defined.
 std::string why_undefined(const Amplitude& one) {
   const std::optional<double> q = background(one);
-  if (!q) return "the growing fraction of controls is unknown, since every state has crystallites";
+  if (!q) return "the fraction of controls that grow is unknown: every state has crystallites";
   const auto smallest =
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";

@@ -88,7 +88,7 @@ Table survival_table(const Groups& groups) {
   return table;
 }
 
-/// Poisson error of the rate. Empty for one event: its bar would reach zero on a log axis.
+/// Poisson error of the rate. Empty for one event: the error bar would reach zero on a log axis.
 TableCell error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
@@ -120,8 +120,8 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
   return table;
 }
 
-/// The exponent a of rate ~ n^a if the rate is proportional to the area of the walls, N^(2/3). n is
-/// the number of grains in the region. Computed from the smallest and the largest cells. The result
+/// The exponent a in rate ~ n^a for a rate proportional to the area of the walls, N^(2/3). n is the
+/// number of grains in the region. Computed from the smallest and the largest cells. The result
 /// is less than 2/3, since n / N grows with N. NaN unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");

@@ -150,7 +150,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether a run is being computed; if not, all cores are assumed
+  bool running = false;       ///< whether a run is being computed now; if not, assumes all cores
   bool at_most = false;       ///< whether the time is an upper limit, since `until` may end runs
 
   double seconds() const { return work.seconds(at_a_time); }
@@ -240,7 +240,7 @@ void print(const View& view) {
     return one.stage.state != StageState::failed && has_failed(view.store, one.stage);
   });
   if (waiting > 0) {
-    print_text("{} cannot start, since a required stage has failed\n",
+    print_text("{} cannot start, because a required stage has failed\n",
                counted(static_cast<std::size_t>(waiting), "stage"));
   }
   for (const auto& [run, lease] : view.holders) {

@@ -71,8 +71,8 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. Command-line options override sbatch's environment variables. If an
-/// option is given twice, sbatch uses the last. So a user's options can replace only --export.
+/// Adds the command to the job. sbatch prefers options to environment variables, and uses the last
+/// of repeated options. The user's options follow --export only, so they can replace only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -311,7 +311,7 @@ void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
-    // The report is only for information, and is written again soon.
+    // Not an error: the report is only for information and is written again soon.
   }
 }
 

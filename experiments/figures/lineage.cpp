@@ -83,7 +83,8 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
   input.states = {entry.at("cycles"), entry.at("state_hash"), entry.at("states_sha256")};
   found = at_cycles(run, input.states.cycles);
   for (const CheckpointRecord& record : found) input.checkpoints.push_back(record.sha256);
-  if (states_of(found) != input.states) input.fault = "the log has other states at these cycles";
+  if (states_of(found) != input.states)
+    input.fault = "the states in the log differ from the figure's record";
 }
 
 // The swept values of the run in the manifest version and variant that the figure used.

@@ -86,8 +86,8 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// The columns of a checkpoint. A simulated measure has a column only if `simulated` names the
-/// provider of the measure.
+/// The columns of a checkpoint. A simulated measure has a column only if `simulated` contains
+/// the name of its provider.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
   for (const Measure* measure : all_measures(MeasureKind::number)) {

@@ -22,7 +22,7 @@ inline constexpr auto kNames<RowPer> = names_in_order<RowPer>("checkpoint", "run
 struct RunTable : MeasureOutcome {
   Table table;                      ///< empty cells: the value is unknown or does not apply
   std::vector<std::string> notes;   ///< NewestRuns::notes, and a note on missing measures
-  std::vector<FrameRun> histories;  ///< for RowPer::run: the run of each row, at whole cycles only
+  std::vector<FrameRun> histories;  ///< for RowPer::run: each row's checkpoints at whole cycles
 };
 
 /// Returns the table of the selected newest_runs(), sorted by run and cycle. The checkpoints of a

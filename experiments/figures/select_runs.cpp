@@ -100,7 +100,7 @@ Place first_place(const Stage& stage) {
 
 namespace {
 
-/// Replaces each experiment whose manifest has the key `of` by the experiments that `of` names.
+/// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of`.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
@@ -188,9 +188,9 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     const auto shown = std::ranges::find(chosen.runs, where, experiment_scale<Run>);
     const auto count = std::ranges::count(chosen.runs, where, experiment_scale<Run>);
     chosen.notes.push_back(fmt::format(
-        "experiment {}{}: left out: {} of another manifest version, {:.8}: {}; "
-        "shown: {} of the version that was registered last{}. To show all runs, `shearcell run` "
-        "one manifest that lists all of them; only missing runs are computed",
+        "experiment {}{}: left out: {} of manifest version {:.8} ({}); "
+        "shown: {} of the version that was registered last{}. To show all runs, use `shearcell "
+        "run` with one manifest that lists all of them; only missing runs are computed",
         where.first, at_scale(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),

@@ -71,7 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value that the manifest states for `key` (a parameter or "settle.PARAMETER"), or null.
+  // The value in the manifest for `key` (a parameter or "settle.PARAMETER"), or null.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -103,7 +103,7 @@ struct VariantCheck {
     problems.add(at, key, problem, "", remedy);
   }
 
-  // The last of `keys` that the manifest states; "" if the manifest states none of them.
+  // The last of `keys` that the manifest contains; "" if the manifest contains none of them.
   string_view last_stated(std::initializer_list<string_view> keys) const {
     string_view last;
     for (const string_view key : keys) last = find(key) != nullptr ? key : last;
@@ -716,7 +716,7 @@ void check_variants(const Manifest& manifest) {
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
       problems.add(setting->second.at, path + "." + key,
                    "has no effect, since the sweep sets this key", setting->second.value.dump(),
-                   "Give the scale a sweep of its own instead.");
+                   "Define a separate `sweep` in this scale instead.");
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();

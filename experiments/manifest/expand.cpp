@@ -97,7 +97,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
-    // Variants may share a packing, so the membership of a packing names no variant.
+    // Variants may share a packing, so its membership has "packing" in place of a variant.
     Membership& packing = run.prepare->memberships.emplace_back(common);
     packing.place.variant = "packing";
     packing.place.seed = seed;
@@ -226,7 +226,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
       if (same == run.place.variant || seed != chosen_seeds.front()) continue;
-      plan.warnings.push_back(fmt::format("{}: variants {} and {} have equal runs, computed once",
+      plan.warnings.push_back(fmt::format("{}: variants {} and {} share all runs (computed once)",
                                           manifest.file, same, run.place.variant));
     }
   }

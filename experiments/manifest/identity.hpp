@@ -17,7 +17,7 @@ namespace shearcell {
 /// The file of grains that a packing begins with, instead of loose grains.
 struct StartFile {
   std::string sha256;                   ///< of the file's text; the store keeps the text
-  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest states one
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest gives it
   bool settles = false;                 ///< whether the grains settle further
 };
 

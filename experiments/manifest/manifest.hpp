@@ -157,9 +157,9 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< "" for the scale of the shear
-  std::string variant = {};  ///< swept values; "" if not stated
-  /// Start of the run's id in `checkpoint`, given instead of experiment, scale and variant.
+  std::string scale = {};    ///< "": the same scale as the new run
+  std::string variant = {};  ///< swept values; "" if not given
+  /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -183,7 +183,7 @@ struct Scale {
   std::vector<std::string> primary = {};
   /// Numbers of seeds of the looks (interim analyses), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
-  std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
+  std::set<std::string> own = {};  ///< keys that occur in this scale's entry of `scales`
 };
 
 struct Manifest {

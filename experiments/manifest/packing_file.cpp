@@ -42,7 +42,7 @@ struct Meaning {
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
   enum { listed, second_best, probable } rank = listed;
-  std::optional<LengthUnit> unit = {};  ///< unit in the name
+  std::optional<LengthUnit> unit = {};  ///< unit given in the column's name
 };
 constexpr Meaning kMeanings[] = {{"x y z", kX},
                                  {"xu yu zu", kX, 1, 1, Meaning::second_best},
@@ -64,8 +64,8 @@ struct Column {
 };
 
 struct GrainTable {
-  string_view header = {};  ///< the line that names the columns
-  const char* remedy = "";  ///< of the message about missing columns
+  string_view header = {};  ///< the line with the names of the columns
+  const char* remedy = "";  ///< remedy in the message about missing columns
   std::vector<Column> columns = {};
   const char* more = nullptr;  ///< what further values in a row are; null: an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
@@ -74,7 +74,7 @@ struct GrainTable {
 };
 
 struct Box {
-  string_view line;            ///< last line that states a part of the box
+  string_view line;            ///< last line that gives a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
   /// Axes along which LAMMPS fits the box to the grains. The box in a dump may be outdated there.
@@ -265,14 +265,13 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
+                  fmt::format("the file ends after {} of the {} grains given in line {}", found,
                               *count, at),
                   "Write the whole file, or correct the number.");
     }
-    refuse_line(
-        grains_.rows[*count],
-        fmt::format("the file continues after the {} grains that line {} states", *count, at),
-        "Keep one frame, or correct the number.");
+    refuse_line(grains_.rows[*count],
+                fmt::format("the file continues after the {} grains given in line {}", *count, at),
+                "Keep one frame, or correct the number.");
   }
 
   Box& box() {
@@ -603,7 +602,7 @@ class PackingReader {
     if (box_->lean > 1e-9 * size.cwiseAbs().maxCoeff()) {
       refuse_line(
           box_->line, fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
-          "The box must be upright. Write the state of a sheared cell at the end of a cycle.");
+          "Use a rectangular box. Write the state of a sheared cell at the end of a cycle.");
     }
     for (const int k : {0, 1, 2}) {
       if (size[k] > 0) continue;
@@ -801,7 +800,7 @@ class PackingReader {
 
   PackingFile packing() {
     interpret_box();
-    std::vector<string> aside = std::exchange(not_read_, {});  // added again after the columns
+    std::vector<string> aside = std::exchange(not_read_, {});  // listed again after the columns
     uses_ = interpret(grains_);
     require_columns();
     rows_ = rows_of(grains_, uses_);
@@ -909,7 +908,7 @@ class PackingReader {
 
   std::optional<Box> box_;
   GrainTable grains_, moving_;
-  bool units_in_names_ = false;  ///< whether names of columns state units
+  bool units_in_names_ = false;  ///< whether names of columns contain units
   std::vector<string> not_read_;
 
   std::optional<LengthUnit> unit_;

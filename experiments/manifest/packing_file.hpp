@@ -31,10 +31,10 @@ struct PackingFile {
   std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
 };
 
-/// What the manifest and the parameters of the run say about a file.
+/// Facts about a file that come from the manifest and from the parameters of the run.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file states none
-  double diameter_m = 0;                ///< diameter of the run's grains
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file does not give it
+  double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };
 

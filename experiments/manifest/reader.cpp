@@ -124,7 +124,7 @@ void fields(Start& start, const auto& visit) {
                 "of the manifest. The grains settle further if `settle` is stated, even as `{}`",
          .example = "packing.extxyz",
          .longest = kLongestPath});
-  visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file states none"});
+  visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file does not give it"});
 }
 
 void fields(Scale& scale, const auto& visit) {
@@ -318,7 +318,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                         .terms = terms,
                         .required = true});
   visit(claim.estimator, {.name = "estimator",
-                          .doc = "the quantity to estimate; by default, the other keys decide it",
+                          .doc = "quantity to estimate; by default, it follows from the other keys",
                           .names = estimators});
   visit(
       claim.against,
@@ -344,7 +344,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
         {.name = "published",
          .doc = "instead of `between`: a published number, which is subtracted from the mean over "
                 "the runs. With `is: lower` or `higher` and no margin, the number is a bound. The "
-                "verdict does not use `error`, so state a margin that includes the error",
+                "verdict does not use `error`, so give a margin that includes the error",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
                            .doc = "with `published`: swept values that select the variant",
@@ -532,7 +532,7 @@ string meant_expression(const string& text) {
 // all problems are reported at once.
 struct Reader {
   ProblemList& problems;
-  const Scale& base;                             // the keys that are stated for all scales
+  const Scale& base;                             // the keys that apply to all scales
   std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
 
   // Reports keys that cannot be used in a manifest with the key `of`.
@@ -575,7 +575,7 @@ struct Reader {
     if (in.key == "<<")
       return reject_key(in, "merge keys are not supported", "Write the values out.");
     if (read_number<double>(in.key)) {
-      return reject_key(in, "is a number where a key belongs", kDecimalPoint);
+      return reject_key(in, "is a number, but a key is expected", kDecimalPoint);
     }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
@@ -953,7 +953,7 @@ struct Reader {
     return true;
   }
 
-  // Reads the parameters of `base` or `settle`. KEY of `start` sets the parameter start_KEY.
+  // Reads a parameter of `base`, `settle` or `start`. `KEY` in `start` is the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
       const string key = "start_" + in.key;
@@ -1274,8 +1274,7 @@ struct Reader {
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
     reject_if(!of_runs || of_run, cycles, "can only be used if x changes within each drawn run",
               "Use `show: traces`, and `cycle` or a measure as x.");
-    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure",
-              "Give the plot a separate figure.");
+    reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
       reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
@@ -1328,7 +1327,7 @@ struct Reader {
 
   void check_published(const Node& in, const PublishedSpec& published) {
     reject_if(published.label.empty(), &in, "lacks label",
-              "State the label that the legend of the plot shows.");
+              "Give the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
               "must have a value or points, but not both", "Give one of these keys.");
   }
@@ -1419,7 +1418,7 @@ struct Reader {
         if (statement || std::ranges::count(known, id) > 0) continue;
         reject_value(
             item, with_nearest("is not the id of a claim", id, Names(known.begin(), known.end())),
-            "State the `id` of a claim of this manifest or of its figures.");
+            "Give the `id` of a claim of this manifest or of its figures.");
       }
     }
   }
@@ -1451,7 +1450,7 @@ struct Reader {
     for (const auto& [own, of] : names) {
       const string& text = own->text;
       if (!is_claim_id(text)) continue;
-      // A figure that is not computed by C++ code is stated by a manifest.
+      // A figure that is not computed by C++ code is defined in a manifest.
       const bool is_stated = find_named(computed_figures(), of) == nullptr;
       const bool is_listed = std::ranges::count(listed, of) > 0;
       const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {
@@ -1469,8 +1468,8 @@ struct Reader {
       });
       reject_value_if(clash != supplement.end(), own, "is the name of a figure of the supplement",
                       is_stated && clash != supplement.end() && of == clash->name
-                          ? fmt::format("Leave {} out of `figures`, since this manifest states "
-                                        "it, or choose another name.",
+                          ? fmt::format("This manifest defines a figure with the name {}. Remove "
+                                        "the name from `figures`, or choose another name.",
                                         of)
                           : "Choose another name.");
       reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
@@ -1506,7 +1505,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  // Scales are read last, since each begins with the keys that are stated for all scales.
+  // Scales are read last, since each begins with the keys that apply to all scales.
   std::stable_partition(root.parts.begin(), root.parts.end(),
                         [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;

@@ -17,7 +17,7 @@ namespace shearcell {
 /// Names that users try, and what to write instead.
 struct Tried {
   std::string_view names;    ///< separated by blanks; `_` separates the words of a name
-  std::string_view instead;  ///< name in this program; "" if the model lacks it
+  std::string_view instead;  ///< this program's name for the quantity; "" if it is not modelled
   std::string_view remark;   ///< what to write, in whole sentences; may be empty
 };
 

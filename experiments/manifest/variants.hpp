@@ -43,7 +43,7 @@ class Filter {
   /// Texts with equal keys are alternatives: for the texts "a=1", "a=2" and "b=3", the value must
   /// have b=3, and a=1 or a=2. True if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
-  /// The first text that no value has fitted so far, or null.
+  /// The first of the given texts that has matched no value so far, or null.
   const std::string* unfound() const;
   /// The values that were given to passes(), each once, in order. If the display name of a value
   /// has parts that the value lacks, the list has the name after the value.
@@ -66,10 +66,10 @@ bool selects(const VariantLabel& label, const nlohmann::json& variant);
 /// Variant::swept of each variant.
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 
-/// Returns the display name of each variant. A variant is an object of swept keys and values, and
-/// may occur several times. Labels replace the keys that they state and begin the name; the label
-/// with the most keys comes first. Other keys follow if they distinguish the variants: "fluid at
-/// rest, A=0.05 rad". A name is "no sweep" if nothing is swept. (Ids and CSV use Variant::name.)
+/// Returns the display name of each variant (swept key -> value; variants may be equal). The name
+/// begins with the labels, the label with the most keys first. A label replaces its keys. Other
+/// keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". Without a sweep, the
+/// name is "no sweep". (Ids and CSV use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 

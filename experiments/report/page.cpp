@@ -297,7 +297,7 @@ json stage_json(const RunLineage& stage) {
 
 struct Count {
   const char* state;
-  const char* mark;  ///< distinguishes the states without colour
+  const char* mark;  ///< symbol of the state, for readers who do not see the colour
   const char* name;
   std::size_t number;
 };

@@ -32,12 +32,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program computes the stage. ended: this campaign does not complete the stage.
+// held: another process computes the stage. ended: this campaign does not complete the stage.
 enum class JobState { waiting, running, held, done, ended };
 
-// Time between two checks of a stage that another program holds.
+// Time between two checks of a stage that another process holds.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// If a stage fails to start more often than this and no program computes it, it is blocked.
+// Number of failed starts after which a stage that no process holds counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -134,7 +134,7 @@ class Campaign {
   }
 
   CampaignResult run(std::size_t workers) {
-    // Shows other programs that this program is alive, even during long simulations.
+    // Shows other processes that this process is alive, even during long simulations.
     const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
       try {
         store_.renew_leases();
@@ -230,11 +230,11 @@ class Campaign {
     } catch (const std::exception&) {
       return;  // the next attempt to compute a stage reports why
     }
-    if (holders.empty()) return;  // the other program has just ended
+    if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another program computes ({}); this program continues "
-                    "a stage when that program has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another process computes ({}); this process continues "
+                    "a stage when that process has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }
@@ -278,7 +278,7 @@ class Campaign {
     const Stage stage = store_.stage(job.id);
     if (is_done(store_, stage)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
-             was_held ? "done by another program" : "", true);
+             was_held ? "done by another process" : "", true);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(job);

@@ -22,7 +22,7 @@ struct StageJob {
 struct CampaignResult {
   std::size_t completed = 0;  ///< stages computed now
   std::size_t already = 0;    ///< stages that were done before
-  std::size_t elsewhere = 0;  ///< stages that another program completed during this campaign
+  std::size_t elsewhere = 0;  ///< stages that another process completed during this campaign
   std::size_t failed = 0;     ///< stages stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;
   /// Stages that cannot be computed: the parent failed or was interrupted, LAMMPS is missing, the
@@ -43,7 +43,7 @@ std::vector<StageJob> declare(Store& store, const Plan& plan);
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed
-/// stage. Waits for a stage that another program computes. If that program ends or its lease
+/// stage. Waits for a stage that another process computes. If that process ends or its lease
 /// expires before the stage is done, continues the stage. Shows progress on standard error unless
 /// `quiet`. Calls `when_done` with the id of each stage that this call completed, from several
 /// threads at once. An exception from `when_done` ends the campaign.

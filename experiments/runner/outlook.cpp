@@ -300,8 +300,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Adds to `measures` the measures that the `until` of these requests need: those of `first` and of
-/// the next checkpoints at whole cycles, at most one checkpoint per worker.
+/// Analyses the next checkpoints at whole cycles, beginning with `first`, at most one per worker.
+/// Adds to `measures` the measures that the `until` conditions of these requests use.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {
@@ -337,8 +337,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The largest number of cycles that was requested without this `until` and that the stage has
-/// reached; 0 if there is none. Considers only requests that were recorded when the stage ended.
+/// The largest number of cycles that the stage has reached among requests without this `until`; 0
+/// if there is none. Considers only requests that were recorded when the stage ended.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;

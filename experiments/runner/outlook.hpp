@@ -83,7 +83,7 @@ struct AskedCheckpoints {
 };
 
 /// The checkpoints that `asks` request from cycle `first` to `last`. `checkpoints`: as for
-/// outlook(). If the stage is no shear or `asks` is empty, returns those at whole cycles.
+/// outlook(). If the stage is not a shear or `asks` is empty: the checkpoints at whole cycles.
 AskedCheckpoints asked_checkpoints(const Stage& stage, std::span<const Ask> asks,
                                    std::span<const CheckpointRecord> checkpoints, double first = 0,
                                    double last = StoreLimits::cycles);

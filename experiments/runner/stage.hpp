@@ -21,7 +21,7 @@ struct Parallel {
   std::size_t ranks = 1;    ///< LAMMPS processes; if more than one, they run under mpirun
 };
 
-/// How run_stage() ended. `already`: nothing was left to compute. `lost`: another program computes
+/// How run_stage() ended. `already`: nothing was left to compute. `lost`: another process computes
 /// the stage, has completed it, or has recorded a later state.
 enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, lost };
 
@@ -59,8 +59,8 @@ std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& 
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
-  std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
+  std::uint64_t same_step = 0;   ///< last step at which the recomputed state is known to agree
+  std::uint64_t first_step = 0;  ///< first step at which the recomputed state is known to differ
   /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
   /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
   std::string field;

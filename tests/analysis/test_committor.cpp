@@ -270,7 +270,7 @@ TEST(CommittorFigure, AStateThatHasGrownIsLeftOut) {
   clones.add(50, 70, [](double) { return Fate::gone; });
   EXPECT_EQ(number_at(figure_of(clones.runs()), 0.1, 2, "states_left_out"), 1);
   EXPECT_NE(
-      figure_of(clones.runs()).verdicts[0].note.find("the growing fraction of controls is unknown"),
+      figure_of(clones.runs()).verdicts[0].note.find("fraction of controls that grow is unknown"),
       std::string::npos)
       << "no controls";
 }

@@ -334,7 +334,7 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
   EXPECT_EQ(verdict().claim, "B.9: they are equal");
   claim.between[0] = nlohmann::json::object();
   const std::string refusal = message_of<UsageError>([&] { verdict(); });
-  EXPECT_EQ(refusal, "claim own: there are 6 variants; `of` must name one variant.");
+  EXPECT_EQ(refusal, "claim own: there are 6 variants; `of` must select one variant.");
   claim.between[0] = {{"amplitude_rad", 0.06}};
   EXPECT_EQ(verdict().note, "no run with amplitude_rad=0.06 has a checkpoint of cycle 2");
 }
@@ -493,11 +493,11 @@ TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
   runs.erase(runs.begin());  // the reference of packing 1
   const Table table = errors_of(runs);
   expect_row(table, "engine=shearcell", 25, 0.004, 0, 2);
-  EXPECT_TRUE(table.chart.note.ends_with("with the same packing; 3 of 9 runs have no partner"))
+  EXPECT_TRUE(table.chart.note.ends_with("same packing; 3 of 9 runs have none to subtract"))
       << table.chart.note;
   for (FrameRun& run : runs) run.packing.clear();
   EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
-  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("9 of 9 runs have no partner"));
+  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("9 of 9 runs have none to subtract"));
   runs = runs_of_steps();
   runs.erase(runs.begin(), runs.begin() + 3);
   EXPECT_TRUE(errors_of(runs).rows.empty());
@@ -544,7 +544,7 @@ TEST(OwnPlot, RefusesAReferenceOfSeveralVariants) {
   PlotSpec of_engine = kErrors;
   of_engine.minus = {{"engine", "shearcell"}};
   EXPECT_EQ(message_of<UsageError>([&] { errors_of(runs_of_steps(), of_engine); }),
-            "plot own: 3 variants have engine=shearcell; `minus` must name one variant.");
+            "plot own: 3 variants have engine=shearcell; `minus` must select one variant.");
   of_engine.listed = true;
   EXPECT_TRUE(errors_of(runs_of_steps(), of_engine).rows.empty());
   EXPECT_TRUE(errors_of(runs_of_steps(), of_engine)

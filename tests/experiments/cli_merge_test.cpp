@@ -35,8 +35,8 @@ class Split : public ProgramTest {
     ASSERT_EQ(warnings.size(), 1U) << warnings;
     const std::string text = warnings.at(0);
     for (const std::string& part :
-         {"experiment tiny at scale " + scale + ": left out: " + lost +
-              " of another manifest version, " + sha256_hex(older).substr(0, 8),
+         {"experiment tiny at scale " + scale + ": left out: " + lost + " of manifest version " +
+              sha256_hex(older).substr(0, 8),
           "shown: " + shown + " of the version that was registered last, " +
               sha256_hex(newest).substr(0, 8),
           std::string("only missing runs are computed")}) {

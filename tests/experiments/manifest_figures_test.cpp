@@ -121,7 +121,7 @@ TEST(FigureWarnings, OfAClaimBetweenVariantsThatAreTheSameRuns) {
   const std::string top = "{gravity_m_per_s2: 0, pressure_at: top}";
   const Strings same = found(top + ", {gravity_m_per_s2: 0, pressure_at: moving_wall}");
   ASSERT_EQ(same.size(), 2U);
-  EXPECT_TRUE(has(same[0], "have equal runs, computed once"));
+  EXPECT_TRUE(has(same[0], "share all runs (computed once)"));
   EXPECT_TRUE(has(same[1], "claim own: both sides of `between` are the same runs"));
   EXPECT_EQ(found(top + ", {gravity_m_per_s2: 9.81, pressure_at: top}").size(), 1U);
 }
@@ -208,11 +208,11 @@ TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {
         {std::string(
              "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, of: {walls: rough}, "
              "published: {value: 1, source: a}}]\n"),
-         "2 variants have walls=rough; `of` must name one variant."},
+         "2 variants have walls=rough; `of` must select one variant."},
         {std::string(
              "claims: [{name: own, margin: 1, compare: phi, at_cycle: 2, published: {value: "
              "1, source: a}}]\n"),
-         "there are 2 variants; `of` must name one variant."},
+         "there are 2 variants; `of` must select one variant."},
         {std::string("claims: [{name: own, margin: 1, compare: phi/2, at_cycle: 3, of: {fluid: "
                      "still}, published: {value: 1, source: a}}]\n"),
          "it needs a checkpoint at cycle 3"}}) {

@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // LAMMPS creates no atom outside the box, so the wall's atom begins at x and y of a grain.
+    // The wall's atom is created at x and y of a grain: LAMMPS creates no atom outside the box.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
