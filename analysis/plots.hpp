@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots and claims that a manifest states.
+// Plots and claims that a manifest defines.
 #pragma once
 
 #include <array>
@@ -90,7 +90,7 @@ struct PlotSpec {
   bool listed = false;
 };
 
-/// The name of the plot's figure: `figure` if stated, otherwise `name`.
+/// The name of the plot's figure: `figure` if given, otherwise `name`.
 inline const std::string& figure_of(const PlotSpec& plot) {
   return plot.figure.empty() ? plot.name : plot.figure;
 }

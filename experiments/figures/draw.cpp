@@ -63,7 +63,7 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
 
 /// If the figure's plots come from this program and not from the manifest, returns a text with the
 /// program's version. For example, older manifests only name the figure. Returns "" if the manifest
-/// states the plots or if C++ computes the figure.
+/// defines the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -235,8 +235,8 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(figure.name, runs, figure.keys,
-                       "make a separate experiment for each value, or state a plot in the manifest "
-                       "(`plots`)");
+                       "make a separate experiment for each value, or define a plot "
+                       "in the manifest (`plots`)");
   }
   made.title = title_of(figure, runs);
   made.runs = runs.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest is a YAML text that states one experiment. Reading any bytes returns a Manifest, or
+// A manifest is a YAML text that defines one experiment. Reading any bytes returns a Manifest, or
 // throws ManifestError with the position and the remedy of each problem.
 #pragma once
 
@@ -96,7 +96,7 @@ struct Sweep {
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest states a count, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
@@ -158,7 +158,7 @@ struct Start {
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
   std::string scale = {};    ///< "" for the scale of the shear
-  std::string variant = {};  ///< swept values; "" if not stated
+  std::string variant = {};  ///< swept values; "" if not given
   /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
@@ -183,7 +183,7 @@ struct Scale {
   std::vector<std::string> primary = {};
   /// Numbers of seeds of the looks (interim analyses), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
-  std::set<std::string> own = {};  ///< keys that the entry of `scales` states itself
+  std::set<std::string> own = {};  ///< keys that the entry of `scales` itself contains
 };
 
 struct Manifest {

@@ -74,7 +74,7 @@ struct GrainTable {
 };
 
 struct Box {
-  string_view line;            ///< last line that states a part of the box
+  string_view line;            ///< last line that gives a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
   /// Axes along which LAMMPS fits the box to the grains. The box in a dump may be outdated there.
@@ -254,8 +254,8 @@ class PackingReader {
     return all;
   }
 
-  /// Reads the rest of the file, one grain in each line. `count`: the number of grains, if the line
-  /// that contains `stated_in` states it.
+  /// Reads the rest of the file, one grain in each line. `count`: the number of grains according to
+  /// the line that contains `stated_in`, if the file has such a line.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -265,13 +265,13 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
+                  fmt::format("the file ends after {} of the {} grains announced in line {}", found,
                               *count, at),
                   "Write the whole file, or correct the number.");
     }
     refuse_line(
         grains_.rows[*count],
-        fmt::format("the file continues after the {} grains that line {} states", *count, at),
+        fmt::format("the file continues after the {} grains announced in line {}", *count, at),
         "Keep one frame, or correct the number.");
   }
 
@@ -397,7 +397,7 @@ class PackingReader {
     box_->planes = {low, low + size};
   }
 
-  /// Whether one of the first lines states a number of atoms, as in "500 atoms".
+  /// Whether one of the first lines gives a number of atoms, as in "500 atoms".
   bool states_atoms() const {
     static const std::regex count("[0-9][ \\t]+atoms");
     return std::regex_search(string(rest_.substr(0, 2000)), count);
@@ -473,7 +473,7 @@ class PackingReader {
     set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
-  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file states no
+  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file gives no
   /// style, the number of fields decides.
   void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
@@ -579,7 +579,7 @@ class PackingReader {
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// Sets the unit of lengths. `in`: a part of the line that states the unit.
+  /// Sets the unit of lengths. `in`: a part of the line that gives the unit.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {
@@ -608,7 +608,7 @@ class PackingReader {
     for (const int k : {0, 1, 2}) {
       if (size[k] > 0) continue;
       refuse_line(box_->line,
-                  fmt::format("the box is {:.6g} long in {}", size[k], kNamesInMessages[k]),
+                  fmt::format("the box has length {:.6g} along {}", size[k], kNamesInMessages[k]),
                   "The edges must be positive.");
     }
   }
@@ -704,7 +704,7 @@ class PackingReader {
         const double value = use.factor * number(unquoted(fields[use.field]), kNamesInMessages[q]);
         const double other = std::exchange(row.value[q], value);
         if (other == 0 || std::fabs(value - other) <= kTolerance * std::fabs(other)) continue;
-        refuse_line(line, fmt::format("states the diameters {:.6g} and {:.6g}", other, value),
+        refuse_line(line, fmt::format("gives two diameters, {:.6g} and {:.6g}", other, value),
                     "Keep one column of radii or diameters.");
       }
       if (holds(uses, kWall) && row.value[kWall] >= table.first_wall) {

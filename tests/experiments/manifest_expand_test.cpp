@@ -412,7 +412,7 @@ TEST(Manifest, AliasesOfLongTextsCountAsWrittenOut) {
       "experiment: long\nquestion: &q \"" + std::string(100'000, 'a') + "\"\nseeds: [";
   for (int k = 0; k < 20; ++k) text += "*q, ";
   EXPECT_TRUE(has(message_of<ManifestError>([&] { parse_manifest(text + "1]\n", "long.yaml"); }),
-                  "is larger than 1048576 bytes when aliases are written out"));
+                  "is larger than 1048576 bytes after aliases are replaced"));
 }
 
 TEST(Expand, AnAliasIsACopyOfItsAnchor) {

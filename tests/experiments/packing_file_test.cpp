@@ -112,11 +112,11 @@ const std::vector<BadPacking> kBad = {
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
      "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
-     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Write the whole file, "
+     "a.xyz:4:1: the file ends after 2 of the 3 grains announced in line 1. Write the whole file, "
      "or "
      "correct the number."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
+     "a.xyz:5:1: the file continues after the 2 grains announced in line 1. Keep one frame, or "
      "correct "
      "the number."},
     {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
@@ -137,7 +137,7 @@ const std::vector<BadPacking> kBad = {
      "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. The box must be upright. Write "
      "the state of a sheared cell at the end of a cycle."},
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: the box is -9 long in y. The edges must be positive."},
+     "a.xyz:2:1: the box has length -9 along y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the box. "
      "Origin needs 3 numbers, its lower corner."},
@@ -190,7 +190,7 @@ const std::vector<BadPacking> kBad = {
      "a.data:8:1: the box is not orthogonal: an edge leans by 1. The box must be upright. Write "
      "the state of a sheared cell at the end of a cycle."},
     {"DataReversed", "a.data", data("9 0 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n", kAtoms),
-     "a.data:7:1: the box is -9 long in x. The edges must be positive."},
+     "a.data:7:1: the box has length -9 along x. The edges must be positive."},
     {"DataVelocityMissing", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n"),
      "a.data:16:1: atom 2 has no velocity. Write one velocity for each atom, or leave out the "
      "section Velocities."},
@@ -202,10 +202,11 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
+     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Write the whole "
+     "file, "
      "or correct the number."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
+     "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
      "correct the number."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
@@ -407,7 +408,7 @@ const std::vector<Parts> kParts = {
     {"a.dump", dump("id x y z radius diameter d_radius", "1 1 1 1 .5 1 7\n2 3 3 3 .5 1 7\n"),
      kStill + "; not read: d_radius"},
     {"a.dump", dump("id x y z radius diameter", "1 1 1 1 .5 1\n2 3 3 3 .5 2\n"),
-     ":11:1: states the diameters 1 and 2. Keep one column of radii or diameters."},
+     ":11:1: gives two diameters, 1 and 2. Keep one column of radii or diameters."},
     {"a.dump",
      [] {
        std::string text = dump("id x y z", "1 1 1 1\n2 3 3 3\n");
