@@ -402,12 +402,11 @@ void fields(Manifest& manifest, const auto& visit) {
                             .example = "Does the fluid matter?",
                             .longest = 2'000,
                             .folds = true});
-  visit(
-      manifest.of,
-      {.name = "of",
-       .doc = "experiments in the store; plots and claims use their runs, and the manifest has no "
-              "keys that define runs. Selections may use the key `experiment`",
-       .example = "[drag, timestep]"});
+  visit(manifest.of,
+        {.name = "of",
+         .doc = "experiments in the store; plots and claims use their runs, and the manifest has "
+                "no keys that define runs. Selections may use the key `experiment`",
+         .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
   visit(manifest.labels, {.name = "labels",

@@ -182,10 +182,9 @@ std::span<const Field> schema() {
       row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", {0, 1e9},
                                          kPrepare, "drag constant of the moving wall per area"),
       // Preparation.
-      row<&P::fill_packing_fraction>(
-          "fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
-          "volume fraction of the grains before they settle; they are placed "
-          "by random sequential addition, which jams at 0.384"),
+      row<&P::fill_packing_fraction>("fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
+                                     "volume fraction of the grains before they settle; they are "
+                                     "placed by random sequential addition, which jams at 0.384"),
       row<&P::settle_time_step_s>("settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
                                   "time step while settling; independent of the time step of the "
                                   "shear, so that variants of the shear share their packing; "

@@ -202,9 +202,8 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Write the whole "
-     "file, "
-     "or correct the number."},
+     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Write the "
+     "whole file, or correct the number."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
      "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
      "correct the number."},
