@@ -522,7 +522,7 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   }
   if (alone.empty()) return "";
   return format(
-      "{} {} other packings than {}, so the plot omits {}. Under `settle`, state the parameters "
+      "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
       "that all packings must share.",
       some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
       alone.size() == 1 ? "this variant" : "these variants");

@@ -100,7 +100,7 @@ struct Sweep {
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
-  Position at = {};  ///< line 0: not stated
+  Position at = {};  ///< line 0: not given
 };
 
 /// `until`: a run ends `extra_cycles` after the first checkpoint at which the measure is at least

@@ -461,7 +461,7 @@ class PackingReader {
 
   void read_bounds(const std::vector<string_view>& words) {
     if (words.back().ends_with("vec")) {
-      refuse_part(words.back(), "", "states the box by its edges, which cannot be read",
+      refuse_part(words.back(), "", "gives the box by its edges, which cannot be read",
                   "Write the box as xlo xhi, ylo yhi and zlo zhi.");
     }
     if (words.size() == 6 && words[3] == "xy") {
@@ -584,10 +584,10 @@ class PackingReader {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {
       refuse_line(
-          in, fmt::format("states lengths in {}", name_of(unit)),
+          in, fmt::format("gives lengths in {}", name_of(unit)),
           unit_ ? fmt::format("The file also has lengths in {}. Write all lengths in one unit.",
                               name_of(*other))
-                : fmt::format("The manifest states `unit: {}`. Remove that key.", name_of(*other)));
+                : fmt::format("The manifest sets `unit: {}`. Remove that key.", name_of(*other)));
     }
     unit_ = unit;
   }
@@ -760,7 +760,7 @@ class PackingReader {
   double scale() {
     const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
     if (!unit) {
-      refuse_file("does not state the unit of its lengths",
+      refuse_file("does not give the unit of its lengths",
                   "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
     }
     unit_ = unit;

@@ -682,7 +682,7 @@ struct Reader {
       return reject_key(in, "does not distinguish runs",
                         "Name a parameter that distinguishes runs.");
     }
-    if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
+    if (where.contains(in.key)) return reject_key(in, "is given twice", "Give it once.");
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {

@@ -69,12 +69,12 @@ const std::vector<BadPacking> kBad = {
      "a.csv:2:5: is not valid UTF-8. Save the file as UTF-8 text."},
     {"Prose", "a.txt", "Dear reader\n", "a.txt: is not in a format that can be read. " + kFormats},
     {"UnitUnstated", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz: does not state the unit of its lengths. Write `unit: m` or `unit: d` (grain "
+     "a.xyz: does not give the unit of its lengths. Write `unit: m` or `unit: d` (grain "
      "diameters) "
      "beside `file` in the manifest.",
      kUnstated},
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
-     "a.csv:1:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
+     "a.csv:1:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:13: length_unit: cannot be read (got nm). Write m or d."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
@@ -313,7 +313,7 @@ const std::vector<Parts> kParts = {
     {"a.xyz", xyz("units=angstrom", "A 1 1 1\nA 3 3 3\n"),
      ":2:1: cannot be read in this form (got units). " + kKeys},
     {"a.xyz", xyz("length_unit = m", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
+     ":2:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.xyz", xyz("length_unit = 'd' Lattice='9 0 0 0 9 0 0 0 9'", "A 1 1 1\nA 3 3 3\n"),
      kStill + "; not read: species"},
     {"a.xyz", xyz("velocity_unit=mm/s", "A 1 1 1\nA 3 3 3\n"),
@@ -354,7 +354,7 @@ const std::vector<Parts> kParts = {
      ":3:1: the diameter is 0.003 d. It would be right in m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
-     ":5:7: states the box by its edges, which cannot be read (got avec). Write the box as xlo "
+     ":5:7: gives the box by its edges, which cannot be read (got avec). Write the box as xlo "
      "xhi, ylo "
      "yhi and zlo zhi."},
     {"a.data", data("0 9 xlo xhi\n0 9 ylo yhi\n", kAtoms),
@@ -370,7 +370,7 @@ const std::vector<Parts> kParts = {
     {"a.data", titled("LAMMPS data file via write_data, timestep = 0, units = lj"),
      kStill + "; not read: type"},
     {"a.data", titled("units: si"),
-     ":1:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
+     ":1:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.data", titled("units unknown to me"), kStill + "; not read: type"},
     {"a.data", data(kBounds, "Atoms\n\n1 1 1 1 1 # C\n2 1 3 3 3#C\n"), kStill + "; not read: type"},
     {"a.data",
@@ -387,7 +387,7 @@ const std::vector<Parts> kParts = {
     {"a.dump", in_units("cgs"), ":2:1: units: cannot be read (got cgs)." + kLammpsUnits},
     {"a.dump", in_units("nano"), ":2:1: units: cannot be read (got nano)." + kLammpsUnits},
     {"a.dump", in_units("si"),
-     ":2:1: states lengths in m. The manifest states `unit: d`. Remove that key."},
+     ":2:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.dump", in_units("lj"), kStill},
     {"a.dump", dump("id x y z xu yu zu", "1 1 1 1 1 1 10\n2 3 3 3 3 3 3\n"),
      kStill + "; not read: xu, yu, zu"},
