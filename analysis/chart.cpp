@@ -327,7 +327,7 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
                                       : "Bands",
                         own_errors ? ", except where stated" : "");
   }
-  if (bars || bands || own_errors) text += " Verdicts have 90 % intervals instead.";
+  if (bars || bands || own_errors) text += " Verdicts give 90 % intervals, not standard errors.";
   for (const auto& [note, letters] : notes) {
     const bool of_all = letters.size() == charts || letters.front().empty();
     text += of_all ? " " : fmt::format(" ({}) ", fmt::join(letters, ", "));

@@ -177,7 +177,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  add_note(verdict.note, fmt::format("an unplanned look that includes {} beyond the plan gives: {}",
+  add_note(verdict.note, fmt::format("an unplanned look, with {} more than planned, gives: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }
@@ -224,8 +224,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 
 namespace {
 
-/// The values of the swept keys that `between` does not set for side `k`, for each of its runs. A
-/// claim may average over these values if both sides have the same values.
+/// For each run of side `k`: the values of the swept keys that this side does not select. A claim
+/// may average over such values if they are the same on both sides.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

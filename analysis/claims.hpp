@@ -29,7 +29,7 @@ struct ClaimSpec {
   std::string compare = {};  ///< the compared quantity, given like PlotSpec::y; not a curve
   /// The estimator's name; "": the other keys imply the estimator (estimator_of()).
   std::string estimator = {};
-  /// A claim states at most one of the next four members: `cycles` (first and last), `phi` (lower
+  /// A claim has at most one of the next four members: `cycles` (first and last), `phi` (lower
   /// and upper end of a range), `reaches` (a value of the measure), or `against` (another column).
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::optional<std::array<double, 2>> phi = {};
@@ -53,15 +53,15 @@ struct ClaimSpec {
   bool optional = false;               ///< no verdict if a side has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
   /// The claim belongs to a shipped manifest, and the user's manifest lists the claim's figure. If
-  /// problems_of_sides() finds a problem, the verdict on a listed claim uses no runs. For any other
-  /// claim the problem is an error.
+  /// problems_of_sides() finds a problem in a listed claim, the verdict uses no runs. In any other
+  /// claim such a problem is an error.
   bool listed = false;
 };
 
 /// Whether the claim has only one group of runs (a published number, or Estimator::one_side).
 bool has_one_side(const ClaimSpec& claim);
 
-/// The figure of the claim: `figure` if not empty, otherwise the id up to its first dot.
+/// The figure of the claim: `figure` if given, otherwise the id up to its first dot.
 std::string figure_of(const ClaimSpec& claim);
 
 /// The groups of runs that a claim compares. The second is empty if the claim has one side.

@@ -98,7 +98,7 @@ class NumberColumn {
   Evaluate evaluate_;  // empty if text_ is a single name
 };
 
-/// Whether a column has one number per run: it names neither the cycle nor a checkpoint's measure.
+/// Whether a column has one number per run: it uses neither the cycle nor measures of checkpoints.
 bool is_of_run(std::string_view column);
 /// Whether a column names a measure of a whole run. Runs of one variant differ in such a measure.
 bool is_measured_of_run(std::string_view column);

@@ -105,7 +105,7 @@ GrowthCount& GrowthCount::operator+=(const GrowthCount& other) {
 
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> shared;  // grains, by labels
-  std::size_t l = 0;  // both lists of grains ascend
+  std::size_t l = 0;  // both lists of grains are in ascending order
   for (std::size_t k = 0; k < now.grain.size(); ++k) {
     while (l < later.grain.size() && later.grain[l] < now.grain[k]) ++l;
     if (l == later.grain.size()) break;

@@ -78,7 +78,7 @@ class GrowthCurve {
   /// The size at which delta_rho rises through zero. If there are several such sizes, it is the one
   /// above which the excess of growing over shrinking crystallites is largest. Empty for fewer than
   /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
-  /// An end is infinite if too many bootstrap selections have no such size.
+  /// An end of the interval is infinite if too many bootstrap selections have no such size.
   std::optional<Estimate> critical_size() const;
   /// The size for which the excess of growing over shrinking crystallites of this size and above is
   /// largest. At this size the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero

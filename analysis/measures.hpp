@@ -72,7 +72,7 @@ struct Measure {
   /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have the measure
-  bool waits = false;           ///< true for the cycle of an event that some runs do not reach
+  bool waits = false;           ///< the value is the cycle of an event that may never occur
 };
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].

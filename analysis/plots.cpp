@@ -60,7 +60,7 @@ struct Selected {
   std::vector<const FrameRun*> partners = {};
 };
 
-/// The column at the checkpoint of the run, minus the column's mean over the partners of the run.
+/// The value of the column at the run's checkpoint, minus the mean of its values for the partners.
 double value_of(const NumberColumn& column, const Selected& one,
                 const CheckpointMeasures* checkpoint) {
   const double own = column(*one.run, checkpoint);
@@ -272,8 +272,8 @@ struct Group {
 };
 
 /// The curves of a panel. If PlotSpec::by is set, runs with equal values of `by` share a curve.
-/// Otherwise each variant has a curve. In a plot with panels, or with one value of x for each run,
-/// runs that differ only in x or in the panel's parameter share a curve.
+/// Otherwise each variant has a curve. Exception: if the plot has panels, or if x has one value for
+/// each run, then runs that differ only in x or in the panel's parameter share a curve.
 std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets colour and symbol if the series entry has them.
+/// Sets colour and symbol if the series entry gives them.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -413,7 +413,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 
 // --- Average ---
 
-/// Mean over packings if values are censored. RunStatistics::runs counts the uncensored packings.
+/// Mean over packings of values that may be censored. `runs` counts only the uncensored packings.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
   RunStatistics found;

@@ -90,7 +90,7 @@ struct PlotSpec {
   bool listed = false;
 };
 
-/// The name of the plot's figure: `figure`, or `name` if `figure` is empty.
+/// The name of the plot's figure: `figure` if given, otherwise `name`.
 inline const std::string& figure_of(const PlotSpec& plot) {
   return plot.figure.empty() ? plot.name : plot.figure;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers that the supplement of Phys. Rev. Lett. 125, 258003 states, and the margins of
+// Numbers given in the supplement of Phys. Rev. Lett. 125, 258003, and the margins of
 // the verdicts of computed figures.
 #pragma once
 
@@ -61,7 +61,7 @@ inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
 // Margins: two results agree if they differ by less than the margin. Margins of figures that C++
-// code computes are stated here, before the runs are made. Manifests state all other margins. The
+// code computes are defined here, before the runs are made. Manifests define all other margins. The
 // uncertainty of a published critical size is part of the interval, not of the margin (README.md).
 
 /// Margin of the critical size, relative to the published size. Published sizes of neighbouring

@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// The statistic of each selection of `chosen` runs. NaN values are left out.
+/// Draws selections of `chosen` runs. Returns the statistic of each selection, except NaN.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);

@@ -36,7 +36,7 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< line of a curve without symbols; dashes if the colour repeats
+  Join join = Join::line;   ///< line style without symbols; dashes for a second curve of one colour
 };
 
 /// The look of a curve of one amplitude. Each amplitude of the supplement has the same look in all

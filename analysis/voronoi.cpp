@@ -106,8 +106,8 @@ class Tessellation {
 
   /// The sphere around a corner of a cell passes through the site of the cell. A cell is correct if
   /// the spheres around all its corners lie within the margin. Additional images can only make
-  /// cells smaller, so a margin equal to the present reach of the spheres is sufficient. A guard
-  /// may make the reach far too large, so each pass at most doubles the margin.
+  /// cells smaller, so a margin equal to the present reach of the spheres is sufficient. If a
+  /// cell extends to a guard, the reach is far too large, so each pass at most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
@@ -387,7 +387,7 @@ class Tessellation {
   VoronoiDiagram collect() {
     VoronoiDiagram diagram;
     diagram.faces.reserve(
-        16 * static_cast<std::size_t>(grains_));  // a little more than in a dense packing
+        16 * static_cast<std::size_t>(grains_));  // a dense packing has slightly fewer faces
     diagram.first.push_back(0);
     for (std::int32_t i = 0; i < grains_; ++i) {
       const std::size_t first = diagram.faces.size();

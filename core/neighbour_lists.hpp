@@ -83,7 +83,7 @@ class NeighbourLists {
   NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
                  const Walls& walls, Team& team);
 
-  /// Returns false if a grain or wall may have moved by more than its margin in the inner lists.
+  /// Whether the inner lists are valid: no grain or wall can have moved by more than its margin.
   /// `excess` is the return value of Kernels::step.
   bool inner_valid(double excess, const WallPose& pose) const;
 

@@ -178,7 +178,7 @@ std::optional<ManifestText> find_manifest(const Store& store, const std::string&
           "stream name; run `verify`",
           event.seq));
     }
-    found.sha256 = sha256;  // a forged payload may state another SHA-256
+    found.sha256 = sha256;  // a forged payload may contain another SHA-256
     return ManifestText{std::move(found), event.recorded_at};
   }
   return std::nullopt;

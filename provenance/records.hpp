@@ -46,7 +46,7 @@ struct Membership {
     field("experiment", place.experiment), field("scale", place.scale);
     field("variant", place.variant), field("labels", place.swept), field("seed", place.seed);
     field("manifest", place.manifest), field("checkpoint_every", ask.checkpoint_every);
-    // Written only if the manifest states them.
+    // Written only if the manifest has these keys.
     field("until", ask.until, true), field("checkpoint_phases", ask.checkpoint_phases, true);
   }
 };
@@ -83,7 +83,7 @@ inline bool has_ended(StageState state) {
   return state == StageState::completed || state == StageState::failed;
 }
 
-/// A stage as a manifest states it or as its events describe it.
+/// A stage that a manifest defines or that events describe.
 struct Stage {
   std::string id;                                      ///< 64 hex digits
   std::string parent;                                  ///< id of the preceding stage; "" if none
@@ -114,8 +114,8 @@ struct Run {
   Ask ask = {};
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
-  bool named = false;     ///< whether the manifest states this name as a label
-  /// False if this manifest has a newer version, or if a run declared later has an equal Place.
+  bool named = false;     ///< whether this name is a label from the manifest
+  /// False if the manifest has a newer version, or another run was declared later for this place.
   bool newest = true;
 };
 

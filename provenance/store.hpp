@@ -46,7 +46,7 @@ struct VerifyReport {
   std::uint64_t events = 0;
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
   std::uint64_t bytes = 0;        ///< size of these files
-  std::uint64_t orphans = 0;      ///< files that no event names
+  std::uint64_t orphans = 0;      ///< files to which no event refers
   Head head;                      ///< head of the log, which can be saved for a later verify()
 
   /// The number of findings of this severity.
@@ -104,9 +104,9 @@ class Store {
   /// StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each membership that the store lacks, that requests a larger target or another
-  /// checkpoint interval, or whose place was later declared for another stage. A larger target
-  /// makes a completed stage `declared` again. Throws std::invalid_argument when the id is not a
+  /// Records a membership if the store lacks it, if it has a larger target or another checkpoint
+  /// interval, or if another stage was declared later for its place. A larger target makes a
+  /// completed stage `declared` again. Throws std::invalid_argument when the id is not a
   /// SHA-256 or belongs to other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 

@@ -185,7 +185,7 @@ void check_objects(const std::vector<CheckpointRecord>& records,
     ++report.orphans;
     report.findings.push_back(
         {Severity::note, file, "",
-         "no event names this file: it was left by a crash or is being written "
+         "no event refers to this file: it was left by a crash or is being written "
          "now; it can be deleted when no program uses the store"});
   }
 }

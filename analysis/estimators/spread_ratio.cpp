@@ -55,7 +55,7 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
                       [](double log) { return std::expm1(log); });
   }
   return decide(stated, words_of_ratio(claim) + ", minus 1", estimate, with_both,
-                fmt::format("{} of {} runs have both numbers, in {}; test of Pitman and Morgan",
+                fmt::format("{} of {} runs have values of both measures, in {}; Pitman-Morgan test",
                             with_both, runs.size(), counted(variants.size(), "variant")),
                 std::move(entered));
 }

@@ -197,8 +197,8 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
   return table;
 }
 
-/// The critical size against the number of cycles over which crystallites are followed. The
-/// supplement's critical size is shown at the supplement's n_bin.
+/// The critical size as a function of the number of cycles over which crystallites are followed.
+/// The supplement's critical size is shown at the number of cycles in the supplement, n_bin.
 Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);

@@ -46,7 +46,7 @@ Check memory() {
     if (word == "MemAvailable:" && facts >> kib) bytes = std::min(bytes, 1024 * kib);
   }
   return {"memory", format_bytes(bytes) + " free", "ok",
-          fmt::format("enough for {:.1e} grains, summed over all runs", bytes / kRunBytesPerGrain)};
+          fmt::format("enough for {:.1e} grains in total, in all runs", bytes / kRunBytesPerGrain)};
 }
 
 Check disk(const fs::path& place) {

@@ -144,7 +144,7 @@ void require_slurm() {
 std::string queue_job(const Job& job, const fs::path& folder) {
   static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the cluster's name may follow
   write_output(folder / job.file, job.script);
-  // This call has no time limit, because a slow sbatch may queue the job after any limit.
+  // No time limit: a slow sbatch could still queue the job after this program has given up.
   const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
   std::smatch found;
   const auto is_number = [&found](const std::string& text) {

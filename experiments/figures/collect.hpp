@@ -44,10 +44,10 @@ struct WantedFigure {
   std::string path() const;
 };
 
-/// The figures that registered manifests list.
+/// The figures that registered manifests list or define.
 struct WantedFigures {
   /// Sorted by experiment; figures of all experiments are last. Within an experiment, figures that
-  /// the manifest only names come before figures that it defines by `plots` and `claims`.
+  /// the manifest lists in `figures` come before figures that its `plots` and `claims` define.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
@@ -80,7 +80,7 @@ void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
-  ReadManifests manifests;  ///< WantedFigure::manifests, or read from the store if null
+  ReadManifests manifests;  ///< WantedFigure::manifests; if null, read from the store
   std::string scale;        ///< the scale of all runs: a figure never mixes scales
   /// Messages on runs that were left out, on unfinished runs and on missing checkpoints.
   std::vector<std::string> notes;

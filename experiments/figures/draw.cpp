@@ -235,8 +235,8 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
     require_told_apart(figure.name, runs, figure.keys,
-                       "make a separate experiment for each value, or state a plot in the manifest "
-                       "(`plots`)");
+                       "make a separate experiment for each value, or define a plot "
+                       "in the manifest (`plots`)");
   }
   made.title = title_of(figure, runs);
   made.runs = runs.size();

@@ -16,7 +16,7 @@
 namespace shearcell {
 namespace {
 
-constexpr std::size_t kAtOnce = 500;  // number of checkpoints after which a batch is measured
+constexpr std::size_t kAtOnce = 500;  // a batch is measured when it has this many checkpoints
 
 /// Whether the provider needs the file of an earlier checkpoint that is already pruned, for example
 /// because a pruned run was continued. In this case the measure was lost with the earlier file.

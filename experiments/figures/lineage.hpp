@@ -44,7 +44,7 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< lines of the manifest that apply to the run
   nlohmann::json overrides;              ///< as overrides_of() returns them
-  States states;                         ///< as the figure's record states them
+  States states;                         ///< as in the figure's record
   std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
   std::string fault;                     ///< how the log differs from `states`; "" if both agree
 };
@@ -61,7 +61,7 @@ struct FigureLineage {
 };
 
 /// Returns the values of the manifest that the command line replaced, or null. Example for a run of
-/// 8 cycles whose manifest states 5 cycles: {"cycles": {"run": 8, "manifest": 5}}.
+/// 8 cycles whose manifest asks for 5 cycles: {"cycles": {"run": 8, "manifest": 5}}.
 nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
                             const Ask& ask);
 /// Returns "S2" for a record named "drag/desk/S2". Records of older stores are named "drag/S2" or

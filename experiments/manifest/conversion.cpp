@@ -162,7 +162,7 @@ std::optional<std::string> time_step_advice(const TimeStep& step, const std::str
   constexpr double too_small = 0.15, too_large = 0.7;
   const bool large = step.over_stability_limit > too_large;
   if (!large && step.over_stability_limit >= too_small) return std::nullopt;
-  return fmt::format("{}: the time step of {:.3g} s is {:.3g} of the stability limit ({} {:g}). {}",
+  return fmt::format("{}: the time step {:.3g} s is {:.3g} times the stability limit ({} {:g}). {}",
                      key, step.seconds, step.over_stability_limit, large ? "above" : "below",
                      large ? too_large : too_small,
                      large ? "The fastest vibrations are wrong by more than 10 %"

@@ -71,7 +71,7 @@ struct VariantCheck {
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
-  // The value in the manifest for `key` (a parameter or "settle.PARAMETER"), or null.
+  // The value that the manifest gives for `key` (a parameter or "settle.PARAMETER"), or null.
   const Setting* find(string_view key) const {
     if (constexpr string_view of_packing = "settle."; key.starts_with(of_packing)) {
       const auto found = scale.settle.find(key.substr(of_packing.size()));
@@ -286,8 +286,8 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   }
   for (const VariantLabel& label : manifest.labels) {
     if (used.contains(&label)) continue;
-    reject(label, "does not match a variant of any scale", words_of(label.where),
-           "A label has swept keys with one value each, such as `\"fluid=still\"`.");
+    reject(label, "matches no variant of any scale", words_of(label.where),
+           "Write swept keys, each with one of its values, such as `\"fluid=still\"`.");
   }
 }
 
@@ -522,8 +522,8 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   }
   if (alone.empty()) return "";
   return format(
-      "{} {} different packings from {}, so the plot omits {}. To use one packing for all "
-      "variants, give the swept parameters fixed values under `settle`.",
+      "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
+      "that all packings must share.",
       some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
       alone.size() == 1 ? "this variant" : "these variants");
 }
@@ -567,7 +567,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // checked only in the manifest that states the plot
+    if (plot.listed) break;  // checked only in the manifest that defines the plot
     if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const bool of_another = std::ranges::any_of(
@@ -645,7 +645,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     if (key.empty()) continue;
     warnings.push_back(
         format("{}: figure {} would average over the values of {}. Use one experiment for each "
-               "value, or state a plot (`plots`).",
+               "value, or define a plot (`plots`).",
                manifest.file, name, key));
   }
   const std::vector<Scale> scales = scales_of(manifest);
@@ -710,7 +710,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not state a key that it sweeps. `base` may, because a sweep overrides `base`.
+    // A scale must not set a key that it sweeps. `base` may, because a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -196,14 +196,14 @@ class TreeBuilder : public YAML::EventHandler {
     count_value(at);
     copied_ += node.text.size() + node.key.size();
     if (copied_ > ManifestLimits::bytes) {
-      refuse(file_, at, "",
-             fmt::format("is larger than {} bytes when aliases are written out",
-                         ManifestLimits::bytes),
-             "", "");
+      refuse(
+          file_, at, "",
+          fmt::format("is larger than {} bytes after aliases are replaced", ManifestLimits::bytes),
+          "", "");
     }
     if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
     for (const Node& part : node.parts) {
-      if (node.kind == Node::Kind::map) count_value(at);  // the key of the part
+      if (node.kind == Node::Kind::map) count_value(at);  // each key of a map counts, too
       check_size(part, at, depth + 1);
     }
   }

@@ -87,7 +87,7 @@ UnreadableRecord damaged(std::string_view key, std::string_view problem) {
 }
 
 // Parameters that do not affect the stage keep their default. If the record lacks a parameter that
-// affects the stage, the parameter gets the value `omitted_at`, since records omit this value.
+// affects the stage, the parameter has the value `omitted_at`, which is never written to records.
 void read_parameters(const json& values, StageInputs& record) {
   if (!values.is_object()) throw damaged("parameters", "is not a JSON object");
   Parameters& p = record.parameters;

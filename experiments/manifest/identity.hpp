@@ -14,10 +14,10 @@
 
 namespace shearcell {
 
-/// The file of grains that a packing begins with, instead of loose grains.
+/// The file that gives the initial grains of a packing. Without a file, the grains start loose.
 struct StartFile {
   std::string sha256;                   ///< of the file's text; the store keeps the text
-  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest gives it
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest gives one
   bool settles = false;                 ///< whether the grains settle further
 };
 

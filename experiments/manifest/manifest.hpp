@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manifest is a YAML text that states one experiment. Reading any bytes returns a Manifest, or
+// A manifest is a YAML text that defines one experiment. Reading any bytes returns a Manifest, or
 // throws ManifestError with the position and the remedy of each problem.
 #pragma once
 
@@ -100,7 +100,7 @@ struct Sweep {
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
-  Position at = {};  ///< line 0: not stated
+  Position at = {};  ///< line 0: not given
 };
 
 /// `until`: a run ends `extra_cycles` after the first checkpoint at which the measure is at least
@@ -157,7 +157,7 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< "": the same scale as the new run
+  std::string scale = {};    ///< "" for the scale of the shear
   std::string variant = {};  ///< swept values; "" if not given
   /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
   std::string run = {};
@@ -183,7 +183,7 @@ struct Scale {
   std::vector<std::string> primary = {};
   /// Numbers of seeds of the looks (interim analyses), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
-  std::set<std::string> own = {};  ///< keys that occur in this scale's entry of `scales`
+  std::set<std::string> own = {};  ///< keys that the entry of `scales` itself contains
 };
 
 struct Manifest {

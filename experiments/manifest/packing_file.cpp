@@ -254,8 +254,8 @@ class PackingReader {
     return all;
   }
 
-  /// Reads the rest of the file, one grain in each line. `count`: the number of grains, if the line
-  /// that contains `stated_in` states it.
+  /// Reads the rest of the file, one grain in each line. `count`: the number of grains according to
+  /// the line that contains `stated_in`, if the file has such a line.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -265,13 +265,14 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains given in line {}", found,
+                  fmt::format("the file ends after {} of the {} grains announced in line {}", found,
                               *count, at),
                   "Write the whole file, or correct the number.");
     }
-    refuse_line(grains_.rows[*count],
-                fmt::format("the file continues after the {} grains given in line {}", *count, at),
-                "Keep one frame, or correct the number.");
+    refuse_line(
+        grains_.rows[*count],
+        fmt::format("the file continues after the {} grains announced in line {}", *count, at),
+        "Keep one frame, or correct the number.");
   }
 
   Box& box() {
@@ -396,7 +397,7 @@ class PackingReader {
     box_->planes = {low, low + size};
   }
 
-  /// Whether one of the first lines states a number of atoms, as in "500 atoms".
+  /// Whether one of the first lines gives a number of atoms, as in "500 atoms".
   bool states_atoms() const {
     static const std::regex count("[0-9][ \\t]+atoms");
     return std::regex_search(string(rest_.substr(0, 2000)), count);
@@ -460,7 +461,7 @@ class PackingReader {
 
   void read_bounds(const std::vector<string_view>& words) {
     if (words.back().ends_with("vec")) {
-      refuse_part(words.back(), "", "states the box by its edges, which cannot be read",
+      refuse_part(words.back(), "", "gives the box by its edges, which cannot be read",
                   "Write the box as xlo xhi, ylo yhi and zlo zhi.");
     }
     if (words.size() == 6 && words[3] == "xy") {
@@ -472,7 +473,7 @@ class PackingReader {
     set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
-  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file states no
+  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file gives no
   /// style, the number of fields decides.
   void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
@@ -578,15 +579,15 @@ class PackingReader {
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// Sets the unit of lengths. `in`: a part of the line that states the unit.
+  /// Sets the unit of lengths. `in`: a part of the line that gives the unit.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {
       refuse_line(
-          in, fmt::format("states lengths in {}", name_of(unit)),
+          in, fmt::format("gives lengths in {}", name_of(unit)),
           unit_ ? fmt::format("The file also has lengths in {}. Write all lengths in one unit.",
                               name_of(*other))
-                : fmt::format("The manifest has `unit: {}`. Remove this key.", name_of(*other)));
+                : fmt::format("The manifest sets `unit: {}`. Remove that key.", name_of(*other)));
     }
     unit_ = unit;
   }
@@ -607,7 +608,7 @@ class PackingReader {
     for (const int k : {0, 1, 2}) {
       if (size[k] > 0) continue;
       refuse_line(box_->line,
-                  fmt::format("the box is {:.6g} long in {}", size[k], kNamesInMessages[k]),
+                  fmt::format("the box has length {:.6g} along {}", size[k], kNamesInMessages[k]),
                   "The edges must be positive.");
     }
   }
@@ -703,7 +704,7 @@ class PackingReader {
         const double value = use.factor * number(unquoted(fields[use.field]), kNamesInMessages[q]);
         const double other = std::exchange(row.value[q], value);
         if (other == 0 || std::fabs(value - other) <= kTolerance * std::fabs(other)) continue;
-        refuse_line(line, fmt::format("states the diameters {:.6g} and {:.6g}", other, value),
+        refuse_line(line, fmt::format("gives two diameters, {:.6g} and {:.6g}", other, value),
                     "Keep one column of radii or diameters.");
       }
       if (holds(uses, kWall) && row.value[kWall] >= table.first_wall) {
@@ -759,7 +760,7 @@ class PackingReader {
   double scale() {
     const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
     if (!unit) {
-      refuse_file("does not state the unit of its lengths",
+      refuse_file("does not give the unit of its lengths",
                   "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
     }
     unit_ = unit;

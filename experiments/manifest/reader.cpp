@@ -404,8 +404,8 @@ void fields(Manifest& manifest, const auto& visit) {
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "experiments in the store whose runs the plots and claims use, instead of the keys "
-                "that state runs. Selections may use the key `experiment`",
+         .doc = "experiments in the store; plots and claims use their runs, and the manifest has "
+                "no keys that define runs. Selections may use the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -485,13 +485,13 @@ string shown(const Node& node) {
   return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
 }
 
-// "It takes `[1, 15]`." with the example of the key or, if there is none, with the allowed values.
+// "It takes `[1, 15]`.": gives the example of the key or, without an example, the allowed values.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
-// The remedy for a value that is not a map. For `start`, the map that the text probably means.
+// The remedy for a value that is not a map. For `start`: a map with the key that probably fits.
 string remedy_for(const Node& in, const Field& about) {
   if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
   const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
@@ -532,7 +532,7 @@ string meant_expression(const string& text) {
 // all problems are reported at once.
 struct Reader {
   ProblemList& problems;
-  const Scale& base;                             // the keys that apply to all scales
+  const Scale& base;                             // the keys that are set for all scales
   std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
 
   // Reports keys that cannot be used in a manifest with the key `of`.
@@ -660,7 +660,7 @@ struct Reader {
     }
     if (of_run && of_checkpoint) {
       reject_value(in, "combines a value of the whole run with a value of a checkpoint",
-                   "Use measures of one kind.");
+                   "Use either values of whole runs or values of checkpoints.");
     }
     return !(of_run && of_checkpoint);
   }
@@ -682,7 +682,7 @@ struct Reader {
       return reject_key(in, "does not distinguish runs",
                         "Name a parameter that distinguishes runs.");
     }
-    if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
+    if (where.contains(in.key)) return reject_key(in, "is given twice", "Give it once.");
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {
@@ -891,7 +891,7 @@ struct Reader {
     for (const Node& part : in.parts) read_where(part, where);
   }
 
-  // Reads ascending numbers: the looks, or the phases of a cycle.
+  // Reads ascending numbers: numbers of seeds (`looks`), or phases of a cycle.
   template <class T>
   requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
                                               std::vector<T>& numbers) {
@@ -924,7 +924,7 @@ struct Reader {
                                                                            : "a figure"),
                      "Keep one of them.");
       } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
-        reject_value(item, with_nearest("names an unknown figure", name, names_of(figures_to_list)),
+        reject_value(item, with_nearest("lists an unknown figure", name, names_of(figures_to_list)),
                      "`shearcell figures --help` lists them.");
       }
       names.push_back(name);
@@ -972,7 +972,7 @@ struct Reader {
         reject_key(
             part,
             of_shear ? "has no effect on a packing" : "must be the same for packing and shear",
-            "State it in `base` or in a scale.");
+            "Set it in `base` or in a scale.");
       }
     }
   }
@@ -1028,7 +1028,7 @@ struct Reader {
   }
 
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
-    if (!in.is_map()) return reject_value(in, "sweeps nothing", "It takes `{key: [values]}`.");
+    if (!in.is_map()) return reject_value(in, "sweeps nothing", "Write `{key: [values]}`.");
     for (const Node& part : in.parts) {
       static const Field seeds = {
           .name = "seeds", .range = {1, ManifestLimits::runs}, .whole = true};
@@ -1062,7 +1062,7 @@ struct Reader {
   }
 
   void read(const Node& in, const Field&, Sweep& sweep) {
-    const string remedy = "It takes `grid: {key: [values]}` or `zip: {key: [values]}`.";
+    const string remedy = "Write `grid: {key: [values]}` or `zip: {key: [values]}`.";
     sweep = {};
     if (!in.is_map()) return reject_value(in, "sweeps nothing", remedy);
     for (const Node& part : in.parts) {
@@ -1186,10 +1186,10 @@ struct Reader {
       named = true;
       until.measure = part.key;
       const string why(why_not_until(part.key));
-      if (!why.empty()) reject_key(part, why, "Name another measure, such as phi.");
+      if (!why.empty()) reject_key(part, why, "Use another measure, such as phi.");
     }
     if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
-      reject(in, "names no measure", remedy_of(about));
+      reject(in, "contains no measure", remedy_of(about));
     }
   }
 
@@ -1262,7 +1262,7 @@ struct Reader {
     reject_value_if(is_curve, x, not_with_curve,
                     fmt::format("Leave it out. {} is drawn against {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
-    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Name another measure.");
+    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
               fmt::format("{} has one value for each run", plot.y), "Name a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
@@ -1428,7 +1428,7 @@ struct Reader {
   }
 
   // Reports names of plots, claims, figures or panels that occur twice, and names of figures or
-  // panels of the supplement. A manifest may state parts of a figure of the supplement, unless the
+  // panels of the supplement. A manifest may define parts of a figure of the supplement, unless the
   // manifest also lists this figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
@@ -1505,7 +1505,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  // Scales are read last, since each begins with the keys that apply to all scales.
+  // Scales are read last, since each begins with the keys that are set for all scales.
   std::stable_partition(root.parts.begin(), root.parts.end(),
                         [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;

@@ -183,8 +183,8 @@ std::span<const Field> schema() {
                                          kPrepare, "drag constant of the moving wall per area"),
       // Preparation.
       row<&P::fill_packing_fraction>("fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
-                                     "volume fraction of the random sequential addition from which "
-                                     "settling starts; random sequential addition jams at 0.384"),
+                                     "volume fraction of the grains before they settle; they are "
+                                     "placed by random sequential addition, which jams at 0.384"),
       row<&P::settle_time_step_s>("settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
                                   "time step while settling; independent of the time step of the "
                                   "shear, so that variants of the shear share their packing; "

@@ -28,7 +28,7 @@ struct Identity {
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
-  /// No record holds the parameter: it selects the parent stage, whose id is in the record.
+  /// Records do not hold the parameter. They hold the id of the parent stage that it selects.
   bool selects_parent = false;
 
   /// Whether runs with different values of the parameter have different ids.

@@ -204,8 +204,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest states {}", counted(count, "grain"), p.grains), "",
-           fmt::format("State `grains: {}`.", count));
+           fmt::format("has {}, but the manifest sets {}", counted(count, "grain"), p.grains), "",
+           fmt::format("Set `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p, limit);

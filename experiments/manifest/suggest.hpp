@@ -21,14 +21,14 @@ struct Tried {
   std::string_view remark;   ///< what to write, in whole sentences; may be empty
 };
 
-/// Finds `name` in the table of tried names. An entry with a remark also fits names that contain
+/// Finds `name` in the table of these names. An entry with a remark also fits names that contain
 /// its words: `friction` fits `coefficient_of_friction`. Of the entries that fit, returns the first
 /// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none fits.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name
-/// without the unit (`mass`), in the table of tried names, or by spelling, with up to about a third
-/// of the letters wrong. "" if no candidate is near.
+/// without the unit (`mass`), in the table of names that users try, or by its spelling, of which up
+/// to about a third may be wrong. "" if no candidate is near.
 std::string suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
 
 /// The text in lower case; only A to Z change.

@@ -59,8 +59,8 @@ struct EncodedFrame {
   std::vector<std::byte> bytes;
 };
 
-/// A further measure of each grain, which can colour the grains. A grain has one byte: the number
-/// of its class, or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of
+/// A further measure of each grain, which can colour the grains. Each grain has one byte: the class
+/// number, or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of
 /// value, low and high are used. The byte of an unknown value is 255.
 struct GrainField {
   const Measure* measure = nullptr;

@@ -80,7 +80,7 @@ std::string script_hash(std::string_view script) {
   return "sha256-" + base64(std::as_bytes(std::span(digest)));
 }
 
-/// The beginning of an id, which the page shows and uses in links.
+/// The first 12 characters of an id. The page shows them and uses them in links.
 std::string brief(const std::string& id) {
   return id.substr(0, 12);
 }
@@ -156,7 +156,7 @@ std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
-    facts["outputs"] = json::object();  // as in figure.lineage
+    facts["outputs"] = json::object();  // empty, as in figure.lineage
     if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;

@@ -233,8 +233,8 @@ class Campaign {
     if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another process computes ({}); this process continues "
-                    "a stage when that process has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another process is computing ({}); this process continues "
+                    "a stage when the other process has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }

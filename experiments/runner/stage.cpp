@@ -749,7 +749,7 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
     if (!missing.empty()) return StageAttempt(store, std::move(stage), options).fill(missing);
     return computed ? StageOutcome::completed : StageOutcome::already;
   } catch (const Interrupted&) {
-    return StageOutcome::interrupted;  // no start of an attempt was recorded
+    return StageOutcome::interrupted;  // interrupted before an attempt was recorded
   } catch (const ConcurrencyConflict&) {
     return StageOutcome::lost;
   }

@@ -272,7 +272,8 @@ TEST(SpreadRatio, IsThatOfPitmanAndMorgan) {
   EXPECT_NEAR(found.interval.high, 0.442491319, 1e-8);
   EXPECT_EQ(found.margin, -0.1);
   EXPECT_EQ(found.ruling, Ruling::undecided);
-  EXPECT_EQ(found.note, "7 of 7 runs have both numbers, in 2 variants; test of Pitman and Morgan");
+  EXPECT_EQ(found.note,
+            "7 of 7 runs have values of both measures, in 2 variants; Pitman-Morgan test");
 }
 
 TEST(CannotBeDecided, IsTheVerdictWithItsReasonWhateverTheNumbers) {
@@ -434,8 +435,7 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(
-      has(verdict.note, "an unplanned look that includes 4 seeds beyond the plan gives: 0.04"));
+  EXPECT_TRUE(has(verdict.note, "an unplanned look, with 4 seeds more than planned, gives: 0.04"));
 }
 
 }  // namespace

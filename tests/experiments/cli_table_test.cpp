@@ -155,7 +155,7 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
       has(with_notes.at("notes")[0].get<std::string>(), "left out: 2 runs of another version"));
   const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
   EXPECT_FALSE(has(report.err, "left out: experiment"));
-  // A manifest that states the runs of both versions.
+  // A manifest that defines the runs of both versions.
   write("both.yaml", tiny_manifest("",
                                    "sweep: {zip: {drag_kg_per_s: [1.28e-3, 1.28e-3, 2.0e-3], "
                                    "fluid: [still, cell, still]}}\n"));

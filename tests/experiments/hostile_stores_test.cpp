@@ -204,7 +204,7 @@ std::vector<Case> damaged_objects() {
       reported("no_objects_of_a_reader", "verify", 4, at("objects", removed),
                "the file is missing"),
       reported("object_of_a_stranger", "verify", 0, at("objects/note.txt", written("x")),
-               "no event names this file"),
+               "no event refers to this file"),
       reported(
           "checkpoints_forged_text", "figures S2", 4,
           [](const fs::path& s) { forge_checkpoints(s, std::string(5000, 'x')); },

@@ -250,10 +250,9 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
             "smoke, paper.");
-  EXPECT_EQ(
-      message(manifest, {.scale = "smoke", .seeds = 2}),
-      "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or state a "
-      "count.");
+  EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
+            "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or give a "
+            "count.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");
@@ -412,7 +411,7 @@ TEST(Manifest, AliasesOfLongTextsCountAsWrittenOut) {
       "experiment: long\nquestion: &q \"" + std::string(100'000, 'a') + "\"\nseeds: [";
   for (int k = 0; k < 20; ++k) text += "*q, ";
   EXPECT_TRUE(has(message_of<ManifestError>([&] { parse_manifest(text + "1]\n", "long.yaml"); }),
-                  "is larger than 1048576 bytes when aliases are written out"));
+                  "is larger than 1048576 bytes after aliases are replaced"));
 }
 
 TEST(Expand, AnAliasIsACopyOfItsAnchor) {

@@ -217,7 +217,7 @@ TEST(TimeStep, HasAWarningIfTooSmallOrTooLarge) {
   const auto large = time_step_advice({1e-4, 0.3, 0.8}, "settle_time_step_s");
   ASSERT_TRUE(small && large);
   EXPECT_TRUE(has(*small,
-                  "steps_per_cycle: the time step of 1e-06 s is 0.01 of the stability limit "
+                  "steps_per_cycle: the time step 1e-06 s is 0.01 times the stability limit "
                   "(below 0.15)"));
   EXPECT_TRUE(has(*large, "settle_time_step_s"));
   EXPECT_TRUE(has(*large, "above 0.7"));

@@ -69,12 +69,12 @@ const std::vector<BadPacking> kBad = {
      "a.csv:2:5: is not valid UTF-8. Save the file as UTF-8 text."},
     {"Prose", "a.txt", "Dear reader\n", "a.txt: is not in a format that can be read. " + kFormats},
     {"UnitUnstated", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz: does not state the unit of its lengths. Write `unit: m` or `unit: d` (grain "
+     "a.xyz: does not give the unit of its lengths. Write `unit: m` or `unit: d` (grain "
      "diameters) "
      "beside `file` in the manifest.",
      kUnstated},
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
-     "a.csv:1:1: states lengths in m. The manifest has `unit: d`. Remove this key."},
+     "a.csv:1:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:13: length_unit: cannot be read (got nm). Write m or d."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
@@ -112,11 +112,11 @@ const std::vector<BadPacking> kBad = {
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
      "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
-     "a.xyz:4:1: the file ends after 2 of the 3 grains given in line 1. Write the whole file, "
+     "a.xyz:4:1: the file ends after 2 of the 3 grains announced in line 1. Write the whole file, "
      "or "
      "correct the number."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file continues after the 2 grains given in line 1. Keep one frame, or "
+     "a.xyz:5:1: the file continues after the 2 grains announced in line 1. Keep one frame, or "
      "correct "
      "the number."},
     {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
@@ -137,7 +137,7 @@ const std::vector<BadPacking> kBad = {
      "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. Use a rectangular box. Write "
      "the state of a sheared cell at the end of a cycle."},
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: the box is -9 long in y. The edges must be positive."},
+     "a.xyz:2:1: the box has length -9 along y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the box. "
      "Origin needs 3 numbers, its lower corner."},
@@ -190,7 +190,7 @@ const std::vector<BadPacking> kBad = {
      "a.data:8:1: the box is not orthogonal: an edge leans by 1. Use a rectangular box. Write "
      "the state of a sheared cell at the end of a cycle."},
     {"DataReversed", "a.data", data("9 0 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n", kAtoms),
-     "a.data:7:1: the box is -9 long in x. The edges must be positive."},
+     "a.data:7:1: the box has length -9 along x. The edges must be positive."},
     {"DataVelocityMissing", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n"),
      "a.data:16:1: atom 2 has no velocity. Write one velocity for each atom, or leave out the "
      "section Velocities."},
@@ -202,10 +202,10 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains given in line 4. Write the whole file, "
-     "or correct the number."},
+     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Write the "
+     "whole file, or correct the number."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file continues after the 2 grains given in line 4. Keep one frame, or "
+     "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
      "correct the number."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
@@ -313,7 +313,7 @@ const std::vector<Parts> kParts = {
     {"a.xyz", xyz("units=angstrom", "A 1 1 1\nA 3 3 3\n"),
      ":2:1: cannot be read in this form (got units). " + kKeys},
     {"a.xyz", xyz("length_unit = m", "A 1 1 1\nA 3 3 3\n"),
-     ":2:1: states lengths in m. The manifest has `unit: d`. Remove this key."},
+     ":2:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.xyz", xyz("length_unit = 'd' Lattice='9 0 0 0 9 0 0 0 9'", "A 1 1 1\nA 3 3 3\n"),
      kStill + "; not read: species"},
     {"a.xyz", xyz("velocity_unit=mm/s", "A 1 1 1\nA 3 3 3\n"),
@@ -354,7 +354,7 @@ const std::vector<Parts> kParts = {
      ":3:1: the diameter is 0.003 d. It would be right in m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
-     ":5:7: states the box by its edges, which cannot be read (got avec). Write the box as xlo "
+     ":5:7: gives the box by its edges, which cannot be read (got avec). Write the box as xlo "
      "xhi, ylo "
      "yhi and zlo zhi."},
     {"a.data", data("0 9 xlo xhi\n0 9 ylo yhi\n", kAtoms),
@@ -370,7 +370,7 @@ const std::vector<Parts> kParts = {
     {"a.data", titled("LAMMPS data file via write_data, timestep = 0, units = lj"),
      kStill + "; not read: type"},
     {"a.data", titled("units: si"),
-     ":1:1: states lengths in m. The manifest has `unit: d`. Remove this key."},
+     ":1:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.data", titled("units unknown to me"), kStill + "; not read: type"},
     {"a.data", data(kBounds, "Atoms\n\n1 1 1 1 1 # C\n2 1 3 3 3#C\n"), kStill + "; not read: type"},
     {"a.data",
@@ -387,7 +387,7 @@ const std::vector<Parts> kParts = {
     {"a.dump", in_units("cgs"), ":2:1: units: cannot be read (got cgs)." + kLammpsUnits},
     {"a.dump", in_units("nano"), ":2:1: units: cannot be read (got nano)." + kLammpsUnits},
     {"a.dump", in_units("si"),
-     ":2:1: states lengths in m. The manifest has `unit: d`. Remove this key."},
+     ":2:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"a.dump", in_units("lj"), kStill},
     {"a.dump", dump("id x y z xu yu zu", "1 1 1 1 1 1 10\n2 3 3 3 3 3 3\n"),
      kStill + "; not read: xu, yu, zu"},
@@ -407,7 +407,7 @@ const std::vector<Parts> kParts = {
     {"a.dump", dump("id x y z radius diameter d_radius", "1 1 1 1 .5 1 7\n2 3 3 3 .5 1 7\n"),
      kStill + "; not read: d_radius"},
     {"a.dump", dump("id x y z radius diameter", "1 1 1 1 .5 1\n2 3 3 3 .5 2\n"),
-     ":11:1: states the diameters 1 and 2. Keep one column of radii or diameters."},
+     ":11:1: gives two diameters, 1 and 2. Keep one column of radii or diameters."},
     {"a.dump",
      [] {
        std::string text = dump("id x y z", "1 1 1 1\n2 3 3 3\n");

@@ -83,8 +83,8 @@ LammpsProgram find_lammps(std::size_t ranks) {
   const auto path = find_program(name);
   if (!path) {
     throw ProgramError("LAMMPS is not installed: there is no program " + name +
-                       ". Install the Debian package lammps, or name the program in "
-                       "SHEARCELL_LAMMPS");
+                       ". Install the Debian package lammps, or set "
+                       "SHEARCELL_LAMMPS to the path of LAMMPS");
   }
   if (ranks > 1 && !find_program("mpirun")) {
     throw ProgramError("there is no program mpirun; install the Debian package openmpi-bin");
