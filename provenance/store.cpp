@@ -321,7 +321,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   if (known->step > from_step && !fill) {
     throw ConcurrencyConflict(fmt::format(
-        "run {}: another program has recorded step {}; continue from there", id, known->step));
+        "run {}: another process has recorded step {}; continue from this step", id, known->step));
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);

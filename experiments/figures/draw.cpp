@@ -63,7 +63,7 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
 
 /// If the figure's plots come from this program and not from the manifest, returns a text with the
 /// program's version. For example, older manifests only name the figure. Returns "" if the manifest
-/// states the plots or if C++ computes the figure.
+/// defines the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -122,8 +122,8 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether no value of a run can be drawn. Checks only series that are traces (`thin`) or have
-/// columns in the table. If the table has no such series, checks all series.
+/// Whether the chart has no point to draw. Checks only the series that are traces (`thin`) or have
+/// columns in the table. If there are no such series, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };

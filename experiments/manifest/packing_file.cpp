@@ -473,7 +473,7 @@ class PackingReader {
     set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
   }
 
-  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file states no
+  /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file gives no
   /// style, the number of fields decides.
   void take_style(string_view style, std::size_t fields, bool ours) {
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;

@@ -134,7 +134,7 @@ class Campaign {
   }
 
   CampaignResult run(std::size_t workers) {
-    // Shows other programs that this program is alive, even during long simulations.
+    // Shows other processes that this process is alive, even during long simulations.
     const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
       try {
         store_.renew_leases();
@@ -153,7 +153,7 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    Clock::time_point check_at = {};  // time of the next check; for JobState::held
+    Clock::time_point check_at = {};  // time of the next check of a held job
     int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 

@@ -191,8 +191,8 @@ pair_coeff * * ${{law}})",
   }
 
   // A side plane turns about its upper end. The motion of a region is relative to the initial pose.
-  // In the engine's deck, the bottom and top planes use wall/harmonic, because fix wall/region
-  // reports its force only for the first step.
+  // If shearcell itself runs LAMMPS, the bottom and top planes use wall/harmonic, because fix
+  // wall/region reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
