@@ -942,7 +942,7 @@ void note_equal_looks(const Panel& panel, Table& table) {
   if (panel.curves.size() < 2 || looks.size() == titled) return;
   std::string& note = table.chart.note;
   note += (note.empty() ? "" : ". ") +
-          std::string("Some curves look the same, since there are more curves than styles");
+          std::string("Some curves look the same, because there are more curves than styles");
 }
 
 /// Adds a column with the value of the panel's parameter, after the variant.

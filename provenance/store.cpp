@@ -325,7 +325,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
-  held_[id] = attempt;  // set first: a commit that reports an error may have succeeded
+  held_[id] = attempt;  // before the commit, which may succeed and still throw
   lock.commit();
   return attempt;
 }

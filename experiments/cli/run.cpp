@@ -121,7 +121,7 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
     if (result.elsewhere > 0) {
-      fmt::print("{} computed by other programs in the meantime\n",
+      fmt::print("{} computed by other processes in the meantime\n",
                  counted(result.elsewhere, "stage"));
     }
     if (result.files_deleted > 0) {

@@ -507,7 +507,7 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// The expression that a text in another notation means: phi^2 if the text is phi**2. "" if none.
+// Translates an expression from other notations: phi**2 to phi^2. "" if the result is not valid.
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
@@ -796,7 +796,7 @@ struct Reader {
   }
 
   // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. A key
-  // without an example (`at_cycle`) has one value, which becomes both the first and the last cycle.
+  // without an example (`at_cycle`) has one value, which is used as first and as last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -1334,7 +1334,7 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // Reports a claim that has several of the keys or, if `lacking` is not null, none of them.
+    // Allows only one of these keys in a claim. Unless `lacking` is null, one of them is required.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
                                  const string& remedy = "") {
       const Node* first = nullptr;

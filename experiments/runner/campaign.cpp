@@ -32,12 +32,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another program computes the stage. ended: this campaign does not complete the stage.
+// held: another process computes the stage. ended: this campaign does not complete the stage.
 enum class JobState { waiting, running, held, done, ended };
 
-// Time between two checks of a stage that another program holds.
+// Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// Number of failed starts after which a stage that no program holds counts as blocked.
+// Number of failed starts after which a stage that no process computes counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -230,11 +230,11 @@ class Campaign {
     } catch (const std::exception&) {
       return;  // the next attempt to compute a stage reports why
     }
-    if (holders.empty()) return;  // the other program has just ended
+    if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another program computes ({}); this program continues "
-                    "a stage when that program has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another process computes ({}); this process continues "
+                    "a stage when that process has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }
@@ -278,7 +278,7 @@ class Campaign {
     const Stage stage = store_.stage(job.id);
     if (is_done(store_, stage)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
-             was_held ? "done by another program" : "", true);
+             was_held ? "done by another process" : "", true);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(job);

@@ -43,7 +43,7 @@ std::vector<StageJob> declare(Store& store, const Plan& plan);
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed
-/// stage. Waits for a stage that another program computes. If that program ends or its lease
+/// stage. Waits for a stage that another process computes. If that process ends or its lease
 /// expires before the stage is done, continues the stage. Shows progress on standard error unless
 /// `quiet`. Calls `when_done` with the id of each stage that this call completed, from several
 /// threads at once. An exception from `when_done` ends the campaign.

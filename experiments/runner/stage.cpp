@@ -553,9 +553,9 @@ class StageAttempt {
     recorded_evaluations_ = engine.evaluations();
   }
 
-  // Throws ConcurrencyConflict if another program now computes the stage.
+  // Throws ConcurrencyConflict if another process now computes the stage.
   void report(const Engine& engine, double cycle) {
-    if (!store_.holds(id())) throw ConcurrencyConflict("another program now computes the stage");
+    if (!store_.holds(id())) throw ConcurrencyConflict("another process now computes the stage");
     const double since = reported_.seconds();
     if (!options_.report || since < 0.2) return;
     const auto steps = static_cast<double>(engine.evaluations() - reported_evaluations_);

@@ -21,7 +21,7 @@ struct Parallel {
   std::size_t ranks = 1;    ///< LAMMPS processes; if more than one, they run under mpirun
 };
 
-/// How run_stage() ended. `already`: nothing was left to compute. `lost`: another program computes
+/// How run_stage() ended. `already`: nothing was left to compute. `lost`: another process computes
 /// the stage, has completed it, or has recorded a later state.
 enum class StageOutcome : std::uint8_t { completed, already, interrupted, failed, lost };
 

@@ -299,7 +299,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // A frame contains the velocities half a step earlier, so f/m dt/2 is subtracted.
+  // A frame has velocities half a step earlier than its positions, so f/m dt/2 is subtracted.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
