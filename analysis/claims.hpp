@@ -79,8 +79,8 @@ std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun>
 /// Makes the Claim. Its margin is negative for Relation::lower. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
-/// One sentence for each reason why the sides cannot be compared. `planned`: the sides hold planned
-/// runs. In this case a side without runs is also a reason.
+/// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
+/// planned runs. If so, a missing run on a side is one of the reasons.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 

@@ -54,7 +54,7 @@ Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t labe
     const CrystalliteMap &before = *maps[cycle - 1], &now = *maps[cycle];
     Grains own;
     for (const Grains& grains : recent) own.insert(grains.begin(), grains.end());
-    std::map<std::int32_t, std::int32_t> other;  // label by grain, for other crystallites
+    std::map<std::int32_t, std::int32_t> other;  // label of each grain in an unrelated crystallite
     for (std::size_t k = 0; k < before.grain.size(); ++k) {
       const bool is_other =
           !descendants.contains(before.label[k]) && !own.contains(before.grain[k]);

@@ -25,7 +25,7 @@ struct Values {
   std::size_t runs = 0, censored = 0;
   std::map<Missing, std::size_t> missing;
   std::size_t not_positive = 0;  ///< runs left out because their value has no logarithm
-  bool enough = true;            ///< at least three quarters of each group have a number
+  bool enough = true;            ///< in each group, at least 3/4 of the runs have a number
   Table entered = entered_with({"value", "missing"});
 
   void take(const Scalar& scalar, RunGroup group, const Number& number) {

@@ -28,11 +28,11 @@ struct Scalar {
 struct Estimator {
   std::string_view name;      ///< its name in manifests
   std::string_view meaning;   ///< its description in REFERENCE.md
-  std::string_view key = {};  ///< a key that claims with this estimator must have; "": none
-  /// Claims compare measures of whole runs (true) or of checkpoints (false); empty: either kind.
+  std::string_view key = {};  ///< a key that its claims must have; "": no such key
+  /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
-  bool one_side = false;       ///< its claims have one group, even without a published number
+  bool one_side = false;       ///< each of its claims has one group, even if `published` is not set
   /// Gives the number of each run. The mean over runs, or the difference between the means of two
   /// groups, is then estimated. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;

@@ -47,9 +47,9 @@ struct Frame {
   std::vector<nlohmann::json> variants;
   /// Planned runs that have not ended. Only their variants, seeds, names and parameters are used.
   std::vector<FrameRun> pending = {};
-  /// Seeds of the experiments at this scale, in order. A planned look (an interim analysis) is
-  /// given by the number of seeds that it includes. Without seeds, each verdict uses all runs
-  /// in the frame.
+  /// Seeds of the experiments at this scale, in order. If empty, each verdict uses all runs in the
+  /// frame. A planned look (interim analysis) n in `looks` uses the runs of the first n seeds with
+  /// finished or planned runs.
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::size_t> looks = {};
 
@@ -155,8 +155,8 @@ std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over
 /// the values of another swept key, returns this key, else "".
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
-/// Throws UsageError if averaged_key() finds a key. A key that changes together with `keys` is
-/// allowed. The message ends with `remedy`.
+/// Throws UsageError if averaged_key() finds a key. Ignores keys that change together with `keys`.
+/// The message ends with `remedy`.
 void require_told_apart(const std::string& figure, std::span<const FrameRun> runs,
                         const std::vector<std::string>& keys, const std::string& remedy);
 

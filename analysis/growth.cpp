@@ -112,9 +112,9 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
   struct Outcome {
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains by later size of crystallite
-    std::int32_t most = 0;                           // grains shared with crystallite `end`
-    std::size_t end = 0;                             // later crystallite with most shared grains
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
+    std::int32_t most = 0;                           // number of grains that are also in `end`
+    std::size_t end = 0;  // later crystallite with the most shared grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {

@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Axis of a position. Heights are divided by the momentary height of the cell (`y`) or by 1.675 L
+/// Axis of a position. Heights are divided by the current height of the cell (`y`) or by 1.675 L
 /// (`y_nominal`), where L is the free width.
 enum class CellAxis { x, y, y_nominal };
 inline constexpr double nominal_height = 1.675;  ///< [L], supplement E

@@ -33,7 +33,7 @@ inline double interior_margin(const Cell& cell) {
 struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
   std::vector<std::int32_t> contacts;  ///< contacts of each grain with grains and wall grains
-  double mean = 0;  ///< Eq. S3 over touching pairs of grains [d]; 0 without pairs
+  double mean = 0;  ///< mean over touching pairs of grains (Eq. S3) [d]; 0 without pairs
 };
 
 /// Computes the overlaps of `grains` (3 x n [d], z unwrapped).

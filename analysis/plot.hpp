@@ -20,8 +20,8 @@ std::string gnuplot_script(const Table& table);
 inline constexpr std::string_view gnuplot_script_beginning = "set terminal svg size ";
 
 /// Throws NotOurs if drawing the table would overwrite a file that this program did not write.
-/// A script is recognized by its first words, a drawing by a script with the same name. A CSV file
-/// is recognized by its header or by a script with the same name.
+/// A script is recognized by its first words. A drawing is recognized by a script that has the same
+/// name, and a CSV file by its header or by such a script.
 void require_own_files(const Table& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it

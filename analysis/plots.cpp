@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets colour and symbol if the series entry gives them.
+/// Sets the colour and the symbol if the series entry gives them.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -357,7 +357,7 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
 }
 
-/// Sets the title and the look that the series states.
+/// Sets the title and the style given in the series entry.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
   if (!stated.colour.empty()) curve.look.join = Join::line;
@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest sets the colour of a curve, no other curve may have this colour.
+  // If a manifest gives a curve a colour, no other curve may have this colour.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {
@@ -808,7 +808,7 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// Sets title and look of the k-th of several y columns. `alone`: the plot has one curve.
+/// Sets the title and the style of y column k. `alone`: the plot has only one curve per y column.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
   const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
@@ -942,7 +942,7 @@ void note_equal_looks(const Panel& panel, Table& table) {
   if (panel.curves.size() < 2 || looks.size() == titled) return;
   std::string& note = table.chart.note;
   note += (note.empty() ? "" : ". ") +
-          std::string("Some curves look the same, since there are more curves than styles");
+          std::string("Some curves look the same, because there are more curves than styles");
 }
 
 /// Inserts a column with the value of the panel's parameter after the column of the variant.

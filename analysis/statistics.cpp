@@ -55,7 +55,7 @@ Interval percentiles(std::vector<double> values, double tail) {
           values[bootstrap_selections - 1 - out]};
 }
 
-/// Number of runs that still wait just before `cycle`, and number of events at `cycle`.
+/// Number of runs observed without an event until `cycle`, and number of events at `cycle`.
 struct AtRisk {
   double waiting = 0;
   double events = 0;
@@ -304,7 +304,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
                                         double level) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
-  std::set<double> factors;  // log2 of the factors at which two runs change their order
+  std::set<double> factors;  // log2 of the factors on b that make two times equal
   for (const Waiting& x : a) {
     for (const Waiting& y : b) {
       if (x.cycle > 0 && y.cycle > 0) factors.insert(std::log2(x.cycle / y.cycle));

@@ -26,8 +26,8 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // Estimate::spread averages both sides of the interval. If one side is much longer, `needed` may
-  // be too small. An undecided claim needs more runs than it has.
+  // Estimate::spread is a mean over both sides of the interval, so `needed` may be too small if one
+  // side is much longer than the other. The claim is undecided, so it needs at least one more run.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 
@@ -92,7 +92,7 @@ std::string order_of_waits(const Verdict& verdict) {
   }
   const double end = std::isfinite(low) ? low : high;
   if (!std::isfinite(end)) return fmt::format("no bound on the ratio of the cycles ({})", level);
-  // If the interval includes both "earlier" and "later", its finite end bounds only one of them.
+  // If the interval contains 0, its finite end bounds only "earlier" or only "later".
   const bool least = std::isfinite(low) ? low >= 0 : high < 0;
   return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
                      least     ? ""

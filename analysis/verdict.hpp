@@ -93,7 +93,7 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 /// Makes the ruling undecided, unless the claim cannot be decided.
 void withhold(Verdict& verdict);
 
-/// The tables Verdict::entered of all verdicts as one table, whose first column is the claim.
+/// Joins the table Verdict::entered of each verdict into one table. The first column is the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",

@@ -131,7 +131,7 @@ struct PruneTask {
   std::int32_t* inner = nullptr;                ///< output, laid out as in NeighbourRows
   std::size_t inner_stride = 0;                 ///< largest number of slots of a block
   std::uint32_t* begin = nullptr;               ///< list start of each block, as in NeighbourRows
-  std::uint16_t* inner_count = nullptr;         ///< list length of each grain and spare lane
+  std::uint16_t* inner_count = nullptr;         ///< length of the list of each lane
   std::uint16_t* other_slots = nullptr;         ///< one entry per block, as in the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
   std::uint8_t* near = nullptr;

@@ -80,7 +80,7 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Updates `fastest` if the bound of grain g exceeds `least` and the bound in `fastest`. Cheaper
+// Stores the bound of grain g in `fastest` if it exceeds `least` and `fastest.bound`. Cheaper
 // estimates exclude nearly all grains before the eigenvalues are computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
@@ -101,7 +101,7 @@ void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fa
   if (bound > fastest.bound) fastest = {bound, task.id[g]};
 }
 
-// Updates `fastest` if the bound of the moving wall exceeds `least` and the bound in `fastest`.
+// Stores the moving wall's bound of omega^2 in `fastest` if it exceeds `least` and `fastest.bound`.
 void bound_wall(const WatchTask& task, double least, Fastest& fastest) {
   const double each = kOnMovingWall / (task.scene.wall_mass * task.cell.width * task.cell.depth);
   std::vector<std::size_t> near;

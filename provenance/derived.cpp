@@ -43,8 +43,8 @@ fs::path damaged_name(const fs::path& file, int n) {
   return fmt::format("{}.damaged-{}", file.string(), n);
 }
 
-/// Renames a damaged file, because it may hold the only measures of pruned checkpoints. Also
-/// renames its journal, because SQLite would play back this journal into the new database.
+/// Renames a damaged file instead of deleting it: it may hold the only measures of pruned
+/// checkpoints. Also renames its journal, which SQLite would otherwise apply to the new database.
 void set_aside(const fs::path& file) {
   std::error_code ignored;
   int n = 1;

@@ -30,7 +30,7 @@ struct ManifestRegistered {
   }
 };
 
-/// A file of grains that was registered as the initial packing of runs.
+/// A file of grain positions that was registered as the initial packing of runs.
 struct PackingRegistered {
   static constexpr std::string_view kType = "PackingRegistered";
   std::string sha256, path, text;

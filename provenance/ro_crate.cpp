@@ -135,7 +135,7 @@ json add_parameters(Graph& graph, const Stage& stage) {
   return given;
 }
 
-/// Inputs of the attempts of a run.
+/// The manifests and parameters that the attempts of a run used.
 struct Given {
   std::vector<std::pair<std::string, json>> manifests;  ///< time of registration, reference
   json parameters = json::array();

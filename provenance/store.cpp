@@ -321,11 +321,11 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   if (known->step > from_step && !fill) {
     throw ConcurrencyConflict(fmt::format(
-        "run {}: another program has recorded step {}; continue from there", id, known->step));
+        "run {}: another process has recorded step {}; continue from this step", id, known->step));
   }
   append(run_stream(id), encode(begun), lock);
   hold(id, attempt);
-  held_[id] = attempt;  // set first: a commit that reports an error may have succeeded
+  held_[id] = attempt;  // before the commit, which may succeed and still throw
   lock.commit();
   return attempt;
 }

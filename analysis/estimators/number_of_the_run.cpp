@@ -8,7 +8,7 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
   if (const Measure* measure = find_measure(claim.compare, MeasureKind::run)) {
     return {std::string(measure->words), std::string(measure->reach), measure->of_run};
   }
-  // If measures of the expression are missing, returns the reason of the first missing measure.
+  // If the run lacks measures of the expression, returns why it lacks the first of them.
   const auto of = [number = NumberColumn(claim.compare),
                    names = names_in(claim.compare)](const FrameRun& run) {
     for (const std::string& name : names) {

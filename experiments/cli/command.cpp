@@ -58,7 +58,7 @@ std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "is empty; name a file or folder";
   std::error_code ignored;
-  // `verify` would report a file in a store's `objects` folder as a leftover of a crash.
+  // No output into a store's `objects` folder: `verify` would report it as a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";

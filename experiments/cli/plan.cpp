@@ -86,8 +86,8 @@ void print_numerics(const std::vector<Line>& lines) {
 }
 
 const std::vector<std::string> kLammpsCaveats = {
-    "LAMMPS computes only the shear. This program settles the packings of all runs.",
-    "The results of LAMMPS differ from those of this program by rounding errors, which depend on "
+    "LAMMPS computes only the shear. shearcell settles the packings of all runs.",
+    "The results of LAMMPS differ from those of shearcell by rounding errors, which depend on "
     "the number of processes.",
     "Runs by LAMMPS have their own ids. verify --replay, regenerate and prune skip these runs.",
     "In runs by LAMMPS, the watchdog checks only checkpoints, not every 1024th step. These runs "

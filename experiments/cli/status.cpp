@@ -150,8 +150,8 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether a run is being computed now; if not, assumes all cores
-  bool at_most = false;       ///< whether the time is an upper limit, since `until` may end runs
+  bool running = false;       ///< whether a run is being computed; if not, all cores are assumed
+  bool at_most = false;       ///< the time is an upper limit: `until` may end runs early
 
   double seconds() const { return work.seconds(at_a_time); }
 };
@@ -204,7 +204,7 @@ void print(const Estimate& left) {
       "left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
       counted(left.work.stages, "stage"), left.work.particle_steps,
       left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
-      left.running ? ", until " + local_time(left.seconds()) : "; no program computes them now");
+      left.running ? ", until " + local_time(left.seconds()) : "; no process computes them now");
 }
 
 void print_tables(const View& view) {

@@ -206,7 +206,7 @@ std::string check_sbatch(const std::string& text) {
     if (!taken.starts_with(option)) continue;  // sbatch accepts abbreviated options
     return fmt::format(
         "'{}': with {}, `submit` cannot queue and follow its jobs. Remove this option. "
-        "(--array-size limits the number of tasks. To use another cluster, submit there.)",
+        "(--array-size limits the number of tasks. To use another cluster, run `submit` there.)",
         text, taken);
   }
   return unfit_value(text);

@@ -122,8 +122,8 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether no value of a run can be drawn. Checks only series that are traces (`thin`) or have
-/// columns in the table. If the table has no such series, checks all series.
+/// Whether the chart has no point to draw. Checks only the series that are traces (`thin`) or have
+/// columns in the table. If there are no such series, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads an input of the figure's record, except the states.
+/// Reads an input run from the figure's record, except FigureInput::states.
 FigureInput read_input(const json& input) {
   FigureInput result;
   input.at("run").get_to(result.run);
@@ -157,7 +157,7 @@ std::map<std::string, std::string> outputs_of(const json& provenance) {
   return outputs;
 }
 
-// The SHA-256 that the lineage file in the same folder states for the file, or "".
+// The SHA-256 of the file according to the lineage file in the same folder, or "".
 std::string hash_in_lineage_beside(const std::filesystem::path& file, const std::string& figure) {
   const auto text =
       read_plain(file.parent_path() / (figure + ".lineage.json"), StoreLimits::value_bytes);

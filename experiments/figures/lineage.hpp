@@ -27,7 +27,7 @@ std::string to_text(const Cycles& cycles);
 /// version of HDF5; hashes of files do.
 struct States {
   Cycles cycles;           ///< of the states
-  std::string state_hash;  ///< of the last state
+  std::string state_hash;  ///< hash of the last state
   std::string sha256;      ///< SHA-256 of a text that has one state_hash on each line
 
   bool operator==(const States&) const = default;
@@ -44,7 +44,7 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< lines of the manifest that apply to the run
   nlohmann::json overrides;              ///< as overrides_of() returns them
-  States states;                         ///< as in the figure's record
+  States states;                         ///< as listed in the figure's record
   std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
   std::string fault;                     ///< how the log differs from `states`; "" if both agree
 };
@@ -86,9 +86,9 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
 nlohmann::json to_json(const FigureLineage& lineage);
 
-/// A file on disk that a figure's record names.
+/// A file on disk that is listed in the record of a figure.
 struct PublishedFile {
-  std::string sha256;    ///< of the file's bytes
+  std::string sha256;    ///< SHA-256 of the file's bytes
   std::string recorded;  ///< SHA-256 in the record
   FigureRecord record;
 

@@ -38,8 +38,8 @@ struct NewestRuns {
 /// to several variants is listed for each variant. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
-/// The first recorded place of the stage. The place is empty if no experiment declared the stage,
-/// as in a damaged store.
+/// Experiment, scale, variant and seed from the first recorded membership of the stage. Empty if no
+/// experiment declared the stage, as in a damaged store.
 Place first_place(const Stage& stage);
 
 }  // namespace shearcell

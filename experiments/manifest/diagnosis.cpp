@@ -119,7 +119,7 @@ struct VariantCheck {
       const json value = field.get(p);
       if (!check_value(field, value)) continue;
       report(key, format("results in {}, which is out of range", value_text(value)),
-             format("State {}, or change stiffness_N_per_m, mass_kg or period_s.",
+             format("Write {}, or change stiffness_N_per_m, mass_kg or period_s.",
                     expected_values(field)));
       sound = false;
     }
@@ -415,9 +415,9 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                : start.file.empty() || variant.parameters.walls == WallTexture::rough;
   };
   if (seeds > 1 && std::ranges::none_of(variants, draws)) {
-    warnings.push_back(format(
-        "{}:{}:{}: start: all {} seeds give the same run. State {}`seeds: 1`.", manifest.file,
-        start.at.line, start.at.column, seeds, start.is_recorded() ? "`noise_d`, or " : ""));
+    warnings.push_back(format("{}:{}:{}: start: all {} seeds give the same run. Set {}`seeds: 1`.",
+                              manifest.file, start.at.line, start.at.column, seeds,
+                              start.is_recorded() ? "`noise_d`, or " : ""));
   }
   for (const auto& [one, of] : advice) {
     warnings.push_back(format("{}: variant{} {}: {}", manifest.file, of.size() == 1 ? "" : "s",
@@ -561,7 +561,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   found.push_back(lack_of_partner(plot, runs));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
-    found.push_back(format("shear_strain is 0 at whole cycles. State {}.",
+    found.push_back(format("shear_strain is 0 at whole cycles. Set {}.",
                            plot.cycles ? "`phases` of `checkpoints`"
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
@@ -710,7 +710,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not set a key that it sweeps. `base` may, because a sweep overrides `base`.
+    // A scale must not set a key that it sweeps. `base` may set it: a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -280,7 +280,7 @@ std::string syntax_remedy(string_view text, const YAML::Exception& error) {
     return fmt::format("Line {} is indented with a tab. Use spaces.", line);
   }
   if (error.msg.find("unicode") != std::string::npos) {
-    return "This escape is not a character. Write the character itself.";
+    return "This escape gives no valid character. Write the character itself.";
   }
   if (error.msg.find("flow") != std::string::npos) {
     return "A { or [ in this line, or in a line above, is not closed.";

@@ -22,8 +22,8 @@ struct StartFile {
 };
 
 /// The inputs of a stage, as read from its record (Stage::resolved). Numbers of cycles, and
-/// parameters that do not affect the stage, have their defaults. A stiffening has protocol
-/// `stiffen`.
+/// parameters that do not affect the stage, have their default values. The protocol of a
+/// stiffening stage is `stiffen`.
 struct StageInputs {
   StageKind stage = StageKind::prepare;
   std::string parent;

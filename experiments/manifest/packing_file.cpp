@@ -840,7 +840,7 @@ class PackingReader {
     return packing;
   }
 
-  /// Refuses grains that are outside of the box in x or y. Wraps the periodic z into the box.
+  /// Reports a grain outside of the box in x or y as an error. Wraps z into the periodic box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
     if (depth < kShallowestCell) {

@@ -33,7 +33,7 @@ struct PackingFile {
 
 /// Facts about a file that come from the manifest and from the parameters of the run.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file gives none
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file does not give it
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };

@@ -120,8 +120,8 @@ void fields(Start& start, const auto& visit) {
   visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
   visit(start.file,
         {.name = "file",
-         .doc = "instead of a recorded run: a file of grains. The path is relative to the folder "
-                "of the manifest. The grains settle further if `settle` is stated, even as `{}`",
+         .doc = "a file of grain positions, instead of a recorded run. The path is relative to the "
+                "folder of the manifest. If `settle` is given (even `{}`), the grains first settle",
          .example = "packing.extxyz",
          .longest = kLongestPath});
   visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file does not give it"});
@@ -237,8 +237,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
-         .doc = "one curve for each value of this parameter. A plot that averages over another "
-                "swept parameter is refused. Default: one curve for each variant or, if `x` is a "
+         .doc = "one curve for each value of this parameter. The plot must not average over other "
+                "swept parameters. Default: one curve for each variant or, if `x` is a "
                 "parameter, for each combination of the other swept values",
          .names = can_be_by});
   visit(plot.figure,
@@ -278,12 +278,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                     .names = can_be_y,
                     .terms = terms,
                     .example = "[phi_uncorrected]"});
-  visit(
-      plot.mark,
-      {.name = "mark",
-       .doc =
-           "a black point on each curve, at the means of two measures with one value for each run",
-       .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
+  visit(plot.mark,
+        {.name = "mark",
+         .doc = "a black point on each curve, whose x and y are means of measures of whole runs",
+         .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
                      .doc = "the cycle at which a curve measure is drawn. If `x` has one value for "
@@ -509,7 +507,7 @@ bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
 }
 
-// The expression that a text in another notation means: phi^2 if the text is phi**2. "" if none.
+// Translates an expression from other notations: phi**2 to phi^2. "" if the result is not valid.
 string meant_expression(const string& text) {
   static const std::pair<std::regex, const char*> notations[] = {
       {std::regex("\\*\\*"), "^"},
@@ -798,7 +796,7 @@ struct Reader {
   }
 
   // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. A key
-  // without an example (`at_cycle`) has one value, which becomes both the first and the last cycle.
+  // without an example (`at_cycle`) has one value, which is used as first and as last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -984,7 +982,7 @@ struct Reader {
   }
 
   void read(const Node& in, const Field&, std::vector<Scale>& scales) {
-    const string remedy = "It takes `NAME: {key: value}` entries, such as smoke, desk and paper.";
+    const string remedy = "Write entries `NAME: {key: value}`, with names such as desk and paper.";
     if (!in.is_map()) return reject_type(in, "a map of scales", remedy);
     if (in.parts.size() > ManifestLimits::scales) {
       return problems.add(in.at, in.path,
@@ -1260,7 +1258,7 @@ struct Reader {
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
     const string not_with_curve = "cannot be used with " + plot.y;
     reject_value_if(is_curve, x, not_with_curve,
-                    fmt::format("Leave it out. {} is drawn against {}.", plot.y,
+                    fmt::format("Leave it out. The x axis of {} is {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
@@ -1311,7 +1309,7 @@ struct Reader {
       if (plot.by.empty()) {
         where[""] = part.key;
         reject_key(part, "names no parameter",
-                   "Write `\"KEY=VALUE\"`, name the parameter with `by`, or write a name of `y`.");
+                   "Write `\"KEY=VALUE\"`, set `by` to the parameter, or write a name of `y`.");
       } else if (plot.by == "experiment") {
         where[plot.by] = part.key;
       } else {
@@ -1335,7 +1333,7 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // Reports a claim that has several of the keys or, if `lacking` is not null, none of them.
+    // Allows only one of these keys in a claim. Unless `lacking` is null, one of them is required.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
                                  const string& remedy = "") {
       const Node* first = nullptr;
@@ -1427,9 +1425,9 @@ struct Reader {
     return list == nullptr ? std::span<const Node>() : list->parts;
   }
 
-  // Reports names of plots, claims, figures or panels that occur twice, and names of figures or
-  // panels of the supplement. A manifest may define parts of a figure of the supplement, unless the
-  // manifest also lists this figure in `figures` (`listed`).
+  // Reports names of plots, claims, figures or panels that occur twice, or that a figure or panel
+  // of the supplement already has. A manifest may define parts of a figure of the supplement if the
+  // manifest does not list this figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // each name with its figure
@@ -1450,7 +1448,7 @@ struct Reader {
     for (const auto& [own, of] : names) {
       const string& text = own->text;
       if (!is_claim_id(text)) continue;
-      // A figure that is not computed by C++ code is defined in a manifest.
+      // A figure that C++ code does not compute is defined by the plots of a manifest.
       const bool is_stated = find_named(computed_figures(), of) == nullptr;
       const bool is_listed = std::ranges::count(listed, of) > 0;
       const auto clash = std::ranges::find_if(supplement, [&, of = of](const Figure& figure) {

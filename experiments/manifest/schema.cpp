@@ -229,8 +229,8 @@ std::span<const Field> schema() {
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
                       "number of shear cycles; a larger value extends a run"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
-                      "program that computes the shear. A run with LAMMPS has another id and other "
-                      "rounding errors. This program always computes the settling"),
+                      "program that computes the shear. A run with LAMMPS has a different id and "
+                      "different rounding errors. shearcell always computes the settling"),
       // A shear that begins with a recorded state.
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},
@@ -244,8 +244,8 @@ std::span<const Field> schema() {
                              "the seed decides the noise"),
       // Stiffening.
       row<&P::stiffness_decades>("stiffness_decades", "", "1", {0, 6}, kNoKey,
-                                 "under protocol stiffen: the spring constant is multiplied by 10 "
-                                 "to this power (B.2); a larger value extends a run"),
+                                 "under protocol stiffen: number of powers of ten by which the "
+                                 "stiffness increases (B.2); a larger value extends a run"),
       row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
                                           "number of equal steps for each power of ten (B.2)"),
       row<&P::minimize_force_tolerance>(

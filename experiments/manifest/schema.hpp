@@ -49,18 +49,18 @@ struct Range {
 struct Field {
   std::string_view name = {};
   std::string_view symbol = {};  ///< in the supplement; empty if it has none there
-  std::string_view unit = {};    ///< of a number; "1" if it is dimensionless
-  Range range = {};              ///< of a number
+  std::string_view unit = {};    ///< unit of a number; "1" if dimensionless
+  Range range = {};              ///< allowed range of a number
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
-  std::span<const std::string_view> names = {};  ///< the values of a choice
-  std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
+  std::span<const std::string_view> names = {};  ///< the allowed values of a choice
+  std::string_view besides = {};                 ///< follows the values in messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
   std::span<const std::string_view> terms = {};  ///< names that expressions may use; empty: none
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
-  std::size_t longest = 0;  ///< of a free text [bytes]
+  std::size_t longest = 0;  ///< maximum length of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
   /// get() converts a parameter to JSON; set() reads it from valid JSON. Null if not a parameter.
   nlohmann::json (*get)(const Parameters&) = nullptr;

@@ -51,7 +51,7 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     refuse(manifest.file, scale.start.at, std::string(field.name),
            fmt::format("differs from the value of run {:.8}, which gives the initial state",
                        recorded.id),
-           value_text(mine), fmt::format("State {}.", value_text(its)));
+           value_text(mine), fmt::format("Write {}.", value_text(its)));
   }
 }
 
@@ -161,7 +161,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     refuse(
         manifest.file, start.at, "start", fmt::format("the store has more than one {}", what), "",
         start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
-                          : "State more digits of the id.");
+                          : "Give more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);
   if (found.front()->cycle < cycle) {
@@ -219,7 +219,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
            fmt::format("a grain overlaps a wall by {:.3g} d, more than {:g} d", deepest, limit), "",
            fmt::format(
                "Rough walls have wall grains, whose positions depend on the seed. Use the seed of "
-               "the packing, leave room for wall grains, or state `walls: smooth`{}.",
+               "the packing, leave room for wall grains, or set `walls: smooth`{}.",
                packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
   }
   return made;

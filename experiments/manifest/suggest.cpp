@@ -37,7 +37,7 @@ const std::vector<Tried>& all_tried() {
   return all;
 }
 
-// The name in lower case, with `_` around and between its words.
+// The name in lower case, with `_` before, between and after its words: "_time_step_".
 std::string as_words(string_view name) {
   std::string words = fmt::format("_{}_", lower(name));
   std::ranges::replace_if(

@@ -34,7 +34,7 @@
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
 
-// The template and the front end (web_assets.S).
+// The HTML template, style, script and licences of the page, embedded by web_assets.S.
 extern "C" {
 extern const char shearcell_page[], shearcell_page_end[];
 extern const char shearcell_style[], shearcell_style_end[];
@@ -574,7 +574,7 @@ void add_figures(Content& content) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    std::set<std::string>* said = nullptr;  // the set that gets the message
+    std::set<std::string>* said = nullptr;  // the list of messages that `why` is added to
     std::string why;
     try {
       const ComputedFigure made =

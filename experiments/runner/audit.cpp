@@ -209,7 +209,7 @@ std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
-  std::map<std::string, CheckpointRecord> unnamed;  // pruned; the log lacks a digest
+  std::map<std::string, CheckpointRecord> unnamed;  // pruned, without a logged digest
   for (const Stage& stage : store.stages()) {
     for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
       for (CachedMeasure& one : cached_measures(record, from, sources)) {

@@ -35,9 +35,9 @@ using Clock = std::chrono::steady_clock;
 // held: another process computes the stage. ended: this campaign does not complete the stage.
 enum class JobState { waiting, running, held, done, ended };
 
-// Time between two checks of a stage that another process holds.
+// Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// Number of failed starts after which a stage that no process holds counts as blocked.
+// Number of failed starts after which a stage that no process computes counts as blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -153,7 +153,7 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    Clock::time_point check_at = {};  // time of the next check; for JobState::held
+    Clock::time_point check_at = {};  // time of the next check of a held job
     int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 
@@ -233,8 +233,8 @@ class Campaign {
     if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another process is computing ({}); this process continues "
-                    "a stage when the other process has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another process computes ({}); this process continues "
+                    "a stage when that process has ended or has not answered for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }

@@ -20,8 +20,8 @@ struct StageJob {
 };
 
 struct CampaignResult {
-  std::size_t completed = 0;  ///< stages computed now
-  std::size_t already = 0;    ///< stages that were done before
+  std::size_t completed = 0;  ///< stages that this campaign completed
+  std::size_t already = 0;    ///< stages that were done before this campaign
   std::size_t elsewhere = 0;  ///< stages that another process completed during this campaign
   std::size_t failed = 0;     ///< stages stopped by the watchdog, or too large for this machine
   std::size_t interrupted = 0;

@@ -37,7 +37,7 @@ struct Outlook {
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
   double end = 0;
-  /// Whether an undecided `until` may end the stage before `end`.
+  /// Whether an `until` that was not reached yet may end the stage before `end`.
   bool may_end_early = false;
   /// How `until` ended the stage at its last checkpoint, as RunCompleted records it; null if no
   /// `until` did. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
@@ -122,7 +122,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that `asks` request, each request up to its end_for().
+/// The recorded and pruned checkpoints requested by `asks`. Each request ends at its end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
@@ -161,8 +161,8 @@ class Rates {
  public:
   explicit Rates(const std::vector<Stage>& stages);
 
-  /// The mean rate of the stage's engine in these runs. If they took less than 1 s, a rate that was
-  /// measured on another machine for about this number of grains.
+  /// The mean rate of the stage's engine in the recorded runs. If these runs took less than 1 s in
+  /// total, a rate measured on another machine for about the stage's number of grains.
   Rate of(const Stage& stage) const;
 
  private:
@@ -178,10 +178,10 @@ struct Work {
   double particle_steps = 0;
   double bytes = 0;  ///< of checkpoint files
   double core_seconds = 0;
-  double longest_seconds = 0;                ///< longest time [s] of a stage and its parents
+  double longest_seconds = 0;                ///< largest value of `chain` [s]
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< whether all rates were measured
-  std::map<std::string, double> chain = {};  ///< seconds of a stage and its parents, by stage id
+  std::map<std::string, double> chain = {};  ///< time [s] of a stage and its parents, by id
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);

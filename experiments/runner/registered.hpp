@@ -14,8 +14,8 @@
 
 namespace shearcell {
 
-/// A registered manifest, with the experiment, the question and the names of figures from `info`.
-/// In a damaged store, the text may not match its SHA-256.
+/// A registered manifest. `experiment`, `question` and `figures` (names of figures) are copies from
+/// `info`. In a damaged store, the text may not match its SHA-256.
 struct RegisteredManifest : ManifestText {
   std::string experiment;
   std::string question;
@@ -38,7 +38,7 @@ class VariantNames {
   /// The group in which names must be unique, and the values that determine the run's name.
   static std::pair<Group, nlohmann::json> key_of(const Stage& stage, const Place& place);
 
-  std::map<Group, std::map<nlohmann::json, std::string>> names_;  // by the run's values
+  std::map<Group, std::map<nlohmann::json, std::string>> names_;  // keys: see key_of()
 };
 
 /// The last registered manifest of each experiment, in the order in which the experiments were

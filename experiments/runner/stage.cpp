@@ -121,7 +121,7 @@ struct Beginning {
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
-/// permit this, or if this program cannot repeat the bits.
+/// permit this, or if this build cannot recompute the file bit for bit.
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options);
 
 /// The parent's checkpoint at `start_cycle`, with noise added to the positions.
@@ -238,8 +238,8 @@ class Engine {
   /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. Afterwards a checkpoint is due. But if LAMMPS does not
-  /// answer, no checkpoint is due, and the steps since the last checkpoint are lost.
+  /// Stops before the end of the stage. Afterwards the caller must record a checkpoint. Exception:
+  /// if LAMMPS does not answer, the steps since the last checkpoint are lost.
   virtual StageProgress halt() = 0;
 
   /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.
@@ -426,7 +426,7 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // This completion is valid for all experiments, also for those declared after the stage ended.
+    // The recorded end applies to all experiments, even if declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -494,7 +494,7 @@ class StageAttempt {
     try {
       store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
-      // The end cannot be recorded. Another process can continue when the run's lease has expired.
+      // The end was not recorded. Another process can continue after the run's lease has expired.
     }
   }
 

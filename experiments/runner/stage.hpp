@@ -30,7 +30,7 @@ struct StageOptions {
   bool restores = true;  ///< recompute a pruned checkpoint if the stage needs its file
   std::function<void(const std::string&)> damaged = {};  ///< called for each damaged checkpoint
   std::function<void()> begun = {};                      ///< called after the start is recorded
-  /// Called if the stage continues from a state that this program cannot repeat bit for bit.
+  /// Called if the stage continues from a state that this build cannot recompute bit for bit.
   std::function<void(const std::string&)> continuing = {};
   /// Called before a pruned checkpoint is recomputed because the stage needs it.
   std::function<void(const std::string&)> restoring = {};
@@ -79,7 +79,7 @@ struct Replay {
   bool interrupted = false;  ///< whether a signal stopped the replay; then nothing is recorded
 };
 
-/// Why this program cannot recompute the checkpoint bit for bit; empty if it can. `known` caches
+/// Why this build cannot recompute the checkpoint bit for bit; empty if it can. `known` caches
 /// lineages from the log for further calls.
 std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
                                          RunLineages& known);

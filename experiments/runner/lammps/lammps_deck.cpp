@@ -191,8 +191,8 @@ pair_coeff * * ${{law}})",
   }
 
   // A side plane turns about its upper end. The motion of a region is relative to the initial pose.
-  // In the engine's deck, the bottom and top planes use wall/harmonic, because fix wall/region
-  // reports its force only for the first step.
+  // If shearcell itself runs LAMMPS, the bottom and top planes use wall/harmonic, because fix
+  // wall/region reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -299,7 +299,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // A frame contains the velocities half a step earlier, so f/m dt/2 is subtracted.
+  // A frame has velocities half a step earlier than its positions, so f/m dt/2 is subtracted.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
