@@ -48,8 +48,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size of GrowthCurve::critical_size(); infinity if there is none. Minus infinity if delta_rho
-/// is positive at size 1 and the excess of all sizes exceeds that above each rise through zero.
+/// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
+/// delta_rho > 0 at size 1 and the total excess is larger than above every rise through zero.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);

@@ -23,7 +23,7 @@ inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "n
 struct RunOnset {
   Observed observed = Observed::never;
   double phi = 0;    ///< at the onset; if `never`, at the last checkpoint
-  double cycle = 0;  ///< of the onset; if `never`, of the last checkpoint
+  double cycle = 0;  ///< of the onset, or of the last checkpoint if `never`
 };
 
 /// Method 1: the time at which the largest crystallite first has the critical size. phi and cycle

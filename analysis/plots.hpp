@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots and claims that a manifest states.
+// Plots and claims that a manifest defines.
 #pragma once
 
 #include <array>
@@ -69,7 +69,7 @@ struct PlotSpec {
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
+  std::string xlabel = {}, ylabel = {};  ///< of the axes, may have formulas; "": from x, y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV; the first `drawn` of them are also drawn. If x and y have one

@@ -57,7 +57,7 @@ const std::array kFormats = {
                  [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
     ExportFormat{"vtk", "VTK PolyData and run.json, a folder for ParaView; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "LAMMPS data and scripts, a folder for LAMMPS and OVITO; SI units", "",
+    ExportFormat{"lammps", "a folder for LAMMPS and OVITO: data files and scripts; SI units", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
     ExportFormat{"contacts", "overlaps and forces as CSV, and run.json, a folder for pandas", "",
                  [](const auto& out, auto, auto) { return contacts_writer(out); }},

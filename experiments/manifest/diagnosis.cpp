@@ -198,7 +198,7 @@ struct VariantCheck {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
-               "State `start: {experiment: NAME}`, or leave it out.");
+               "Write `start: {experiment: NAME}`, or leave it out.");
       }
       return;
     }
@@ -416,7 +416,7 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
   };
   if (seeds > 1 && std::ranges::none_of(variants, draws)) {
     warnings.push_back(format(
-        "{}:{}:{}: start: all {} seeds give the same run. State {}`seeds: 1`.", manifest.file,
+        "{}:{}:{}: start: all {} seeds give the same run. Write {}`seeds: 1`.", manifest.file,
         start.at.line, start.at.column, seeds, start.is_recorded() ? "`noise_d`, or " : ""));
   }
   for (const auto& [one, of] : advice) {
@@ -449,8 +449,8 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. If the first multiple of `every_cycles` fails, all later multiples fail
-// too. So only this multiple, the first cycle and the last cycle are tried.
+// `back` cycles earlier. If the first multiple of `every_cycles` is no such cycle, no later
+// multiple is. So only the first cycle, this multiple and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
@@ -511,8 +511,8 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message about the variants that have other packings than the subtracted variant (`minus`); ""
-/// if all variants have the same packings.
+/// A message that lists the variants whose packings differ from those of the subtracted variant
+/// (`minus`); "" if all variants have the same packings.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -522,7 +522,7 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   }
   if (alone.empty()) return "";
   return format(
-      "{} {} other packings than {}, so the plot omits {}. Under `settle`, state the parameters "
+      "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
       "that all packings must share.",
       some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
       alone.size() == 1 ? "this variant" : "these variants");
@@ -561,13 +561,13 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   found.push_back(lack_of_partner(plot, runs));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
-    found.push_back(format("shear_strain is 0 at whole cycles. State {}.",
+    found.push_back(format("shear_strain is 0 at whole cycles. Set {}.",
                            plot.cycles ? "`phases` of `checkpoints`"
                            : phases    ? "`cycles`"
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // checked only in the manifest that states the plot
+    if (plot.listed) break;  // checked only in the manifest that defines the plot
     if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const bool of_another = std::ranges::any_of(
@@ -723,7 +723,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty() && scale.looks.back() > seeds) {
       problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
                    "needs more seeds than the scale has", std::to_string(scale.looks.back()),
-                   format("State `seeds: {}`, or list this many seeds.", scale.looks.back()));
+                   format("Write `seeds: {}`, or list this many seeds.", scale.looks.back()));
     }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
@@ -731,7 +731,7 @@ void check_variants(const Manifest& manifest) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
       problems.add(number.at, path + ".sweep.zip.seeds",
                    "is more than the number of seeds of the scale", number.value.dump(),
-                   format("State `seeds: {}`, or list this many seeds.", number.value.dump()));
+                   format("Write `seeds: {}`, or list this many seeds.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,

@@ -33,7 +33,7 @@ struct PackingFile {
 
 /// What the manifest and the parameters of the run say about a file.
 struct PackingFacts {
-  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file states none
+  std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file does not give it
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
 };

@@ -48,7 +48,7 @@ struct Range {
 /// A key of a manifest: its allowed values and its meaning.
 struct Field {
   std::string_view name = {};
-  std::string_view symbol = {};  ///< in the supplement; empty if it has none there
+  std::string_view symbol = {};  ///< in the supplement; "" if the supplement has none
   std::string_view unit = {};    ///< of a number; "1" if it is dimensionless
   Range range = {};              ///< of a number
   Identity identity = {};        ///< of a parameter
