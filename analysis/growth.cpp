@@ -39,7 +39,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// Smooth delta_rho for each row of the sums; constant if all crystallites have one size.
+/// Smoothed delta_rho for each row of the sums; constant if all crystallites have one size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);

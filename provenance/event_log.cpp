@@ -122,7 +122,7 @@ void require_known_schema(sqlite::Database& database) {
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
 /// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added the
-/// newest manifests and, for each run, the requests of the experiments and the reason for its end.
+/// newest manifests and, for each run, what its experiments request and why the run has ended.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);

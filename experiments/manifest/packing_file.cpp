@@ -385,8 +385,8 @@ class PackingReader {
     const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
       refuse_line(line_, "Lattice or Origin is not complete",
-                  "Lattice needs 9 numbers, the edges of the box. Origin needs 3 numbers, its "
-                  "lower corner.");
+                  "Lattice needs 9 numbers: the edges of the box. Origin needs 3 numbers: the "
+                  "lower corner of the box.");
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
@@ -887,7 +887,7 @@ class PackingReader {
                     refuse_line(
                         second->line,
                         overlap == 1
-                            ? fmt::format("the grain is at the position of the grain in line {}",
+                            ? fmt::format("the grain has the same position as the grain in line {}",
                                           line_of(*first))
                             : fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
                                           line_of(*first), overlap),
@@ -914,7 +914,7 @@ class PackingReader {
 
   std::optional<LengthUnit> unit_;
   std::vector<Use> uses_;
-  string about_diameter_;  ///< appended to remedies about diameters
+  string about_diameter_;  ///< appended to remedies for wrong diameters
   std::vector<GrainRow> rows_;
   std::size_t wall_grains_ = 0;
 };

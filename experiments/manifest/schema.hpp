@@ -56,7 +56,7 @@ struct Field {
   std::span<const std::string_view> names = {};  ///< the values of a choice
   std::string_view besides = {};                 ///< further values, for messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
-  std::span<const std::string_view> terms = {};  ///< names that expressions may use; empty: none
+  std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;

@@ -139,8 +139,8 @@ const std::vector<BadPacking> kBad = {
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: the box is -9 long in y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the box. "
-     "Origin needs 3 numbers, its lower corner."},
+     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers: the edges of the box. "
+     "Origin needs 3 numbers: the lower corner of the box."},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
      "a.xyz:2:1: the box is 2 d deep in z. At least 3 d are needed. Is the unit of lengths right?"},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
@@ -151,7 +151,7 @@ const std::vector<BadPacking> kBad = {
      "a.xyz: the packing is 3e+09 d long. At most 100000 d are allowed. Is the unit of lengths "
      "right?"},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
-     "a.xyz:4:1: the grain is at the position of the grain in line 3. " + kDeep},
+     "a.xyz:4:1: the grain has the same position as the grain in line 3. " + kDeep},
     {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
      "a.xyz:4:1: the grain overlaps the grain in line 3 by 0.5 d. " + kDeep},
     {"OverlappingAcrossTheBoundary", "a.xyz", xyz(kLattice, "A 1 1 0.25\nA 1 1 8.75\n"),
