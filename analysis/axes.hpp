@@ -23,7 +23,7 @@ inline const Axis overlap_axis = {
 inline const Axis amplitude_axis = {
     .name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12};
 
-/// A line at the supplement's critical size [grains] of one amplitude.
+/// A line at the supplement's critical size [grains] for one amplitude.
 ReferenceLine critical_line(double size, const std::string& colour);
 
 /// Adds columns for a size, the ends of its interval and its standard error, all in grains.

@@ -51,9 +51,9 @@ std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             double level = confidence_level);
 
 /// Slope b of values[k] ~ a + b x[k]. sigma is the same for all x. Empty for fewer than three
-/// observed values, or if all x are equal. If all observed values have the same x, and all other x
-/// are larger (or all are smaller), the likelihood has no maximum: it increases with the steepness
-/// of the slope. The estimate and one end of the interval are then infinite.
+/// observed values, or if all x are equal. If all observed values have one x, and the x of all
+/// censored values are larger (or smaller), the likelihood has no maximum: it increases with the
+/// steepness of the slope. The estimate and one end of the interval are then infinite.
 std::optional<Estimate> censored_slope(std::span<const CensoredValue> values,
                                        std::span<const double> x, double level = confidence_level);
 

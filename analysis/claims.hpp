@@ -26,7 +26,7 @@ struct PublishedSpec {
 struct ClaimSpec {
   std::string id;            ///< "S2.phi"; the same in every manifest that lists the figure
   std::string figure = {};   ///< like PlotSpec::figure
-  std::string compare = {};  ///< the compared quantity, given like PlotSpec::y; not a curve
+  std::string compare = {};  ///< the compared quantity, as in PlotSpec::y; must not be a curve
   /// The estimator's name; "": the other keys imply the estimator (estimator_of()).
   std::string estimator = {};
   /// A claim has at most one of the next four members: `cycles` (first and last), `phi` (lower
@@ -42,11 +42,11 @@ struct ClaimSpec {
   /// Parameters that select the runs of each side. The second is empty if the claim has one side.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// In units of the measure; for waiting times, in log2 of their ratio. With margin 0, a published
-  /// number is an upper or lower bound.
+  /// In units of the measure; for waiting times, in log2 of their ratio. If the margin is 0, the
+  /// published number is an upper or lower bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
-  /// The claim as a sentence; "": made from the keys. With `for_each: amplitude_rad`, for example,
+  /// The claim as a sentence; "": derived from keys. With `for_each: amplitude_rad`, for example,
   /// "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;

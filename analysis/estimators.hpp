@@ -32,13 +32,13 @@ struct Estimator {
   /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
-  bool one_side = false;       ///< each of its claims has one group, even if `published` is not set
-  /// Gives the number of each run. The mean over runs, or the difference between the means of two
-  /// groups, is then estimated. If null, `decide` gives the verdict.
+  bool one_side = false;       ///< its claims have one group, even without a published number
+  /// Returns how to compute one number per run. The mean of these numbers over the runs, or the
+  /// difference of the means of two groups, is then estimated. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Gives the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// Returns the name of the estimated quantity, for use in sentences. If null, it is Scalar::name.
+  /// Returns the name of the estimated quantity, for use in sentences. If null: Scalar::name.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 

@@ -39,7 +39,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// Smooth delta_rho for each row of the sums; constant if all crystallites have one size.
+/// Smoothed delta_rho for each row of the sums; constant if all crystallites have one size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
@@ -48,8 +48,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size of GrowthCurve::critical_size(); infinity if there is none. Minus infinity if delta_rho
-/// is positive at size 1 and the excess of all sizes exceeds that above each rise through zero.
+/// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
+/// delta_rho > 0 at size 1 and the total excess is larger than above every rise through zero.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);

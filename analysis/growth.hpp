@@ -65,7 +65,7 @@ class GrowthCurve {
  public:
   /// Standard deviation of the Gaussian in ln(size), which is about 20 % of the size. [choice]
   static constexpr double bandwidth = 0.2;
-  /// Larger sizes are left out, since their growth ends when the cell is one crystal. [choice]
+  /// Larger sizes are left out, because their growth ends when the cell is one crystal. [choice]
   static constexpr std::int32_t largest = 100;
 
   /// `background` is subtracted from delta_rho; crystallites grow where the difference is positive.

@@ -23,7 +23,7 @@ inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "n
 struct RunOnset {
   Observed observed = Observed::never;
   double phi = 0;    ///< at the onset; if `never`, at the last checkpoint
-  double cycle = 0;  ///< of the onset; if `never`, of the last checkpoint
+  double cycle = 0;  ///< of the onset, or of the last checkpoint if `never`
 };
 
 /// Method 1: the time at which the largest crystallite first has the critical size. phi and cycle
@@ -35,8 +35,8 @@ RunOnset onset_by_size(const FrameRun& run);
 /// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi
 /// is the slope of the least-squares line through the checkpoints within `slope_window / 2` of phi.
 /// At least four such checkpoints must span half of the window; a run without such a window is
-/// `unclear`. A packing without crystallites counts as size 1. A run in which the largest
-/// crystallite never has the critical size is `never`. [choice]
+/// `unclear`. A packing without crystallites counts as size 1. A run whose largest
+/// crystallite never reaches the critical size is `never`. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

@@ -264,7 +264,7 @@ std::string plain_field(std::string variant) {
   return variant;
 }
 
-/// Runs that share a curve.
+/// Runs that are drawn as one curve.
 struct Group {
   json key;             ///< the keys that distinguish curves, and their values in this group
   std::string variant;  ///< `key` as text
@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest gives a curve a colour, no other curve may have this colour.
+  // If a manifest sets the colour of a curve, no other curve may have this colour.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {
@@ -604,7 +604,7 @@ Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
   return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
-/// A series of the curve, without points.
+/// The chart series of a curve, without its points.
 Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
@@ -992,7 +992,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
     std::vector<std::string> keys = names_in(plot.x);
     keys.insert(keys.end(), {plot.by, plot.panel});
     require_told_apart(plot.name, frame.runs, keys,
-                       "remove its `by` to draw a curve for each variant");
+                       "remove the key `by` of the plot to draw a curve for each variant");
   }
   std::string less;                              // the caption's note on PlotSpec::minus
   std::map<json, std::vector<Selected>> panels;  // by the value of PlotSpec::panel

@@ -69,7 +69,7 @@ struct PlotSpec {
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
+  std::string xlabel = {}, ylabel = {};  ///< of the axes, may have formulas; "": from x, y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one

@@ -47,8 +47,8 @@ struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
   Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
-  std::uint8_t beyond;                    // bit w: the centre is not inside wall w
-  std::uint8_t edges_done;                // one bit per edge: its face has been measured
+  std::uint8_t beyond;                    // bit w is 1: the centre is not inside wall w
+  std::uint8_t edges_done;                // a bit for each edge whose face was measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {

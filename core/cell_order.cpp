@@ -42,7 +42,7 @@ void CellOrder::build(const Cell& cell, const WallPose& pose, double reach, cons
   site_.resize(sites.size());
   id_.assign(padded(sites.size()) + 8, 0);  // vector loads may read past the last site
   for (auto& axis : row_) axis.resize(padded(sites.size()) + 8);
-  std::vector<std::uint32_t>& next = cell_;  // scratch memory, since cell_ is filled later
+  std::vector<std::uint32_t>& next = cell_;  // scratch memory until cell_ is filled
   next.assign(begin_.begin(), begin_.end());
   for (std::size_t s = 0; s < sites.size(); ++s) {
     site_[next[cell_of_site_[s]]++] = static_cast<std::int32_t>(s);

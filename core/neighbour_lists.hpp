@@ -23,8 +23,8 @@ namespace shearcell {
 
 /// Settings of the neighbour lists. They change the speed, but no bit of a result.
 struct ListSettings {
-  double outer_cutoff = 1.25;  ///< outer cutoff for two grains that only follow the shear [d]
-  double inner_cutoff = 1.04;  ///< inner cutoff for two grains that only follow the shear [d]
+  double outer_cutoff = 1.25;  ///< outer cutoff for two grains that move only with the shear [d]
+  double inner_cutoff = 1.04;  ///< inner cutoff for two grains that move only with the shear [d]
   double widest_cutoff = 1.6;  ///< cutoff for the fastest grains if the cell is deep enough [d]
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< store neighbouring grains close together in memory

@@ -103,7 +103,7 @@ void require_known_schema(sqlite::Database& database) {
     throw StoreDamaged(fmt::format("{}: {}", database.name(), why));
   };
   if (database.integer("PRAGMA application_id") != kStoreApplicationId) {
-    refuse("this SQLite database belongs to another program; name another store folder");
+    refuse("this SQLite database belongs to another program; choose another store folder");
   }
   const std::int64_t version = database.integer("PRAGMA user_version");
   if (version > kSchemaVersion) {
@@ -122,7 +122,7 @@ void require_known_schema(sqlite::Database& database) {
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
 /// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added the
-/// newest manifests and, for each run, the requests of the experiments and the reason for its end.
+/// newest manifests and, for each run, what its experiments request and why the run has ended.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);
@@ -192,7 +192,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
     // An empty file is valid only in a new store. If the folder `objects` exists, the log was lost.
     if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
       throw StoreDamaged(file.string() +
-                         ": the log is empty; restore it from a backup, or name another store");
+                         ": the log is empty; restore it from a backup, or choose another store");
     }
     create_tables(database);
   }

@@ -27,7 +27,7 @@ inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 /// Version of the layout of /restart.
 inline constexpr std::uint64_t kRestartFormat = 1;
 
-/// The frame text for a file with this digest, without the zeros at the end.
+/// The text of the frame, without its final zeros. `sha256`: of all bytes after the frame.
 inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }

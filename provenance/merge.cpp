@@ -160,7 +160,7 @@ struct RunMerge {
   }
 };
 
-/// The seq of every event of the attempts that must be copied.
+/// The sequence numbers (seq) of all events of the attempts that must be copied.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;

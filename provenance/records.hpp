@@ -83,7 +83,7 @@ inline bool has_ended(StageState state) {
   return state == StageState::completed || state == StageState::failed;
 }
 
-/// A stage that a manifest defines or that events describe.
+/// A stage as a manifest defines it or as its events describe it.
 struct Stage {
   std::string id;                                      ///< 64 hex digits
   std::string parent;                                  ///< id of the preceding stage; "" if none
@@ -103,7 +103,7 @@ struct Stage {
   double particle_steps = 0;                      ///< sum over all checkpoints
   nlohmann::json ends = nlohmann::json::array();  ///< why the stage ended, one entry per completion
   std::string error;                    ///< why the stage failed or was interrupted, or ""
-  std::string updated_at;               ///< time of its last event, UTC
+  std::string updated_at;               ///< time of the stage's last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 

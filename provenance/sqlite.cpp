@@ -34,7 +34,7 @@ void require_plain_files(const std::string& name) {
     if (!S_ISREG(found.st_mode)) {
       throw StoreDamaged(fmt::format(
           "{}: a database file must be a regular file, but this is a folder, link or device; "
-          "remove it or name another store folder",
+          "remove it or choose another store folder",
           file));
     }
     if (found.st_nlink < 2) continue;
@@ -147,7 +147,7 @@ void Database::fail(int code, std::string_view doing) const {
     case SQLITE_NOTADB:
       throw StoreDamaged(fmt::format(
           "{}: this is not an SQLite database, so it is not the log of a store; restore the file "
-          "from a backup, or name another store folder",
+          "from a backup, or choose another store folder",
           name_));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:

@@ -84,8 +84,8 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;
   throw StoreDamaged(fmt::format(
-      "{}: the log names checkpoints, but this folder is missing or empty; mount it, or copy it "
-      "from where the store was, or name another store with --store",
+      "{}: the log lists checkpoints, but this folder is missing or empty; mount it, or copy it "
+      "from where the store was, or choose another store with --store",
       objects.string()));
 }
 
@@ -94,7 +94,7 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
                     const std::string& id, std::uint64_t attempt) {
   for (const Lease& lease : query_leases(database, id)) {
     if (lease.holder.token == token) continue;
-    return fmt::format("its lease expired and another program took the run ({})",
+    return fmt::format("its lease expired and another program took over the run ({})",
                        describe(lease.holder));
   }
   // If the run has a newer attempt or is no longer running, another program continued the run.
@@ -294,7 +294,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
                                  const std::string& parent_checkpoint, bool fill) {
   Writing lock(*this);
   if (held_.contains(id)) {
-    throw ConcurrencyConflict(fmt::format("run {}: this program already computes it", id));
+    throw ConcurrencyConflict(fmt::format("run {}: this process is already computing it", id));
   }
   const auto known = query_stage(database_, id);
   if (!known) throw unknown_stage(id);

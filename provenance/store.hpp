@@ -93,8 +93,8 @@ class Store {
 
   // --- Recording ---
 
-  /// Stores the text and returns its SHA-256. Records nothing if this text is the one that was
-  /// registered last for info["experiment"].
+  /// Stores the text and returns its SHA-256. Records nothing if this text is already
+  /// the newest manifest of info["experiment"].
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
@@ -182,7 +182,7 @@ class Store {
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
   /// Like load_checkpoint(), but returns nothing when the checkpoint is damaged or was pruned.
   std::optional<Checkpoint> load_if_readable(const CheckpointRecord& record) const;
-  std::vector<FigureRecord> figures() const;  ///< the newest figure of each name, sorted by name
+  std::vector<FigureRecord> figures() const;  ///< newest record per figure, sorted by name
   /// Events in order. An empty `stream` means all streams, and an empty `type` means all types.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
   Head head() const;
@@ -191,8 +191,8 @@ class Store {
 
   /// Drops the tables and derives them from the events.
   void rebuild();
-  /// Reports damage as findings. `against` is a head that was saved earlier; a log that does not
-  /// contain it was changed and is reported as damaged. Throws only when the machine fails.
+  /// Reports damage as findings. `against` is a head that was saved earlier; if the log does
+  /// not contain this head, the log is reported as damaged. Throws only when the machine fails.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
   /// The checkpoints that prune() may delete. Excludes the initial states of stages that have not

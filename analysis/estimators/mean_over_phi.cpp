@@ -31,7 +31,7 @@ Scalar over_phi(const std::string& name, const std::string& column, double low, 
 }
 
 const Estimator mean_over_phi = {.name = "mean_over_phi",
-                                 .meaning = "mean over the range `phi` of the volume fraction",
+                                 .meaning = "mean over the volume fractions in the range `phi`",
                                  .key = "phi",
                                  .scalar = [](const ClaimSpec& claim) {
                                    return over_phi(words_of_column(claim.compare), claim.compare,

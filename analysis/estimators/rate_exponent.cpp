@@ -48,9 +48,9 @@ Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup ru
 
 const Estimator rate_exponent = {.name = "rate_exponent",
                                  .meaning =
-                                     "exponent a of the rate of onsets, which is proportional to "
-                                     "n^a at equal phi and amplitude; `against` names "
-                                     "n, which is interior_grains or core_grains",
+                                     "exponent a of the power law n^a for the rate of onsets at "
+                                     "equal phi and amplitude; `against` selects n: "
+                                     "interior_grains or core_grains",
                                  .key = "against",
                                  .of_run = true,
                                  .over_variants = true,

@@ -8,7 +8,7 @@ namespace shearcell {
 
 const Estimator slope_over_cycles = {
     .name = "slope_over_cycles",
-    .meaning = "least-squares slope against the cycle, over the checkpoints of `cycles`",
+    .meaning = "least-squares slope per cycle, from the checkpoints in the range `cycles`",
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) -> Scalar {
       const auto first = static_cast<double>(claim.cycles->at(0));

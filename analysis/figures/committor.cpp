@@ -82,7 +82,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
   return map.size.empty() ? 0 : std::ranges::max(map.size);
 }
 
-/// Adds the crystallites of one state, or the state as a control, with the outcomes in all clones.
+/// Adds the outcomes of a state's crystallites in all clones or, if it has none, adds a control.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));

@@ -71,7 +71,7 @@ Check filesystem(const fs::path& place) {
   }
   return {
       "file system", fmt::format("network (type {:#x})", type), "slow",
-      "keep the store on a local disk and `merge` it later, since SQLite needs file locks, which "
+      "keep the store on a local disk and `merge` it later, because SQLite needs file locks, which "
       "are unreliable on a network"};
 }
 

@@ -57,7 +57,7 @@ const std::array kFormats = {
                  [](const auto& out, auto, auto unit) { return extxyz_writer(out, unit); }},
     ExportFormat{"vtk", "a folder for ParaView: VTK PolyData files and run.json; SI units", "",
                  [](const auto& out, auto frames, auto) { return vtk_writer(out, frames); }},
-    ExportFormat{"lammps", "a folder for LAMMPS and OVITO: LAMMPS data and scripts; SI units", "",
+    ExportFormat{"lammps", "a folder for LAMMPS and OVITO: data files and scripts; SI units", "",
                  [](const auto& out, auto, auto) { return lammps_writer(out); }},
     ExportFormat{"contacts", "a folder for pandas: overlaps and forces as CSV files, and run.json",
                  "", [](const auto& out, auto, auto) { return contacts_writer(out); }},

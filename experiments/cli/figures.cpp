@@ -128,7 +128,7 @@ void figures(FigureArguments& options, Context& context) {
   if (options.all) options.names.clear();
   WantedFigures wanted = wanted_figures(store, options.names, options.how.runs.experiments);
   if (wanted.figures.empty() && !options.names.empty()) {
-    throw NotFound(fmt::format("no experiment lists {}; choose an experiment with --experiment",
+    throw NotFound(fmt::format("no experiment lists {}; to draw it anyway, add --experiment",
                                fmt::join(options.names, " or ")));
   }
   if (wanted.figures.empty()) {

@@ -79,7 +79,7 @@ can also be used in `until`. `critical_size` and all columns below it need `--pe
   }
   text +=
       "\nCurves for `shearcell table --curve` and for `y` of `plots`:\n\n"
-      "| curve | against | meaning |\n|---|---|---|\n";
+      "| curve | function of | meaning |\n|---|---|---|\n";
   for (const Measure* curve : all_measures(MeasureKind::curve)) {
     text += fmt::format("| `{}` | `{}` | {} |\n", curve->name, curve->x,
                         cell(std::string(curve->meaning)));

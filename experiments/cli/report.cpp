@@ -44,7 +44,7 @@ void report(ReportCommand& command, Context& context) {
   for (const std::string& line : made.notes) print_stderr("{}\n", line);
   if (!has_front_end() && options.interactive) {
     print_stderr(
-        "Packings are left out and figures are static drawings, since this program was built "
+        "Packings are left out and figures are static drawings, because this program was built "
         "without Node.\n");
   }
   if (is_stream(command.out)) return;

@@ -65,7 +65,7 @@ std::string describe(const QueuedTask& task) {
 }
 
 /// Returns state and cycle of the run, as stored or as its cluster task reports them. The report is
-/// used if its cycle is not less than the stored cycle. If the program that computed the run was
+/// used unless its cycle is less than the stored cycle. If the program that computed the run was
 /// killed, the state is `interrupted`.
 std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
   const QueuedRun* queued = view.queued(stage);

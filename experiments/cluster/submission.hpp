@@ -139,7 +139,7 @@ struct QueueView {
 /// Reads Slurm's queue if the store has unfinished submissions.
 QueueView view_queue(const Store& store);
 
-/// One line for `status`: the jobs of a submission and their states, or advice if all have ended.
+/// One line for `status`: the jobs of a submission and their states, or advice if no job is left.
 std::string describe(const Submission& submission);
 
 }  // namespace shearcell

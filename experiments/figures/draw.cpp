@@ -28,7 +28,7 @@ namespace shearcell {
 namespace {
 
 /// The checkpoints of the run that the figure used, in the order of steps. The list includes the
-/// earlier checkpoints that a measure of changes needed.
+/// earlier checkpoints that measures of changes needed.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FrameRun& run) {
   std::set<std::string> own;
@@ -61,9 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// If the figure's plots come from this program and not from the manifest, returns a text with the
-/// program's version. For example, older manifests only name the figure. Returns "" if the manifest
-/// defines the plots or if C++ computes the figure.
+/// Returns a text with the program's version if this program, and not the manifest, defines the
+/// figure's plots, for example because the manifest only lists the figure's name. Returns "" if the
+/// manifest defines the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
@@ -101,14 +101,14 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
 
 /// Returns "drag/desk", or "desk" for a figure of all experiments. This is the path of the figure's
 /// files in the output folder, and the beginning of its record's name. Throws StoreDamaged if a
-/// name in the store cannot name a folder.
+/// name in the store cannot be a folder name.
 std::string place_of(const ComputedFigure& figure) {
   const std::string scale = scale_name(figure.scale);
   for (const auto& [what, name] :
        {std::pair("an experiment", figure.experiment), {"a scale", scale}}) {
     if (name.empty() || is_name(name)) continue;
     throw StoreDamaged(fmt::format(
-        "{} of the store is called '{}', which cannot name a folder; run `verify`", what, name));
+        "{} of the store is called '{}', which cannot be a folder name; run `verify`", what, name));
   }
   return figure.experiment.empty() ? scale : figure.experiment + "/" + scale;
 }

@@ -56,20 +56,20 @@ struct FigureLineage {
   std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest defines the plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
-  std::vector<ManifestText> manifests;         ///< of the inputs, without duplicates
+  std::vector<ManifestText> manifests;         ///< manifests of the inputs, each once
   RunLineages runs;                            ///< of the input runs and of their parent stages
 };
 
 /// Returns the values of the manifest that the command line replaced, or null. Example for a run of
-/// 8 cycles whose manifest asks for 5 cycles: {"cycles": {"run": 8, "manifest": 5}}.
+/// 8 cycles whose manifest requests 5: {"cycles": {"run": 8, "manifest": 5}}.
 nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place& place,
                             const Ask& ask);
 /// Returns "S2" for a record named "drag/desk/S2". Records of older stores are named "drag/S2" or
 /// "S2".
 std::string figure_name(const FigureRecord& record);
 
-/// Returns "drag/desk/S2", also for a record that an older version named "drag/S2". Returns
-/// "desk/table1" for a figure of all experiments.
+/// The path of the figure, such as "drag/desk/S2", even if an older version recorded "drag/S2".
+/// For a figure of all experiments, such as "desk/table1".
 std::string figure_path(const FigureRecord& record);
 
 /// The text of a figure's lineage file, which is the payload of the figure's record without host

@@ -29,7 +29,7 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 
 struct NewestRuns {
   std::vector<Run> runs;           ///< sorted by experiment, scale, variant and seed
-  std::vector<std::string> notes;  ///< messages on runs that are left out or not shown to the end
+  std::vector<std::string> notes;  ///< runs that are left out, or shown without their last cycles
 };
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the

@@ -198,7 +198,7 @@ struct VariantCheck {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
-               "State `start: {experiment: NAME}`, or leave it out.");
+               "Write `start: {experiment: NAME}`, or leave it out.");
       }
       return;
     }
@@ -241,7 +241,7 @@ bool is_formula(const string& text) {
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Checks that each label fits a variant of some scale and has visible characters, and that no two
+/// Checks that each label fits a variant of any scale and has visible characters, and that no two
 /// variants of one scale have names that look the same.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
@@ -415,9 +415,9 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
                : start.file.empty() || variant.parameters.walls == WallTexture::rough;
   };
   if (seeds > 1 && std::ranges::none_of(variants, draws)) {
-    warnings.push_back(format("{}:{}:{}: start: all {} seeds give the same run. Set {}`seeds: 1`.",
-                              manifest.file, start.at.line, start.at.column, seeds,
-                              start.is_recorded() ? "`noise_d`, or " : ""));
+    warnings.push_back(format(
+        "{}:{}:{}: start: all {} seeds give the same run. Write {}`seeds: 1`.", manifest.file,
+        start.at.line, start.at.column, seeds, start.is_recorded() ? "`noise_d`, or " : ""));
   }
   for (const auto& [one, of] : advice) {
     warnings.push_back(format("{}: variant{} {}: {}", manifest.file, of.size() == 1 ? "" : "s",
@@ -449,8 +449,8 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. If the first multiple of `every_cycles` fails, all later multiples fail
-// too. So only this multiple, the first cycle and the last cycle are tried.
+// `back` cycles earlier. If the first multiple of `every_cycles` is no such cycle, no later
+// multiple is. So only the first cycle, this multiple and the last cycle are tried.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
@@ -511,8 +511,8 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message about the variants that have other packings than the subtracted variant (`minus`); ""
-/// if all variants have the same packings.
+/// A message that lists the variants whose packings differ from those of the subtracted variant
+/// (`minus`); "" if all variants have the same packings.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
   if (plot.minus.empty() || others.size() != 1) return "";
@@ -723,7 +723,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty() && scale.looks.back() > seeds) {
       problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
                    "needs more seeds than the scale has", std::to_string(scale.looks.back()),
-                   format("State `seeds: {}`, or list this many seeds.", scale.looks.back()));
+                   format("Write `seeds: {}`, or list this many seeds.", scale.looks.back()));
     }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
@@ -731,7 +731,7 @@ void check_variants(const Manifest& manifest) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
       problems.add(number.at, path + ".sweep.zip.seeds",
                    "is more than the number of seeds of the scale", number.value.dump(),
-                   format("State `seeds: {}`, or list this many seeds.", number.value.dump()));
+                   format("Write `seeds: {}`, or list this many seeds.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,

@@ -176,7 +176,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   common.ask.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by id of the last stage
-  std::set<std::string> fitted;                   // ids of packings already checked with the file
+  std::set<std::string> fitted;                   // ids of packings whose grains were placed
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds = seeds;
   std::erase_if(chosen_seeds,

@@ -56,11 +56,11 @@ StageInputs read_stage(const nlohmann::json& resolved);
 
 /// The parameters that affect the stage. A parameter that the record omits has the value
 /// Identity::omitted_at. Parameters that every record holds with the same value
-/// (Identity::recorded_as) are left out, since the run may have had another value. If the record is
+/// (Identity::recorded_as) are left out, since the run may have used another one. If the record is
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
-/// The engine that a record states, even if other parts of the record are damaged.
+/// The engine given in a record, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
 /// JSON without whitespace, with keys sorted by their bytes and the shortest digits that read back

@@ -26,7 +26,7 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   if (type == std::filesystem::file_type::not_found) refuse_file("there is no such file");
   if (error) refuse_file(fmt::format("cannot be read: {}", error.message()));
   if (type == std::filesystem::file_type::directory) {
-    refuse_file("is a directory", "Name a file in this directory.");
+    refuse_file("is a directory", "Choose a file in this directory.");
   }
   // Reading a pipe or a device might never end.
   if (type != std::filesystem::file_type::regular) refuse_file("is not a regular file");

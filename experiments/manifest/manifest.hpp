@@ -96,7 +96,7 @@ struct Sweep {
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives the number n, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;
@@ -181,7 +181,7 @@ struct Scale {
   StatedUntil until = {};
   /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
   std::vector<std::string> primary = {};
-  /// Numbers of seeds of the looks (interim analyses), ascending. Empty: one look, with all seeds.
+  /// Number of seeds at each look (interim analysis), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys that the entry of `scales` itself contains
 };

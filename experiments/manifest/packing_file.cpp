@@ -37,7 +37,7 @@ constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
 /// The meaning of a column's name. If several columns can give a quantity, the columns whose
 /// meaning has the lowest rank are read.
 struct Meaning {
-  string_view names;        ///< lower case; if `count` is 1, they mean `first`, `first` + 1, ...
+  string_view names;        ///< in lower case; if `count` is 1, the k-th is `first` + k - 1
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
@@ -67,7 +67,7 @@ struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
   const char* remedy = "";  ///< remedy in the message about missing columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< what further values in a row are; null: an error
+  const char* more = nullptr;  ///< name for additional values in a row; null: an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
   double first_wall = 1;       ///< smallest kWall of a wall grain
   std::vector<string_view> rows = {};
@@ -267,7 +267,7 @@ class PackingReader {
       refuse_line(line_,
                   fmt::format("the file ends after {} of the {} grains announced in line {}", found,
                               *count, at),
-                  "Write the whole file, or correct the number.");
+                  "Use a complete file, or correct the number.");
     }
     refuse_line(
         grains_.rows[*count],
@@ -385,8 +385,8 @@ class PackingReader {
     const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
       refuse_line(line_, "Lattice or Origin is not complete",
-                  "Lattice needs 9 numbers, the edges of the box. Origin needs 3 numbers, its "
-                  "lower corner.");
+                  "Lattice needs 9 numbers: the edges of the box. Origin needs 3 numbers: the "
+                  "lower corner of the box.");
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
@@ -397,7 +397,7 @@ class PackingReader {
     box_->planes = {low, low + size};
   }
 
-  /// Whether one of the first lines gives a number of atoms, as in "500 atoms".
+  /// Whether one of the first lines gives a number of atoms, for example "500 atoms".
   bool states_atoms() const {
     static const std::regex count("[0-9][ \\t]+atoms");
     return std::regex_search(string(rest_.substr(0, 2000)), count);
@@ -436,7 +436,7 @@ class PackingReader {
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
                   fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
-                  "Write the whole file, or correct the number.");
+                  "Use a complete file, or correct the number.");
     }
   }
 
@@ -461,7 +461,7 @@ class PackingReader {
 
   void read_bounds(const std::vector<string_view>& words) {
     if (words.back().ends_with("vec")) {
-      refuse_part(words.back(), "", "gives the box by its edges, which cannot be read",
+      refuse_part(words.back(), "", "gives the box by edge vectors, which cannot be read",
                   "Write the box as xlo xhi, ylo yhi and zlo zhi.");
     }
     if (words.size() == 6 && words[3] == "xy") {
@@ -501,7 +501,7 @@ class PackingReader {
     while (next_line()) {
       const string_view item = trimmed(line_);
       if (item.starts_with("ITEM: ATOMS")) {
-        if (!count) refuse_line(line_, "the number of atoms is missing", "Write the whole dump.");
+        if (!count) refuse_line(line_, "the number of atoms is missing", "Use a complete dump.");
         grains_ = {.header = line_,
                    .remedy = "Write these columns: dump ... custom ... id x y z vx vy vz.",
                    .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
@@ -516,7 +516,7 @@ class PackingReader {
       }
       if (bounds) read_dump_box(item);
     }
-    refuse_line(line_, "the dump ends before its atoms", "Write the whole dump.");
+    refuse_line(line_, "the dump ends before its atoms", "Use a complete dump.");
   }
 
   /// Reads the three lines of the box; the first of them is in line_.
@@ -530,7 +530,7 @@ class PackingReader {
       if (k > 0) require_line("the rest of the box");
       const std::vector<string_view> words = split(line_, ' ');
       if (words.size() != (leans ? 3U : 2U)) {
-        refuse_line(line_, "is not a lower and an upper bound", "Write the whole dump.");
+        refuse_line(line_, "does not give a lower and an upper bound", "Use a complete dump.");
       }
       set_planes(k, words[0], words[1]);
       box_->follows[k] = kinds[k].find_first_of("sm") != string_view::npos;
@@ -654,7 +654,7 @@ class PackingReader {
     if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
       refuse_part(column.name, "", "cannot be read under this name",
                   "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or "
-                  "remove this column. Velocities are in the unit of the lengths per second.");
+                  "remove this column. Velocities must be in units of length per second.");
     }
     if (meaning.count != column.count) {
       refuse_part(
@@ -726,7 +726,7 @@ class PackingReader {
       if (!found) {
         refuse_line(row.line,
                     fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
-                    "Write the whole file.");
+                    "Use a complete file.");
       }
       std::copy_n(&row.value[kVx], 3, &found.mapped()->value[kVx]);
     }
@@ -868,14 +868,14 @@ class PackingReader {
     }
   }
 
-  /// Refuses the file at the first pair that overlaps too much, because a search for all such pairs
+  /// Rejects the file at the first pair that overlaps too much, because a search for all such pairs
   /// could be slow.
   void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
     const Eigen::Vector3d size = space.sizes();
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // no box: no periodic images
+    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // without a box: keeps images apart
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
@@ -887,7 +887,7 @@ class PackingReader {
                     refuse_line(
                         second->line,
                         overlap == 1
-                            ? fmt::format("the grain is at the position of the grain in line {}",
+                            ? fmt::format("the grain has the same position as the grain in line {}",
                                           line_of(*first))
                             : fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
                                           line_of(*first), overlap),
@@ -914,7 +914,7 @@ class PackingReader {
 
   std::optional<LengthUnit> unit_;
   std::vector<Use> uses_;
-  string about_diameter_;  ///< appended to remedies about diameters
+  string about_diameter_;  ///< appended to remedies for wrong diameters
   std::vector<GrainRow> rows_;
   std::size_t wall_grains_ = 0;
 };

@@ -243,8 +243,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "name of a figure. Plots that state the same figure are its panels (a), (b), ..., "
-                "with one caption. Claims can state it too. Default: a separate figure"});
+         .doc = "name of a figure. Plots with the same `figure` are its panels (a), (b), ..., "
+                "with one caption. Claims can have this key, too. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
@@ -286,7 +286,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                      .range = kCycles,
                      .doc = "the cycle at which a curve measure is drawn. If `x` has one value for "
                             "each run, `y` is drawn at this cycle. Default: the last cycle that "
-                            "all runs have; the CSV file and the caption state it"});
+                            "all runs have; the CSV file and the caption give the cycle"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
@@ -393,7 +393,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
 
 void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.experiment, {.name = "experiment",
-                              .doc = "required; its name: letters, digits, - and _",
+                              .doc = "required; name of the experiment: letters, digits, - and _",
                               .example = "drag"});
   visit(manifest.question, {.name = "question",
                             .doc = "the question that the experiment answers, for human readers",
@@ -402,8 +402,8 @@ void fields(Manifest& manifest, const auto& visit) {
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "experiments in the store; plots and claims use their runs, and the manifest has "
-                "no keys that define runs. Selections may use the key `experiment`",
+         .doc = "experiments in the store whose runs the plots and claims use, instead of the keys "
+                "that define runs. Selections may use the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -530,8 +530,8 @@ string meant_expression(const string& text) {
 // all problems are reported at once.
 struct Reader {
   ProblemList& problems;
-  const Scale& base;                             // the keys that are set for all scales
-  std::span<const Figure> figures_to_list = {};  // the figures that `figures` may name
+  const Scale& base;                             // the keys that apply to all scales
+  std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
 
   // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of(const Node& document) {
@@ -548,7 +548,7 @@ struct Reader {
   void reject_value(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.at, in.path, problem, shown(in), remedy);
   }
-  // Reports that the value is not `wanted`, as in "a list".
+  // Reports a value of a wrong type. `wanted` is the right type, for example "a list".
   void reject_type(const Node& in, string_view wanted, const string& remedy) {
     reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
@@ -690,12 +690,12 @@ struct Reader {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (field->is_choice() || (end.key != "min" && end.key != "max")) {
-          reject_key(end, "is not an end of a range", "A range is `{min: 1, max: 2}` of numbers.");
+          reject_key(end, "is not a limit of a range", "Write numbers as `{min: 1, max: 2}`.");
         } else if (auto read = read_scalar(end, *field)) {
           range[end.key] = std::move(*read);
         }
       }
-      if (range.empty()) reject_value(in, "is not a range", "It takes `{min: 1, max: 2}`.");
+      if (range.empty()) reject_value(in, "has no limits", "Write `{min: 1, max: 2}`.");
     } else if (auto read = read_scalar(in, *field)) {
       where[in.key] = std::move(*read);
     }
@@ -766,7 +766,7 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // Reads one of several names, an expression, a free text, or a name, as `about` decides.
+  // Reads a text. `about` decides if it is an expression, a free text, a listed or any other name.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
     const bool takes_expressions = in.is_scalar() && !about.terms.empty();
@@ -853,7 +853,7 @@ struct Reader {
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. name_series() completes keys without `=`.
+  // Reads the styles of curves. For keys without `=`, name_series() later finds the curves.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -1231,8 +1231,8 @@ struct Reader {
     auto cycle =
         read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
     if (!is_id || cycle.index() != 0) {
-      return reject_value(*checkpoint, "is not a run and a whole cycle",
-                          "It takes `0123abcd@10`: at least eight digits of the run's id.");
+      return reject_value(*checkpoint, "does not give a run and a whole cycle",
+                          "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
     }
     start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
   }
@@ -1262,7 +1262,7 @@ struct Reader {
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              fmt::format("{} has one value for each run", plot.y), "Name a parameter as x.");
+              fmt::format("{} has one value for each run", plot.y), "Use a parameter as x.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
       reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
     }
@@ -1276,7 +1276,7 @@ struct Reader {
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
       reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
-      reject(also != nullptr ? *also : in, fmt::format("makes the column {} twice", twice),
+      reject(also != nullptr ? *also : in, fmt::format("gives two columns the name {}", twice),
              "Give one of them another name: `also: {NAME: measure}`.");
     }
     if (const Field* field = find_field(plot.x)) {
@@ -1293,7 +1293,7 @@ struct Reader {
     }
   }
 
-  // Completes the entries of `series` whose key is a value of `by` or the name of a column.
+  // Finds what a key of `series` without `=` means: the name of a column, or a value of `by`.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
       json& where = plot.series[k].where;
@@ -1327,7 +1327,7 @@ struct Reader {
     reject_if(published.label.empty(), &in, "lacks label",
               "Give the label that the legend of the plot shows.");
     reject_if(published.value.has_value() == !published.points.empty(), &in,
-              "must have a value or points, but not both", "Give one of these keys.");
+              "must have a value or points, but not both", "Give one of them.");
   }
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
@@ -1341,7 +1341,7 @@ struct Reader {
         const Node* one = in.find(key);
         if (one != nullptr && first != nullptr) {
           return reject(*one, fmt::format("cannot be used with {}", first->key),
-                        "Give one of these keys.");
+                        "Give one of them.");
         }
         if (one != nullptr) first = one;
       }
@@ -1503,7 +1503,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  // Scales are read last, since each begins with the keys that are set for all scales.
+  // Scales are read last, because each scale begins with the keys that apply to all scales.
   std::stable_partition(root.parts.begin(), root.parts.end(),
                         [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;

@@ -48,15 +48,15 @@ struct Range {
 /// A key of a manifest: its allowed values and its meaning.
 struct Field {
   std::string_view name = {};
-  std::string_view symbol = {};  ///< in the supplement; empty if it has none there
-  std::string_view unit = {};    ///< unit of a number; "1" if dimensionless
-  Range range = {};              ///< allowed range of a number
+  std::string_view symbol = {};  ///< in the supplement; "" if the supplement has none
+  std::string_view unit = {};    ///< of a number; "1" if it is dimensionless
+  Range range = {};              ///< of a number
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< the allowed values of a choice
   std::string_view besides = {};                 ///< follows the values in messages: ", or `none`"
   bool whole = false;                            ///< only whole numbers are allowed
-  std::span<const std::string_view> terms = {};  ///< names that expressions may use; empty: none
+  std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML
   std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;

@@ -98,8 +98,8 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
            fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
                                      "size would be {:.4g} d.",
                                      in_m ? "d" : "m", in_other)
-           : fraction  ? fmt::format("Set `nominal_packing_fraction: {:.10g}`. The cell then "
-                                      "fits the packing if height_over_width does not change.",
+           : fraction  ? fmt::format("Write `nominal_packing_fraction: {:.10g}`. With this "
+                                      "height_over_width, it gives the cell this width and depth.",
                                      *fraction)
                        : "Use a file with a box of another size.");
   }
@@ -122,8 +122,8 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   const Start& start = scale.start;
   const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
   if (start.experiment == manifest.experiment && scale_name(at_scale) == scale_name(scale.name)) {
-    refuse(manifest.file, start.at, "start", "names the experiment and the scale of this manifest",
-           "", "Give the manifest another `experiment`.");
+    refuse(manifest.file, start.at, "start", "refers to the experiment and scale of this manifest",
+           "", "Choose another `experiment` for this manifest.");
   }
   const auto is_it = [&](const Membership& m) {
     return m.newest && m.place.experiment == start.experiment &&
@@ -204,8 +204,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest sets {}", counted(count, "grain"), p.grains), "",
-           fmt::format("Set `grains: {}`.", count));
+           fmt::format("has {}, but the manifest gives {}", counted(count, "grain"), p.grains), "",
+           fmt::format("Write `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p, limit);

@@ -39,9 +39,9 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the value is selected. Parts of its display name `name` also count as its parts.
-  /// Texts with equal keys are alternatives: for the texts "a=1", "a=2" and "b=3", the value must
-  /// have b=3, and a=1 or a=2. True if no texts were given.
+  /// Whether the value is selected. The parts of `name`, the value's display name, count as its own
+  /// parts. Of the texts with one key, at least one must fit: for "a=1", "a=2" and "b=3", the
+  /// value must have b=3, and a=1 or a=2. Returns true if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that has matched no value so far, or null.
   const std::string* unfound() const;

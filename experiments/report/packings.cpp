@@ -108,8 +108,8 @@ bool has_more_digits(const Measure& measure) {
          measure.name == "crystallite";
 }
 
-/// Sets the sizes of each run from its newest readable checkpoint. Removes runs without a readable
-/// checkpoint.
+/// Sets the number of wall grains and the bytes per packing of each run, from its newest readable
+/// checkpoint. Removes runs without a readable checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   const auto all = all_measures(MeasureKind::grains);
   const auto fields = static_cast<std::size_t>(
@@ -174,7 +174,7 @@ json facts_of(const PackingMeasures& measures, double theta) {
   return facts;
 }
 
-/// All packings of a run have the same ranges, so that colours can be compared between packings.
+/// The packings of a run share their value ranges, so that their colours can be compared.
 std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains,
                                     const RunFacts& run) {
   std::vector<GrainField> fields;

@@ -95,7 +95,7 @@ void check_beginning(const Store& store, const Stage& stage, const std::set<std:
     }
     throw StoreDamaged(fmt::format(
         "event {} started this run from checkpoint {:.12}, which is not the state of run {:.12} "
-        "from which it must start; do not use the results, and compute this run in a new store",
+        "where this run must start; do not use the results, and compute this run in a new store",
         event.seq, *from, stage.parent));
   }
 }
@@ -316,7 +316,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // no source can predict it
+  const std::uint64_t seed = seed_of(store.head());  // the sources cannot predict it
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

@@ -283,7 +283,7 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(job);
     if (was_held && stage.state == StageState::failed) {
-      note(job, &CampaignResult::failed, stage.error);  // the stage would fail here too
+      note(job, &CampaignResult::failed, stage.error);  // failed elsewhere, would fail here too
       return JobState::ended;
     }
     progress_.begin(job);

@@ -175,7 +175,7 @@ class Measuring {
   std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
   std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
   std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // one per checkpoint in distinct_, written by one thread
+  std::vector<Results> results_;  // one per checkpoint in distinct_, each written by one thread
   std::mutex mutex_;              // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;

@@ -24,7 +24,7 @@ using ReadProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 struct MeasureOptions {
   std::size_t workers = 1;
-  ReadProgress report = {};  ///< called after each computed checkpoint
+  ReadProgress report = {};  ///< called after each measured checkpoint
   /// Names of further providers. Whenever a checkpoint is analysed, their results are also computed
   /// and cached for later calls. These providers must not need earlier checkpoints.
   std::vector<std::string> also = {};
@@ -59,8 +59,8 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);
 
-/// Analyses a stored checkpoint. Throws StoreDamaged, which names checkpoint and run, if the state
-/// cannot be analysed: this program never records such a state.
+/// Analyses a stored checkpoint. Throws StoreDamaged, with the checkpoint and the run, if the state
+/// cannot be analysed, because this program never records such a state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

@@ -40,7 +40,7 @@ struct Outlook {
   /// Whether an `until` that was not reached yet may end the stage before `end`.
   bool may_end_early = false;
   /// How `until` ended the stage at its last checkpoint, as RunCompleted records it; null if no
-  /// `until` did. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
+  /// `until` ended it. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
   /// "memberships"}.
   nlohmann::json ended = nullptr;
   /// The first checkpoint whose measures are unknown and may fulfil an `until`.
@@ -181,7 +181,7 @@ struct Work {
   double longest_seconds = 0;                ///< largest value of `chain` [s]
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< whether all rates were measured
-  std::map<std::string, double> chain = {};  ///< time [s] of a stage and its parents, by id
+  std::map<std::string, double> chain = {};  ///< time [s] of a stage and its parents, by stage id
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);

@@ -117,11 +117,11 @@ struct Beginning {
   Cell cell;
   State state;
   std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
-  std::string parent_checkpoint = {};         ///< SHA-256 if the state is from the parent, or ""
+  std::string parent_checkpoint = {};         ///< SHA-256; "" if the state is not the parent's
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
-/// permit this, or if this build cannot recompute the file bit for bit.
+/// permit this, or if this program cannot reproduce the bits.
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options);
 
 /// The parent's checkpoint at `start_cycle`, with noise added to the positions.

@@ -53,7 +53,7 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 bool is_done(const Store& store, const Stage& stage);
 
 /// A shear may start from a recorded state of another shear, its parent. Returns the parent's
-/// checkpoint at `start_cycle`, recorded or pruned; empty if this cycle was never recorded.
+/// checkpoint at `start_cycle`, even if its file is pruned; empty if it was never recorded.
 std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 

@@ -53,7 +53,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// A file in memory that collects the output of a program, whatever its length.
+// A file in memory that collects the output of a program, of any length.
 Descriptor memory_file() {
   Descriptor file(memfd_create("output", MFD_CLOEXEC));
   if (!file.valid())

@@ -217,7 +217,7 @@ TEST_F(DrawFigure, CurvesByAKeyHaveItsLabelsAndPoolNoOtherKey) {
   };
   EXPECT_EQ(refusal(wanted_figures(store_, {"mean"}).figures.at(0)),
             "figure mean would average over the values of amplitude_rad that experiment tiny "
-            "sweeps; remove its `by` to draw a curve for each variant");
+            "sweeps; remove the key `by` of the plot to draw a curve for each variant");
   const std::string of_supplement = refusal({*find_figure("C"), "tiny"});
   EXPECT_TRUE(has(of_supplement, "the values of fluid"));
   draw("own", "each");

@@ -143,7 +143,7 @@ TEST_F(Outputs, AScaleOfAForgedStoreNamesNoFolder) {
       body["membership"]["scale"] = scale;
     }))(path("shearcell-store"));
     const auto before = listing();
-    expect(4, {"figures", "S2", "--out", "in"}, {"a scale of the store", "cannot name a folder"});
+    expect(4, {"figures", "S2", "--out", "in"}, {"a scale of the store", "cannot be a folder"});
     for (const std::string& file : listing()) {
       EXPECT_TRUE(before.contains(file) || file.ends_with("derived.sqlite")) << file;
     }

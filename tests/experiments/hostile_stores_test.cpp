@@ -158,7 +158,7 @@ std::vector<Case> damaged_tables() {
       reported("terminal_escapes_in_a_figure", "figures S2", 4,
                sql("UPDATE memberships SET scale = char(27) || '[2J';"
                    "UPDATE newest SET scale = char(27) || '[2J'"),
-               "'\\x1b[2J', which cannot name a folder"),
+               "'\\x1b[2J', which cannot be a folder name"),
       reported("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
                "S2 ("),
       reported("measures_nested_deeply", "figures S2", 0,

@@ -64,7 +64,7 @@ TEST(BadFile, IsRejected) {
     const char* says;
   };
   for (const auto& [path, says] :
-       {Case{folder, ": is a directory. Name a file in this directory."},
+       {Case{folder, ": is a directory. Choose a file in this directory."},
         Case{at("none"), ": there is no such file"}, Case{at("file/none"), ": "},
         Case{at("pipe"), ": is not a regular file"}, Case{at("empty"), "the manifest is empty"},
         Case{at("large"), "is larger than 1048576 bytes"},

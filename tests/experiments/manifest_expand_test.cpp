@@ -219,7 +219,7 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
             "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more than the number of seeds of the "
             "scale (got 3). "
-            "State `seeds: 3`, or list this many seeds.");
+            "Write `seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {

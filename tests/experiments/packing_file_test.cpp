@@ -112,7 +112,7 @@ const std::vector<BadPacking> kBad = {
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
      "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
-     "a.xyz:4:1: the file ends after 2 of the 3 grains announced in line 1. Write the whole file, "
+     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Use a complete file, "
      "or "
      "correct the number."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
@@ -139,8 +139,8 @@ const std::vector<BadPacking> kBad = {
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: the box has length -9 along y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers, the edges of the box. "
-     "Origin needs 3 numbers, its lower corner."},
+     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers: the edges of the box. "
+     "Origin needs 3 numbers: the lower corner of the box."},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
      "a.xyz:2:1: the box is 2 d deep in z. At least 3 d are needed. Is the unit of lengths right?"},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
@@ -151,7 +151,7 @@ const std::vector<BadPacking> kBad = {
      "a.xyz: the packing is 3e+09 d long. At most 100000 d are allowed. Is the unit of lengths "
      "right?"},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
-     "a.xyz:4:1: the grain is at the position of the grain in line 3. " + kDeep},
+     "a.xyz:4:1: the grain has the same position as the grain in line 3. " + kDeep},
     {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
      "a.xyz:4:1: the grain overlaps the grain in line 3 by 0.5 d. " + kDeep},
     {"OverlappingAcrossTheBoundary", "a.xyz", xyz(kLattice, "A 1 1 0.25\nA 1 1 8.75\n"),
@@ -173,10 +173,10 @@ const std::vector<BadPacking> kBad = {
     {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
      "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
-     "a.data:3:1: states 2 atoms, but the file has 1. Write the whole file, or correct the "
+     "a.data:3:1: states 2 atoms, but the file has 1. Use a complete file, or correct the "
      "number."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
-     "a.data:3:1: states 2 atoms, but the file has 0. Write the whole file, or correct the "
+     "a.data:3:1: states 2 atoms, but the file has 0. Use a complete file, or correct the "
      "number."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
      "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "
@@ -195,20 +195,20 @@ const std::vector<BadPacking> kBad = {
      "a.data:16:1: atom 2 has no velocity. Write one velocity for each atom, or leave out the "
      "section Velocities."},
     {"DataVelocityOfNone", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n"),
-     "a.data:17:1: atom 3 has two velocities, or no position. Write the whole file."},
+     "a.data:17:1: atom 3 has two velocities, or no position. Use a complete file."},
     {"DataNotANumber", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3,5\n"),
      "a.data:12:9: z: is not a number (got 3,5). Write a decimal point: 3.5."},
     {"DumpScaled", "a.dump", dump("id type xs ys zs", "1 1 0.1 0.1 0.1\n2 1 0.3 0.3 0.3\n"),
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Write the "
-     "whole file, or correct the number."},
+     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Use a complete file, "
+     "or correct the number."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
      "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
      "correct the number."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
-     "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
+     "a.dump:2:1: the dump ends before its atoms. Use a complete dump."},
 };
 
 class PackingFileBad : public testing::TestWithParam<BadPacking> {};
@@ -263,7 +263,7 @@ const std::string kLammpsUnits =
     " Lengths must be in m (units si) or in the unit of the manifest (units lj).";
 const std::string kVelocities =
     "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or remove this "
-    "column. Velocities are in the unit of the lengths per second.";
+    "column. Velocities must be in units of length per second.";
 const std::string kOneUnit = "Write all lengths in m (x_m) or all in d (x_d).";
 const std::string kUpright =
     "Use a rectangular box. Write the state of a sheared cell at the end of a cycle.";
@@ -354,7 +354,7 @@ const std::vector<Parts> kParts = {
      ":3:1: the diameter is 0.003 d. It would be right in m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
-     ":5:7: gives the box by its edges, which cannot be read (got avec). Write the box as xlo "
+     ":5:7: gives the box by edge vectors, which cannot be read (got avec). Write the box as xlo "
      "xhi, ylo "
      "yhi and zlo zhi."},
     {"a.data", data("0 9 xlo xhi\n0 9 ylo yhi\n", kAtoms),

@@ -318,7 +318,7 @@ TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
   forged.start_stage(run.id, {}, std::nullopt, states.at(2).sha256);
   const auto findings = check_runs(forged);
   ASSERT_EQ(findings.size(), 1U);
-  EXPECT_NE(findings[0].message.find("from which it must start"), std::string::npos);
+  EXPECT_NE(findings[0].message.find("where this run must start"), std::string::npos);
 }
 
 TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
@@ -345,7 +345,7 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
       << "what acts on the grains may change";
   EXPECT_NE(refusal(tiny_manifest("", "start: {experiment: tiny, seed: 1, cycle: 1}\n"))
-                .find("start: names the experiment and the scale of this manifest."),
+                .find("start: refers to the experiment and scale of this manifest."),
             std::string::npos);
 }
 
@@ -475,7 +475,7 @@ TEST_F(FromAFile, TheIdHoldsTextUnitAndWhetherItSettles) {
 TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
   EXPECT_NE(
-      refusal_of(manifest("")).find("has 2 grains, but the manifest sets 300. Set `grains: 2`."),
+      refusal_of(manifest("")).find("has 2 grains, but the manifest gives 300. Write `grains: 2`."),
       std::string::npos);
   const std::string two =
       "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"

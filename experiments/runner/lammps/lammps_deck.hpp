@@ -37,8 +37,8 @@ std::string lammps_data(const Particles& particles, std::string_view title);
 /// in the same folder, LAMMPS writes one more frame and ends.
 std::string lammps_deck(const LammpsTask& task);
 
-/// An input script for users, with comments. The script reads the file `data` and continues from
-/// it, in the task's units, which must be SI. It computes one cycle, or the number of steps in its
+/// An input script for users, with comments. The script continues from the state in the file
+/// `data`. The task's units must be SI. It computes one cycle, or the number of steps in its
 /// variable `steps`, and writes NAME.lammpstrj and NAME_end.dump. The task's `end`, `stride` and
 /// `check_every` have no effect.
 std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
