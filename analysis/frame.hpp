@@ -98,9 +98,9 @@ class NumberColumn {
   Evaluate evaluate_;  // empty if text_ is a single name
 };
 
-/// Whether a column has one number per run: it names neither the cycle nor a checkpoint's measure.
+/// Whether a column has one number per run: it uses neither the cycle nor a checkpoint's measure.
 bool is_of_run(std::string_view column);
-/// Whether a column names a measure of a whole run. Runs of one variant differ in such a measure.
+/// Whether a column is a measure of a whole run. Its value differs between runs of one variant.
 bool is_measured_of_run(std::string_view column);
 /// Names of the providers that compute the measures in the columns.
 std::vector<std::string> providers_of(std::span<const std::string> columns);

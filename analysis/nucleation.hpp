@@ -35,7 +35,7 @@ struct DensityBin {
   double low = 0;
   double high = 0;
   double density = 0;           ///< P; its integral over [0, 1] is 1
-  std::optional<double> error;  ///< by bootstrap, since one crystallite is seen many times
+  std::optional<double> error;  ///< by bootstrap, because one crystallite is seen at many cycles
 };
 
 /// Density of all positions together; empty without positions. Each group has the positions of one

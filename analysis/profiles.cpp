@@ -108,7 +108,7 @@ json core_of(const MeasureInput& input) {
                                    std::numeric_limits<double>::infinity())}};
 }
 
-/// Crystalline percentage against the window of q6; the other criteria do not change.
+/// Crystalline percentage as a function of the window of q6; the other criteria do not change.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
   MeasuredCurve found;
   for (int n = 1; n <= 20; ++n) {
@@ -127,7 +127,7 @@ MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
   return found;
 }
 
-/// Size of the largest crystallite against the connecting face. Computes the Voronoi cells again.
+/// Size of the largest crystallite as a function of the smallest face that connects two grains.
 MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
@@ -181,14 +181,14 @@ std::vector<Provider> profile_providers() {
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains against the upper limit of |q6 - q6 of a lattice|", curve,
+                     "crystalline grains for each upper limit of |q6 - q6 of a lattice|", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains against the lower limit of phi_local", curve,
+                     "crystalline grains for each lower limit of phi_local", curve,
                      "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
-                     "grains in the largest crystallite against the smallest connecting face, as a "
-                     "fraction of the mean cell surface",
+                     "grains in the largest crystallite, as a function of the smallest face that "
+                     "connects two grains (area divided by the mean cell surface)",
                      curve, "connecting_face", "1"}},
        .compute = sensitivity}};
 }

@@ -80,7 +80,7 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Updates `fastest` if the bound of grain g exceeds `least` and the bound in `fastest`. Cheaper
+// Updates `fastest` if the bound of grain g exceeds both `least` and `fastest.bound`. Cheaper
 // estimates exclude nearly all grains before the eigenvalues are computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;

@@ -41,7 +41,7 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   if (variants.size() > 1) estimate = censored_slope(values, at, stated.level);
   Verdict verdict =
       decide(stated, words_of_slope(claim), estimate, values.size(),
-             fmt::format("{} of {} runs, in {}, have a value", values.size() - censored,
+             fmt::format("{} of {} runs in {} have a value", values.size() - censored,
                          runs.size(), counted(variants.size(), "variant")),
              std::move(entered));
   verdict.censored = censored;
@@ -52,7 +52,7 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 
 const Estimator slope_against = {
     .name = "slope",
-    .meaning = "slope of the number against the first value of `against` in each run",
+    .meaning = "slope of one number per run as a function of the run's first value of `against`",
     .key = "against",
     .of_run = true,
     .over_variants = true,

@@ -198,7 +198,7 @@ struct VariantCheck {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
-               "State `start: {experiment: NAME}`, or leave it out.");
+               "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
     }
@@ -432,7 +432,7 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// Number of cycles between a value of the column and the earliest checkpoint that it requires.
+/// Largest number of cycles between a value in the column and a checkpoint needed to compute it.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -685,7 +685,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
-            ? format("{}: primary: '{}' is a statement. Write the claim's id, {}.", manifest.file,
+            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.", manifest.file,
                      primary, found->second)
             : format("{}: primary: no claim has the statement '{}'. Write one of the ids: {}.",
                      manifest.file, primary, fmt::join(ids, ", ")));

@@ -60,7 +60,7 @@ StageInputs read_stage(const nlohmann::json& resolved);
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 
-/// The engine that a record states, even if other parts of the record are damaged.
+/// The engine given in a record, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
 /// JSON without whitespace, with keys sorted by their bytes and the shortest digits that read back

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the lines of a manifest that state a run, and the values that the command line replaced.
+// Finds the lines of a manifest that define a run, and the values that the command line replaced.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,10 +14,10 @@ namespace shearcell {
 struct ManifestLine {
   std::string key;   ///< "experiment", "scales.desk", "sweep.grid.fluid", "seeds"
   int line = 0;      ///< counted from 1
-  std::string text;  ///< the line, without surrounding blanks, fit for a message
+  std::string text;  ///< the line, without surrounding blanks, safe to print
 };
 
-/// The lines that state a run and its figure: experiment, scale, the value of each key in `swept`,
+/// The lines that define a run and its figure: experiment, scale, the value of each key in `swept`,
 /// cycles, `settle`, seeds, `checkpoints`, `until`, the label of the variant, and the plots and
 /// claims of `figure`. Empty if this program cannot read the manifest.
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,

@@ -62,7 +62,7 @@ class ProblemList {
 
   std::size_t size() const { return problems_.size(); }
 
-  /// Throws ManifestError, with the problems in the order of the text, if there are any.
+  /// Throws ManifestError if a problem was added. It lists the problems in the order of the text.
   void raise() const;
 
  private:

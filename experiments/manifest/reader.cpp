@@ -147,7 +147,7 @@ void fields(Scale& scale, const auto& visit) {
   visit(
       scale.seeds,
       {.name = "seeds",
-       .doc = "`6` means the seeds 1 to 6. `2001-2040` and `[1-6, 9]` state other seeds. Default 1",
+       .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
        .example = "6"});
   visit(scale.checkpoints,
         {.name = "checkpoints",
@@ -243,8 +243,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "name of a figure. Plots that state the same figure are its panels (a), (b), ..., "
-                "with one caption. Claims can state it too. Default: a separate figure"});
+         .doc = "name of a figure. Plots with the same `figure` are panels (a), (b), ... of one "
+                "figure. A claim can also have this key. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
@@ -347,7 +347,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "verdict does not use `error`, so state a margin that includes the error",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
-                           .doc = "with `published`: swept values that select the variant",
+                           .doc = "with `published`: swept values of the compared variant",
                            .example = "{fluid: still}"});
   visit(claim.margin,
         {.name = "margin",
@@ -680,7 +680,7 @@ struct Reader {
     if (field == nullptr) return reject_unknown(in, parameters());
     if (field != &cycle && !field->identity.distinguishes_runs()) {
       return reject_key(in, "does not distinguish runs",
-                        "Name a parameter that distinguishes runs.");
+                        "Use a parameter that distinguishes runs, such as `fluid`.");
     }
     if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
     if (in.kind == Node::Kind::list) {
@@ -791,8 +791,8 @@ struct Reader {
       value = text;
     } else {
       reject_type(in, "a name",
-                  fmt::format("It takes ASCII letters, digits, - and _, at most {} of them, and "
-                              "does not begin with -.",
+                  fmt::format("Use at most {} characters: ASCII letters, digits, - and _. Do not "
+                              "begin with -.",
                               kLongestName));
     }
   }
@@ -1375,7 +1375,7 @@ struct Reader {
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "State the published number.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
-              "State `at_cycle` or `cycles`.");
+              "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
               "Use `between` for two variants.");
     claim.relative = relative != nullptr;
@@ -1400,7 +1400,7 @@ struct Reader {
               "cannot be used with a published value of 0", "Use `margin`.");
   }
 
-  // Reports ids in `primary` that no claim of this manifest or of its figures has.
+  // Reports ids in `primary` that belong to no claim of this manifest or of its figures.
   void check_primary(const Node& document, const Manifest& manifest) {
     std::vector<string> known;
     for (const ClaimSpec& claim : manifest.claims) known.push_back(claim.id);

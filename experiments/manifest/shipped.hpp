@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The figures of the supplement. analysis/figures/ computes some of them. Shipped manifests, whose
-// texts are part of the program, state the others. So `figures: [S2]` in any manifest means the
+// texts are part of the program, define the others. So `figures: [S2]` in any manifest means the
 // plots and claims of drag.yaml.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace shearcell {
 
-/// The manifests that state figures of the supplement, read by read_manifest().
+/// The manifests that define figures of the supplement, read by read_manifest().
 std::span<const Manifest> shipped_manifests();
 
-/// All figures of the supplement: first those computed in C++, then those stated in manifests.
+/// All figures of the supplement: first those computed in C++, then those defined in manifests.
 std::span<const Figure> all_figures();
 
 /// The figure with this name ("S2"), or null.

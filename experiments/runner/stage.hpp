@@ -61,8 +61,8 @@ std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& 
 struct Divergence {
   std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
   std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
-  /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
-  /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
+  /// What differs: "position", "velocity", "wall_height" or "wall_velocity" or, if the states are
+  /// equal, "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest difference in `field` [units in the last place]
