@@ -52,9 +52,9 @@ using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
-  double logarithm = 0;    ///< ln L, up to a constant
-  double score = 0;        ///< d ln L / d exponent; decreases as the exponent grows
-  double information = 0;  ///< -d score / d exponent
+  double logarithm = 0;                    ///< ln L, up to a constant
+  double score = 0;                        ///< d ln L / d exponent; decreases as the exponent grows
+  double information = 0;                  ///< -d score / d exponent
   std::map<std::string, double> score_of;  ///< score of each packing
 };
 

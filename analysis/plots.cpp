@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets colour and symbol if the series states them.
+/// Sets the colour and symbol that are given in the series entry.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest states the colour of a curve, no other curve may have this colour.
+  // If a manifest sets the colour of a curve, no other curve may have this colour.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {

@@ -33,8 +33,8 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.0667, 13, 40},
     PublishedAmplitude{
         0.0833, 16, 15,
-        "in studies with 8 runs, about as many as in the supplement, the critical size may be above "
-        "or below 12 grains, the lower limit of the margin; more of our runs do not change this"},
+        "in studies with 8 runs, about as many as in the supplement, the critical size may be "
+        "above or below 12 grains, the lower limit of the margin; more of our runs do not help"},
     PublishedAmplitude{
         0.1, 20, 1,
         "our critical size, 25.3 grains from 40 runs, is near 25 grains, the upper limit of the "

@@ -46,7 +46,7 @@ struct Membership {
     field("experiment", place.experiment), field("scale", place.scale);
     field("variant", place.variant), field("labels", place.swept), field("seed", place.seed);
     field("manifest", place.manifest), field("checkpoint_every", ask.checkpoint_every);
-    // Written only if the manifest states them.
+    // Written only if the manifest sets them.
     field("until", ask.until, true), field("checkpoint_phases", ask.checkpoint_phases, true);
   }
 };
@@ -83,7 +83,7 @@ inline bool has_ended(StageState state) {
   return state == StageState::completed || state == StageState::failed;
 }
 
-/// A stage as a manifest states it or as its events describe it.
+/// A stage as a manifest defines it or as its events describe it.
 struct Stage {
   std::string id;                                      ///< 64 hex digits
   std::string parent;                                  ///< id of the stage before it; "" if none

@@ -44,7 +44,7 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< lines of the manifest that apply to the run
   nlohmann::json overrides;              ///< as overrides_of() returns them
-  States states;                         ///< as the figure's record states them
+  States states;                         ///< as in the figure's record
   std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
   std::string fault;                     ///< how the log differs from `states`; "" if both agree
 };
@@ -53,7 +53,7 @@ struct FigureLineage {
   FigureRecord record;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest states the plots
+  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest defines the plots
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< of the inputs, without duplicates

@@ -567,7 +567,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                        : "`cycles`, and `phases` of `checkpoints`"));
   }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // checked only in the manifest that states the plot
+    if (plot.listed) break;  // checked only in the manifest that defines the plot
     if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const bool of_another = std::ranges::any_of(
@@ -685,8 +685,8 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
-            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.", manifest.file,
-                     primary, found->second)
+            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.",
+                     manifest.file, primary, found->second)
             : format("{}: primary: no claim has the statement '{}'. Write one of the ids: {}.",
                      manifest.file, primary, fmt::join(ids, ", ")));
   }
@@ -710,7 +710,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not state a key that it sweeps. `base` may, because a sweep overrides `base`.
+    // A scale must not set a key that it sweeps. `base` may, because a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
@@ -723,7 +723,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty() && scale.looks.back() > seeds) {
       problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
                    "needs more seeds than the scale has", std::to_string(scale.looks.back()),
-                   format("State `seeds: {}`, or list this many seeds.", scale.looks.back()));
+                   format("Write `seeds: {}`, or list this many seeds.", scale.looks.back()));
     }
     const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
     for (const Setting& number :
@@ -731,7 +731,7 @@ void check_variants(const Manifest& manifest) {
       if (number.value.get<std::uint64_t>() <= seeds) continue;
       problems.add(number.at, path + ".sweep.zip.seeds",
                    "is more than the number of seeds of the scale", number.value.dump(),
-                   format("State `seeds: {}`, or list this many seeds.", number.value.dump()));
+                   format("Write `seeds: {}`, or list this many seeds.", number.value.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,

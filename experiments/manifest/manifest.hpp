@@ -96,7 +96,7 @@ struct Sweep {
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest states a count, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;

@@ -267,12 +267,12 @@ class PackingReader {
       refuse_line(line_,
                   fmt::format("the file ends after {} of the {} grains that line {} states", found,
                               *count, at),
-                  "Write the whole file, or correct the number.");
+                  "Write the whole file, or correct the number of grains.");
     }
     refuse_line(
         grains_.rows[*count],
         fmt::format("the file continues after the {} grains that line {} states", *count, at),
-        "Keep one frame, or correct the number.");
+        "Keep one frame, or correct the number of grains.");
   }
 
   Box& box() {
@@ -436,7 +436,7 @@ class PackingReader {
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
                   fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
-                  "Write the whole file, or correct the number.");
+                  "Write the whole file, or correct the number of atoms.");
     }
   }
 

@@ -144,11 +144,10 @@ void fields(Scale& scale, const auto& visit) {
                 "noise for each seed, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
-  visit(
-      scale.seeds,
-      {.name = "seeds",
-       .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
-       .example = "6"});
+  visit(scale.seeds,
+        {.name = "seeds",
+         .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
+         .example = "6"});
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
@@ -682,7 +681,7 @@ struct Reader {
       return reject_key(in, "does not distinguish runs",
                         "Use a parameter that distinguishes runs, such as `fluid`.");
     }
-    if (where.contains(in.key)) return reject_key(in, "is stated twice", "State it once.");
+    if (where.contains(in.key)) return reject_key(in, "appears twice", "Write it once.");
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {

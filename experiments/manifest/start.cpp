@@ -98,7 +98,7 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
            fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
                                      "size would be {:.4g} d.",
                                      in_m ? "d" : "m", in_other)
-           : fraction  ? fmt::format("State `nominal_packing_fraction: {:.10g}`. With this "
+           : fraction  ? fmt::format("Write `nominal_packing_fraction: {:.10g}`. With this "
                                       "height_over_width, it gives the cell this width and depth.",
                                      *fraction)
                        : "Use a file with a box of another size.");
@@ -204,8 +204,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest states {}", counted(count, "grain"), p.grains), "",
-           fmt::format("State `grains: {}`.", count));
+           fmt::format("has {}, but the manifest has {}", counted(count, "grain"), p.grains), "",
+           fmt::format("Write `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p, limit);

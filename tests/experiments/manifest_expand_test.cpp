@@ -219,7 +219,7 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
             "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more than the number of seeds of the "
             "scale (got 3). "
-            "State `seeds: 3`, or list this many seeds.");
+            "Write `seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {
@@ -250,10 +250,9 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
             "smoke, paper.");
-  EXPECT_EQ(
-      message(manifest, {.scale = "smoke", .seeds = 2}),
-      "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or state a "
-      "count.");
+  EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
+            "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or give a "
+            "number of seeds.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");

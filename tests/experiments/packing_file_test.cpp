@@ -114,7 +114,7 @@ const std::vector<BadPacking> kBad = {
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
      "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Write the whole file, "
      "or "
-     "correct the number."},
+     "correct the number of grains."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
      "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
      "correct "
@@ -203,10 +203,10 @@ const std::vector<BadPacking> kBad = {
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
      "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
-     "or correct the number."},
+     "or correct the number of grains."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
      "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
-     "correct the number."},
+     "correct the number of grains."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Write the whole dump."},
 };
