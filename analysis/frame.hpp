@@ -33,7 +33,7 @@ struct FrameRun : Run {
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far; its checkpoint may be missing in the frame
+  double end = 0;  ///< last cycle of the run so far; the frame may lack its checkpoint
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };

@@ -660,7 +660,7 @@ std::vector<Series> series_of_runs(const Panel& panel) {
 }
 
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
-/// ends where the first run ends, and each other run continues as a thin line. Returns whether the
+/// ends where the first run ends, and the longer runs continue as thin lines. Returns whether the
 /// runs end at different cycles.
 bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
                  std::vector<Series>& single) {
@@ -804,7 +804,7 @@ void require_different_titles(std::span<const Curve> curves) {
     if (titles.insert(plain_text(curve.title)).second) continue;
     throw AnalysisError(
         "two curves of a figure have the label '" + plain_text(curve.title) +
-        "'; give each curve its own label, in the `series` of its plot or in `labels`");
+        "'; give the curves different labels, in `series` of the plot or in `labels`");
   }
 }
 

@@ -29,7 +29,7 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   });
 }
 
-/// Throws ManifestError unless the variant has the cell, grains and units of the recorded run.
+/// Throws ManifestError if the variant's cell, grains or units differ from the recorded run's.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
   Parameters had;

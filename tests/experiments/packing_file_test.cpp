@@ -174,10 +174,10 @@ const std::vector<BadPacking> kBad = {
      "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
      "a.data:3:1: states 2 atoms, but the file has 1. Write the whole file, or correct the "
-     "number."},
+     "number of atoms."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
      "a.data:3:1: states 2 atoms, but the file has 0. Write the whole file, or correct the "
-     "number."},
+     "number of atoms."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
      "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "
      "or "
