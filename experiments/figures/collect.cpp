@@ -183,7 +183,7 @@ void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   });
 }
 
-/// Adds the experiment to the swept values, the variant and the name of the run.
+/// Adds the name of the experiment to the run's swept values, variant and name.
 void add_experiment(FrameRun& run) {
   const std::string& experiment = run.place.experiment;
   run.place.swept["experiment"] = experiment;
