@@ -22,9 +22,8 @@ struct Tried {
 };
 
 /// Finds `name` in the table of tried names. An entry with a remark also matches if `name` contains
-/// its words, as `coefficient_of_friction` contains `friction`. Of the matching entries, returns
-/// the first whose `instead` is in `candidates`, else the first with a remark. Null if none
-/// matches.
+/// its words (`coefficient_of_friction` contains `friction`). Of the matches, returns the first
+/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none matches.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name
