@@ -35,7 +35,7 @@ std::size_t column_number(const Table& table, const std::string& name) {
   return place + 1;
 }
 
-/// The number in a column, counted from 1. Empty for column 0 or a cell without a finite number.
+/// The number in column 1, 2, ... of a row. Empty for column 0 or a cell without a finite number.
 std::optional<double> number_in(const TableRow& row, std::size_t column) {
   if (column == 0) return std::nullopt;
   const TableCell& value = row.at(column - 1);

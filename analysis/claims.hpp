@@ -19,7 +19,7 @@ struct PublishedSpec {
   std::string label = {};  ///< text in the legend of a plot
   std::string source = {};
   std::optional<double> value = {};
-  double error = 0;                              ///< uncertainty of `value`; 0: not stated
+  double error = 0;                              ///< uncertainty of `value`; 0: not given
   std::vector<std::vector<double>> points = {};  ///< {x, y} or {x, y, error of y}
 };
 
@@ -29,7 +29,7 @@ struct ClaimSpec {
   std::string compare = {};  ///< the compared quantity, as in PlotSpec::y; must not be a curve
   /// The estimator's name; "": the other keys imply the estimator (estimator_of()).
   std::string estimator = {};
-  /// A claim has at most one of the next four members: `cycles` (first and last), `phi` (lower
+  /// A claim sets at most one of the next four members: `cycles` (first and last), `phi` (lower
   /// and upper end of a range), `reaches` (a value of the measure), or `against` (another column).
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::optional<std::array<double, 2>> phi = {};

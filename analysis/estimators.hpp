@@ -26,9 +26,9 @@ struct Scalar {
 };
 
 struct Estimator {
-  std::string_view name;      ///< its name in manifests
-  std::string_view meaning;   ///< its description in REFERENCE.md
-  std::string_view key = {};  ///< a key that its claims must have; "": no such key
+  std::string_view name;      ///< name of the estimator in manifests
+  std::string_view meaning;   ///< description in REFERENCE.md
+  std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
   /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants

@@ -33,7 +33,7 @@ struct FrameRun : Run {
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far; its checkpoint may be missing in the frame
+  double end = 0;  ///< last cycle of the run so far; the frame may lack its checkpoint
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -98,9 +98,9 @@ class NumberColumn {
   Evaluate evaluate_;  // empty if text_ is a single name
 };
 
-/// Whether a column has one number per run: it uses neither the cycle nor measures of checkpoints.
+/// Whether a column has one number per run: it uses neither the cycle nor a checkpoint's measure.
 bool is_of_run(std::string_view column);
-/// Whether a column names a measure of a whole run. Runs of one variant differ in such a measure.
+/// Whether a column is a measure of a whole run. Its value differs between runs of one variant.
 bool is_measured_of_run(std::string_view column);
 /// Names of the providers that compute the measures in the columns.
 std::vector<std::string> providers_of(std::span<const std::string> columns);

@@ -41,7 +41,7 @@ struct Share {
   double log_cycles;
   double log_size;
   double events;          ///< 0 or 1
-  Eigen::Vector3d terms;  ///< of ln c: 1, u and u^2 with u = (phi - onset phi) / phi_bin
+  Eigen::Vector3d terms;  ///< terms of ln c: 1, u, u^2; u = (phi - onset phi) / phi_bin
 };
 
 using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
@@ -52,9 +52,9 @@ using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
-  double logarithm = 0;    ///< up to a constant
-  double score = 0;        ///< d logarithm / d exponent; decreases as the exponent grows
-  double information = 0;  ///< -d score / d exponent
+  double logarithm = 0;                    ///< ln L, up to a constant
+  double score = 0;                        ///< d ln L / d exponent; decreases as the exponent grows
+  double information = 0;                  ///< -d score / d exponent
   std::map<std::string, double> score_of;  ///< score of each packing
 };
 
@@ -118,10 +118,10 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. They must include a cell that is larger than
-/// a cell with an event, and a cell that is smaller than a cell with an event, both at the
-/// amplitude and about the phi of the event. Cells are compared by N, since the number of interior
-/// grains differs slightly between seeds of one N.
+/// Whether the runs show how the rate depends on size. For some event there must be a smaller cell,
+/// and for some event a larger cell, at the same amplitude and nearly the same phi as the event.
+/// Cells are compared by N, because the number of interior grains differs slightly between seeds
+/// of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

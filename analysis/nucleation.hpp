@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where in the cell nuclei appear (supplement E), and how often: events per grain and cycle against
+// Where in the cell nuclei appear (supplement E), and how often: events per grain and cycle versus
 // phi, and how this rate grows with the number of grains. The supplement does not give the rate.
 // The rate tests whether nucleation is homogeneous: nucleation in the bulk is proportional to the
 // volume, and nucleation at walls is proportional to the area of the walls.
@@ -35,7 +35,7 @@ struct DensityBin {
   double low = 0;
   double high = 0;
   double density = 0;           ///< P; its integral over [0, 1] is 1
-  std::optional<double> error;  ///< by bootstrap, since one crystallite is seen many times
+  std::optional<double> error;  ///< by bootstrap, because one crystallite is seen at many cycles
 };
 
 /// Density of all positions together; empty without positions. Each group has the positions of one

@@ -349,7 +349,7 @@ std::string colour_of(const SeriesSpec& series) {
              : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
-/// Sets the colour and the symbol if the series entry gives them.
+/// Sets the colour and symbol that are given in the series entry.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (!stated.colour.empty()) colour = colour_of(stated);
   const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
@@ -660,7 +660,7 @@ std::vector<Series> series_of_runs(const Panel& panel) {
 }
 
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
-/// ends where the first run ends, and each other run continues as a thin line. Returns whether the
+/// ends where the first run ends, and the longer runs continue as thin lines. Returns whether the
 /// runs end at different cycles.
 bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
                  std::vector<Series>& single) {
@@ -804,7 +804,7 @@ void require_different_titles(std::span<const Curve> curves) {
     if (titles.insert(plain_text(curve.title)).second) continue;
     throw AnalysisError(
         "two curves of a figure have the label '" + plain_text(curve.title) +
-        "'; give each curve its own label, in the `series` of its plot or in `labels`");
+        "'; give the curves different labels, in `series` of the plot or in `labels`");
   }
 }
 

@@ -108,7 +108,7 @@ json core_of(const MeasureInput& input) {
                                    std::numeric_limits<double>::infinity())}};
 }
 
-/// Crystalline percentage as a function of the q6 window. The other criteria do not change.
+/// Crystalline percentage as a function of the window of q6; the other criteria do not change.
 MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
   MeasuredCurve found;
   for (int n = 1; n <= 20; ++n) {
@@ -127,7 +127,7 @@ MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
   return found;
 }
 
-/// Size of the largest crystallite versus smallest connecting face. Computes Voronoi cells again.
+/// Size of the largest crystallite as a function of the smallest face that connects two grains.
 MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
@@ -187,8 +187,8 @@ std::vector<Provider> profile_providers() {
                      "crystalline grains for each lower limit of phi_local", curve,
                      "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
-                     "grains in the largest crystallite for each lower limit of connecting faces, "
-                     "as a fraction of the mean cell surface",
+                     "grains in the largest crystallite, as a function of the smallest face that "
+                     "connects two grains (area divided by the mean cell surface)",
                      curve, "connecting_face", "1"}},
        .compute = sensitivity}};
 }

@@ -33,13 +33,13 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.0667, 13, 40},
     PublishedAmplitude{
         0.0833, 16, 15,
-        "in studies with 8 runs, about as many as the supplement has, the size may be above "
-        "or below 12 grains, the lower edge of the margin; more runs of ours do not change this"},
+        "in studies with 8 runs, about as many as in the supplement, the critical size may be "
+        "above or below 12 grains, the lower limit of the margin; more of our runs do not help"},
     PublishedAmplitude{
         0.1, 20, 1,
-        "our size, 25.3 grains in 40 runs, is near the upper edge of the margin, 25 grains; in "
-        "studies with 8 runs, about as many as the supplement has, the size may be above or "
-        "below this edge"}};
+        "our critical size, 25.3 grains from 40 runs, is near 25 grains, the upper limit of the "
+        "margin; in studies with 8 runs, about as many as in the supplement, the size may be above "
+        "or below this limit"}};
 /// Why the claim that the critical size grows with A cannot be decided.
 inline constexpr const char* growth_cannot_be_decided =
     "whether the size grows with A depends on the number of cycles over which crystallites are "

@@ -111,7 +111,7 @@ std::vector<Provider> run_providers() {
                      "mean kinetic energy of a grain of mass m"},
                     {"wall_force_imbalance", "1",
                      "load minus contact force on the moving wall, divided by P A_w"},
-                    {"raised_stiffness_N_per_m", "N/m", "raised spring constant in a stiffening"},
+                    {"raised_stiffness_N_per_m", "N/m", "spring constant, raised by a stiffening"},
                     {"force_residual_P_d2", "P d^2",
                      "largest net force on a grain in a stiffening, divided by P d^2"}},
        .compute = record_of,

@@ -85,9 +85,9 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 
 /// Estimates any statistic by the bootstrap, with the expanded percentile interval: T. C.
 /// Hesterberg, The American Statistician 69, 371 (2015). For a mean, this interval is as long as
-/// Student's interval. The statistic of a selection may be infinite. A selection whose statistic is
-/// NaN widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or if the
-/// statistic of all runs together is not finite.
+/// Student's interval. The statistic of a selection of runs may be infinite. A selection whose
+/// statistic is NaN widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or
+/// if the statistic of all runs together is not finite.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
                                      double level = confidence_level);
 

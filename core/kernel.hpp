@@ -140,8 +140,8 @@ struct PruneTask {
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number if a grain's distance from its
-/// `reference` exceeds its margin minus margin_loss.
+/// One implementation of the loops. `step` returns a positive number if a grain is farther from its
+/// `reference` than its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;

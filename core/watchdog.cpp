@@ -80,7 +80,7 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Stores the bound of grain g in `fastest` if it exceeds `least` and `fastest.bound`. Cheaper
+// Updates `fastest` if the bound of grain g exceeds both `least` and `fastest.bound`. Cheaper
 // estimates exclude nearly all grains before the eigenvalues are computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;

@@ -96,7 +96,7 @@ void DerivedCache::open() {
     throw MachineError(file_.string() + ": this database belongs to another program; remove it");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
-    throw StoreDamaged(file_.string() + ": the database has another layout version");
+    throw StoreDamaged(file_.string() + ": the database has an unknown layout version");
   }
   // Another program may have added a trigger. SQLite would run the trigger at every insert.
   sqlite::Statement odd(database, "SELECT 1 FROM sqlite_schema WHERE instr(?1, sql) = 0",

@@ -67,8 +67,8 @@ inline Handle creation_list(hid_t kind) {
 inline Handle make_group(const Handle& parent, const std::string& name, std::size_t links = 0,
                          std::size_t attributes = 0) {
   const Handle list = creation_list(H5P_GROUP_CREATE);
-  // By default HDF5 stores more than eight members in a heap. hdf5_read.cpp does not read heaps,
-  // and HDF5 1.10 writes uninitialized bytes into heaps.
+  // By default HDF5 uses a heap for more than eight links or attributes. hdf5_read.cpp does not
+  // read heaps, and HDF5 1.10 writes uninitialized bytes into heaps.
   if (links > 8) H5Pset_link_phase_change(list.get(), 65535, 0);
   if (attributes > 8) H5Pset_attr_phase_change(list.get(), 65535, 0);
   return {require(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, list.get(), H5P_DEFAULT),

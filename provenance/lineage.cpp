@@ -57,7 +57,7 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (host.is_object()) attempt.host = host;
-    // Early events do not state the bits_version. It was equal to their payload layout, 1 or 2.
+    // Early events have no bits_version. It was equal to the layout of their payload, 1 or 2.
     attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;
@@ -135,7 +135,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // Early events do not name the initial state, which was the parent's newest checkpoint.
+      // Early events do not contain the initial state, which was the parent's newest checkpoint.
       attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
       if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }

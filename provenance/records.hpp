@@ -46,7 +46,7 @@ struct Membership {
     field("experiment", place.experiment), field("scale", place.scale);
     field("variant", place.variant), field("labels", place.swept), field("seed", place.seed);
     field("manifest", place.manifest), field("checkpoint_every", ask.checkpoint_every);
-    // Written only if the manifest has these keys.
+    // Written only if the manifest sets them.
     field("until", ask.until, true), field("checkpoint_phases", ask.checkpoint_phases, true);
   }
 };

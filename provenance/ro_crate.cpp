@@ -335,7 +335,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
     written.push_back(crate_path_of_manifest(manifest.sha256));
     write_output(folder / written.back(), manifest.text);
   }
-  // The metadata describe the other files, so they are written last. Invalid UTF-8 is replaced.
+  // The metadata file describes the other files, so it is written last. Invalid UTF-8 is replaced.
   write_output(folder / kCrateMetadata,
                ro_crate_metadata(facts).dump(1, ' ', false, json::error_handler_t::replace) + '\n');
   written.emplace_back(kCrateMetadata);

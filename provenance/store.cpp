@@ -351,7 +351,7 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
   must_write();
   if (checkpoint.run != id) {
     throw std::invalid_argument(
-        fmt::format("run {}: the checkpoint names run '{}'", id, checkpoint.run));
+        fmt::format("run {}: the checkpoint belongs to run '{}'", id, checkpoint.run));
   }
   // The file is written before the event. A crash between the two writes leaves a file without an
   // event, never an event without its file.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exponent of the rate of nucleation against a number of grains (nucleation.hpp).
+// The exponent of the rate of nucleation as a function of a number of grains (nucleation.hpp).
 #include <fmt/format.h>
 
 #include "analysis/estimators.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The slope of one number per run against another column, by maximum likelihood (censored.hpp).
+// The slope of one number per run versus another column, by maximum likelihood (censored.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,11 +39,10 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   }
   std::optional<Estimate> estimate;
   if (variants.size() > 1) estimate = censored_slope(values, at, stated.level);
-  Verdict verdict =
-      decide(stated, words_of_slope(claim), estimate, values.size(),
-             fmt::format("{} of {} runs, in {}, have a value", values.size() - censored,
-                         runs.size(), counted(variants.size(), "variant")),
-             std::move(entered));
+  Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(),
+                           fmt::format("{} of {} runs in {} have a value", values.size() - censored,
+                                       runs.size(), counted(variants.size(), "variant")),
+                           std::move(entered));
   verdict.censored = censored;
   return verdict;
 }
@@ -52,7 +51,7 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 
 const Estimator slope_against = {
     .name = "slope",
-    .meaning = "slope of the number against the first value of `against` in each run",
+    .meaning = "slope of one number per run as a function of the run's first value of `against`",
     .key = "against",
     .of_run = true,
     .over_variants = true,

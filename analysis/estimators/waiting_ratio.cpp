@@ -110,7 +110,7 @@ const Estimator first_cycle_reached = {
 
 const Estimator waiting_ratio = {
     .name = "waiting_ratio",
-    .meaning = "log2 of the ratio of the cycles of the onset; only for `onset_size_cycle`",
+    .meaning = "log2 of the ratio of the two sides' onset cycles; only for `onset_size_cycle`",
     .of_run = true,
     .decide = decide_waits,
     .words = words_of_waits};

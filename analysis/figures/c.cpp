@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figure C: growth of crystallites. Probability to grow minus probability to shrink against size,
-// critical size against amplitude, and largest crystallite against phi. Supplement C, Figs. 4(a)
+// Figure C: growth of crystallites. Probability to grow minus probability to shrink versus size,
+// critical size versus amplitude, and largest crystallite versus phi. Supplement C, Figs. 4(a)
 // and 4(b) of the main text.
 #include <fmt/format.h>
 
@@ -198,7 +198,7 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
 }
 
 /// The critical size as a function of the number of cycles over which crystallites are followed.
-/// The supplement's critical size is shown at the number of cycles in the supplement, n_bin.
+/// The supplement's critical size is shown at the supplement's n_bin.
 Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);

@@ -14,8 +14,8 @@ MakeFigure figure_table1;
 // Growth of crystallites (C), and the places where crystallites nucleate (S7).
 MakeFigure figure_c, figure_s7;
 
-// The share of runs without an onset against the cycle, and the rate of nucleation against phi.
-// figure_nucleation_core: the rate for the grains at least 4 d from the walls.
+// The share of runs without an onset as a function of the cycle, and the rate of nucleation as a
+// function of phi. figure_nucleation_core: the rate for the grains at least 4 d from the walls.
 MakeFigure figure_nucleation, figure_nucleation_core;
 
 // The probability that a crystallite grows, from clones of recorded states.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures nucleation and nucleation_core: the share of runs without an onset against the cycle, and
-// the rate of nucleation against phi. The supplement has no figures of this kind.
+// Figures nucleation and nucleation_core: the share of runs without an onset versus the cycle, and
+// the rate of nucleation versus phi. The supplement has no figures of this kind.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -56,7 +56,7 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
 
 std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
-  if (path.empty()) return "is empty; name a file or folder";
+  if (path.empty()) return "is empty; give a file or folder";
   std::error_code ignored;
   // No output into a store's `objects` folder: `verify` would report it as a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();

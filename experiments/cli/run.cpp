@@ -37,7 +37,7 @@ struct RunOptions {
   std::uint64_t keep_every = 0;
   bool quiet = false;
   bool leave_failed = false;
-  bool task = false;    ///< whether this is a task of a job that `submit` queued
+  bool task = false;    ///< whether this process is a task of a job that `submit` queued
   std::string scratch;  ///< value of --scratch; see unfit_scratch()
 };
 

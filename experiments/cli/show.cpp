@@ -386,7 +386,7 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
           {"input_faults", list}};
 }
 
-// Compares a figure's file, and the checkpoints behind the figure, with the records of the store.
+// Compares a figure's file, and the checkpoints used for the figure, with the store's records.
 void show_published(const Store& store, const std::filesystem::path& file, bool list,
                     Context& context) {
   const auto found = find_published(store, file);

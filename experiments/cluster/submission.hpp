@@ -63,8 +63,8 @@ struct Proposal {
 };
 
 /// Leaves out a packing and all its runs if `busy` contains the packing or one of its runs. If
-/// `job.cpus` is 0, each task gets enough cores to compute all runs of the share with the most runs
-/// at once, but at most 16 cores (or `job.threads` if this is more than 16).
+/// `job.cpus` is 0, each task gets the cores that the share with the most runs needs to compute all
+/// its runs in parallel, but at most 16 cores (or `job.threads` if this is more than 16).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 

@@ -170,7 +170,7 @@ class Trajectory {
 }  // namespace
 
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames) {
-  // Must precede other calls of HDF5. Otherwise, if a write fails because the disk is full, HDF5
+  // Must be the first call of HDF5. Without it, if a write fails because the disk is full, HDF5
   // repeats the write at exit and crashes.
   H5dont_atexit();
   return

@@ -183,7 +183,7 @@ void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   });
 }
 
-/// Adds the experiment to the swept values, the variant and the name of the run.
+/// Adds the name of the experiment to the run's swept values, variant and name.
 void add_experiment(FrameRun& run) {
   const std::string& experiment = run.place.experiment;
   run.place.swept["experiment"] = experiment;
@@ -344,7 +344,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   }
   for (const Figure& figure : all_figures()) {
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
-    // If `names` is empty, table1 is drawn if a manifest lists figures of the supplement. A figure
+    // Without `names`, table1 is drawn if a manifest lists figures of the supplement, and a figure
     // that compares experiments is drawn if the store has at least two of these experiments.
     const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };

@@ -61,9 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// Returns a text with the program's version if this program, and not the manifest, defines the
-/// figure's plots, for example because the manifest only lists the figure's name. Returns "" if the
-/// manifest defines the plots or if C++ computes the figure.
+/// If the figure's plots come from this program and not from the manifest, returns a text with the
+/// program's version. For example, older manifests only name the figure. Returns "" if the manifest
+/// defines the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);

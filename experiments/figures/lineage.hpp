@@ -44,7 +44,7 @@ struct FigureInput {
   std::string manifest;                  ///< SHA-256
   std::vector<ManifestLine> lines;       ///< lines of the manifest that apply to the run
   nlohmann::json overrides;              ///< as overrides_of() returns them
-  States states;                         ///< as listed in the figure's record
+  States states;                         ///< as in the figure's record
   std::vector<std::string> checkpoints;  ///< SHA-256 of the files, from the log
   std::string fault;                     ///< how the log differs from `states`; "" if both agree
 };

@@ -53,8 +53,8 @@ bool pressure_lifts_column(const Parameters& parameters);
 
 struct TimeStep {
   double seconds = 0;
-  double over_contact_time = 0;     ///< ratio to the duration of a collision, pi/sqrt(2 k/m)
-  double over_stability_limit = 0;  ///< ratio to stability_limit_s()
+  double over_contact_time = 0;     ///< time step / duration of a collision, pi/sqrt(2 k/m)
+  double over_stability_limit = 0;  ///< time step / stability_limit_s()
 };
 
 TimeStep time_step(const Parameters& parameters, double seconds);
@@ -63,7 +63,7 @@ TimeStep time_step(const Parameters& parameters, double seconds);
 /// grains, and for pressure, mass and drag of the moving wall; false for the cell and the grains.
 bool may_differ_in_settling(std::string_view key);
 
-/// Whether a manifest may set the key to `auto`: steps_per_cycle and settle_time_step_s.
+/// True for steps_per_cycle and settle_time_step_s, which a manifest may set to `auto`.
 bool takes_auto(std::string_view key);
 
 /// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I,

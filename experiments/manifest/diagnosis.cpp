@@ -198,7 +198,7 @@ struct VariantCheck {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
         report(key, "has no effect without start",
-               "Write `start: {experiment: NAME}`, or leave it out.");
+               "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
     }
@@ -432,7 +432,7 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// Number of cycles between a value of the column and the earliest checkpoint that it requires.
+/// Largest number of cycles between a value in the column and a checkpoint needed to compute it.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -685,8 +685,8 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
-            ? format("{}: primary: '{}' is a statement. Write the claim's id, {}.", manifest.file,
-                     primary, found->second)
+            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.",
+                     manifest.file, primary, found->second)
             : format("{}: primary: no claim has the statement '{}'. Write one of the ids: {}.",
                      manifest.file, primary, fmt::join(ids, ", ")));
   }
@@ -710,7 +710,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not set a key that it sweeps. `base` may set it: a sweep overrides `base`.
+    // A scale must not set a key that it sweeps. `base` may, because a sweep overrides `base`.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -37,7 +37,7 @@ Node read_document(std::string_view text, std::string_view file);
 
 /// The remedy for a key that is a number: YAML reads `{amplitude_rad: 0,05}` as a map with key 05.
 inline constexpr const char* kDecimalPoint =
-    "If it follows a comma, write a decimal point, as in 0.05.";
+    "If the number follows a comma, write a decimal point, as in 0.05.";
 
 /// Throws ManifestError with the position if the text is not UTF-8, or has control characters other
 /// than tabs and line ends. `remedy` is for control characters.

@@ -62,7 +62,7 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   if (!stated.counted && *wanted > seeds.size()) {
     refuse(manifest.file, {}, "seeds",
            fmt::format("the manifest lists only {} seeds", seeds.size()), std::to_string(*wanted),
-           "List more seeds, or give a count.");
+           "List more seeds, or give a number of seeds.");
   }
   seeds.resize(*wanted);
   if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);

@@ -14,7 +14,7 @@ namespace shearcell {
 struct ManifestLine {
   std::string key;   ///< "experiment", "scales.desk", "sweep.grid.fluid", "seeds"
   int line = 0;      ///< counted from 1
-  std::string text;  ///< the line, without surrounding blanks, fit for a message
+  std::string text;  ///< the line, without surrounding blanks, safe to print
 };
 
 /// The lines that define a run and its figure: experiment, scale, the value of each key in `swept`,

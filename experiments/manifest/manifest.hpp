@@ -62,7 +62,7 @@ class ProblemList {
 
   std::size_t size() const { return problems_.size(); }
 
-  /// Throws ManifestError, with the problems in the order of the text, if there are any.
+  /// Throws ManifestError if a problem was added. It lists the problems in the order of the text.
   void raise() const;
 
  private:
@@ -96,7 +96,7 @@ struct Sweep {
   std::vector<SweepAxis> zip;
 };
 
-/// The seeds 1 to n if the manifest gives the number n, otherwise the seeds that it lists.
+/// The seeds 1 to n if the manifest gives a count, otherwise the seeds that it lists.
 struct Seeds {
   std::vector<std::uint64_t> values = {1};
   bool counted = true;

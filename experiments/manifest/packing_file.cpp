@@ -69,15 +69,15 @@ struct GrainTable {
   std::vector<Column> columns = {};
   const char* more = nullptr;  ///< name for additional values in a row; null: an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
-  double first_wall = 1;       ///< smallest kWall of a wall grain
+  double first_wall = 1;       ///< a grain with at least this kWall is a wall grain
   std::vector<string_view> rows = {};
 };
 
 struct Box {
-  string_view line;            ///< last line that gives a part of the box
+  string_view line;            ///< last line with a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge along another axis
-  /// Axes along which LAMMPS fits the box to the grains. The box in a dump may be outdated there.
+  /// Axes along which LAMMPS fits the box to the grains. A dump's box may be outdated along them.
   std::array<bool, 3> follows{};
 };
 
@@ -267,12 +267,12 @@ class PackingReader {
       refuse_line(line_,
                   fmt::format("the file ends after {} of the {} grains announced in line {}", found,
                               *count, at),
-                  "Use a complete file, or correct the number.");
+                  "Write the whole file, or correct the number of grains.");
     }
     refuse_line(
         grains_.rows[*count],
-        fmt::format("the file continues after the {} grains announced in line {}", *count, at),
-        "Keep one frame, or correct the number.");
+        fmt::format("the file continues after the {} grains that line {} states", *count, at),
+        "Keep one frame, or correct the number of grains.");
   }
 
   Box& box() {
@@ -436,7 +436,7 @@ class PackingReader {
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
                   fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
-                  "Use a complete file, or correct the number.");
+                  "Write the whole file, or correct the number of atoms.");
     }
   }
 
@@ -771,8 +771,8 @@ class PackingReader {
     if (fits || !holds(uses_, kDiameter)) return 1 / expected;
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
-            ? fmt::format("It would be right in {}. Is the unit right?", in_m ? "d" : "m")
-        : in_m ? fmt::format("It should be {:.6g} m. Change `diameter_m`, or scale the file.",
+            ? fmt::format("The number would be right in {}. Is the unit right?", in_m ? "d" : "m")
+        : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
                              expected)
                : "Lengths in d are divided by the diameter, so the diameter must be 1.";
     refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),

@@ -24,10 +24,10 @@ inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
 struct PackingFile {
-  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; z is inside the box, if any
+  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; if there is a box, z is inside
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
-  std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in our exports, the wall planes
-  LengthUnit unit = LengthUnit::d;           ///< unit of lengths in the file
+  std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in exports of this program, the wall planes
+  LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
   std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
 };
 

@@ -144,11 +144,10 @@ void fields(Scale& scale, const auto& visit) {
                 "with different noise for each seed, or the grains of a file",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
-  visit(
-      scale.seeds,
-      {.name = "seeds",
-       .doc = "`6` means the seeds 1 to 6. `2001-2040` and `[1-6, 9]` state other seeds. Default 1",
-       .example = "6"});
+  visit(scale.seeds,
+        {.name = "seeds",
+         .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
+         .example = "6"});
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
@@ -243,8 +242,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
-         .doc = "name of a figure. Plots with the same `figure` are its panels (a), (b), ..., "
-                "with one caption. Claims can have this key, too. Default: a separate figure"});
+         .doc = "name of a figure. Plots with the same `figure` are panels (a), (b), ... of one "
+                "figure. A claim can also have this key. Default: a separate figure"});
   visit(plot.panel, {.name = "panel",
                      .doc = "one panel for each value of this parameter, with equal axis ranges. "
                             "The panels are named NAME_1, NAME_2, ...",
@@ -252,8 +251,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.show,
         {.name = "show",
          .doc = "`mean` (default), `rms`: mean or root mean square, each with a standard error; "
-                "`traces`: every run as a line; `scatter`: every value as a point. If `y` is a "
-                "curve measure, or `x` has one value for each run, the CSV file has the means"});
+                "`traces`: every run as a line; `scatter`: every value as a point. Their CSV file "
+                "has all runs, but means if `y` is a curve or `x` has one value for each run"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(plot.xlabel,
         {.name = "xlabel",
@@ -345,7 +344,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "verdict does not use `error`, so give a margin that includes the error",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
-                           .doc = "with `published`: swept values that select the variant",
+                           .doc = "with `published`: swept values of the compared variant",
                            .example = "{fluid: still}"});
   visit(claim.margin,
         {.name = "margin",
@@ -678,9 +677,9 @@ struct Reader {
     if (field == nullptr) return reject_unknown(in, parameters());
     if (field != &cycle && !field->identity.distinguishes_runs()) {
       return reject_key(in, "does not distinguish runs",
-                        "Name a parameter that distinguishes runs.");
+                        "Use a parameter that distinguishes runs, such as `fluid`.");
     }
-    if (where.contains(in.key)) return reject_key(in, "is given twice", "Give it once.");
+    if (where.contains(in.key)) return reject_key(in, "appears twice", "Write it once.");
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {
@@ -789,8 +788,8 @@ struct Reader {
       value = text;
     } else {
       reject_type(in, "a name",
-                  fmt::format("It takes ASCII letters, digits, - and _, at most {} of them, and "
-                              "does not begin with -.",
+                  fmt::format("Use at most {} characters: ASCII letters, digits, - and _. Do not "
+                              "begin with -.",
                               kLongestName));
     }
   }
@@ -1372,7 +1371,7 @@ struct Reader {
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "State the published number.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
-              "State `at_cycle` or `cycles`.");
+              "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
               "Use `between` for two variants.");
     claim.relative = relative != nullptr;
@@ -1397,7 +1396,7 @@ struct Reader {
               "cannot be used with a published value of 0", "Use `margin`.");
   }
 
-  // Reports ids in `primary` that no claim of this manifest or of its figures has.
+  // Reports ids in `primary` that belong to no claim of this manifest or of its figures.
   void check_primary(const Node& document, const Manifest& manifest) {
     std::vector<string> known;
     for (const ClaimSpec& claim : manifest.claims) known.push_back(claim.id);

@@ -21,7 +21,7 @@ namespace shearcell {
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
   std::optional<StageKind> stage = {};     ///< first affected stage; empty: not in an id
-  std::optional<ProtocolKind> under = {};  ///< enters only if the run has this protocol
+  std::optional<ProtocolKind> under = {};  ///< recorded only under this protocol; empty: any
   /// The record omits the parameter if it has this value, written as in a manifest. All runs that
   /// are older than the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};

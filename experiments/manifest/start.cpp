@@ -29,7 +29,7 @@ bool agree(const nlohmann::json& swept, const nlohmann::json& others) {
   });
 }
 
-/// Throws ManifestError unless the variant has the cell, grains and units of the recorded run.
+/// Throws ManifestError if the variant's cell, grains or units differ from the recorded run's.
 void require_same_cell(const Manifest& manifest, const Scale& scale, const Variant& variant,
                        const Stage& recorded) {
   Parameters had;
@@ -86,7 +86,7 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     if (fits) continue;
     const auto fraction = fraction_for_width(geometry(p), size[axis]);
     const bool in_m = grains.unit == LengthUnit::m;
-    const double outer = grains.box ? 0 : 1;  // half a grain on each side
+    const double outer = grains.box ? 0 : 1;  // without a box, half a grain on each side
     const double in_other = outer + (size[axis] - outer) * (in_m ? p.diameter_m : 1 / p.diameter_m);
     const bool fits_better =
         std::fabs(std::log(in_other / room)) < 0.5 * std::fabs(std::log(size[axis] / room));
@@ -204,7 +204,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest gives {}", counted(count, "grain"), p.grains), "",
+           fmt::format("has {}, but the manifest has {}", counted(count, "grain"), p.grains), "",
            fmt::format("Write `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};

@@ -24,9 +24,9 @@ namespace shearcell {
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 
-/// The text of a file of grains, and the facts about it that enter the id of its packing.
+/// The text of a file of grains, and the facts about the file that are part of the packing's id.
 struct PackingText {
-  std::string path;  ///< as messages show it
+  std::string path;  ///< path as shown in messages
   std::string text;
   StartFile file;
 };

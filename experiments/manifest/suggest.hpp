@@ -21,9 +21,9 @@ struct Tried {
   std::string_view remark;   ///< what to write, in whole sentences; may be empty
 };
 
-/// Finds `name` in the table of these names. An entry with a remark also fits names that contain
-/// its words: `friction` fits `coefficient_of_friction`. Of the entries that fit, returns the first
-/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none fits.
+/// Finds `name` in the table of tried names. An entry with a remark also matches if `name` contains
+/// its words (`coefficient_of_friction` contains `friction`). Of the matches, returns the first
+/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none matches.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name

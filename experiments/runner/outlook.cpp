@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // If the request exceeds the stage's target, the recorded end is not used: measure first.
+      // For a request beyond the stage's target the recorded end is not valid: measure first.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }

@@ -54,11 +54,11 @@ struct Outlook {
   std::string unreadable = {};
 };
 
-/// Finds what remains to be computed of a stage for `asks` (Ask: the request of an experiment).
-/// `stage`: a recorded or a new stage; its recorded requests may differ from `asks`. `checkpoints`:
-/// all checkpoints of the stage except rejected ones, by step (Listed::and_pruned). A completed
-/// stage is also long enough for a request if the request has an `until` and a recorded request
-/// has the same `until`, at least as many cycles and a multiple of the requested
+/// Finds what remains to be computed of a stage. `asks`: the requests of experiments. `stage`: a
+/// recorded or a new stage; its recorded requests may differ from `asks`. `checkpoints`: all
+/// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). A completed stage
+/// is also long enough for a request with an `until`, if one of the recorded requests has the same
+/// `until`, at least as many cycles, and a `checkpoint_every` that is a multiple of the requested
 /// `checkpoint_every`. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});

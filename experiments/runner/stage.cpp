@@ -195,7 +195,7 @@ Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::s
   return Simulation(std::move(beginning.cell), plan.scene, beginning.state, settings);
 }
 
-/// A checkpoint of this state. `scene`: the scene with the present stiffness (see stiffen()).
+/// Makes a checkpoint of `state`. `scene`: the scene with the present stiffness (see stiffen()).
 Checkpoint make_checkpoint(const ReadyStage& plan, const Cell& cell, const Scene& scene,
                            const State& state, double cycle) {
   Checkpoint checkpoint;
@@ -784,7 +784,7 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
   add_run_lineage(store, record.run, known);
   const RunLineage& run = known.at(record.run);
   if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
-    return "LAMMPS computed this state, and its runs cannot be repeated bit for bit";
+    return "LAMMPS computed this state, and LAMMPS runs cannot be repeated bit for bit";
   }
   const CheckpointHistory* made = run.find(record.sha256);
   if (made == nullptr || !made->attempt) return std::nullopt;

@@ -59,10 +59,10 @@ std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& 
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< last step at which the recomputed state is known to agree
-  std::uint64_t first_step = 0;  ///< first step at which the recomputed state is known to differ
-  /// A part of the state: "position", "velocity", "wall_height" or "wall_velocity". If the states
-  /// are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
+  std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
+  std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
+  /// What differs: "position", "velocity", "wall_height" or "wall_velocity" or, if the states are
+  /// equal, "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest difference in `field` [units in the last place]

@@ -189,8 +189,8 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
     if (missing) {
       const char* set = std::getenv("TMPDIR");
       throw std::system_error(missing, std::string(set != nullptr ? set : "/tmp") +
-                                           ": cannot use the folder for temporary files; make it, "
-                                           "or name another folder in TMPDIR");
+                                           ": cannot use the folder for temporary files; create "
+                                           "it, or set TMPDIR to another folder");
     }
     whole = folder / whole;
   }

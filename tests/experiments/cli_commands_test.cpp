@@ -122,7 +122,7 @@ TEST_F(Commands, MergeRejectsConflicts) {
   expect_refused({"merge", "a", "nowhere", "--store", "new"},
                  {"nowhere", "no store in this folder to merge"});
   expect_refused({"merge", "", "--store", "new"}, {"no store in this folder to merge"});
-  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "is empty; name a file or folder"});
+  expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "is empty; give a file or folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.
     Store store(path("odd"), Access::create);

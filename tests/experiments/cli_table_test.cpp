@@ -264,7 +264,7 @@ TEST_F(CommandLineTable, ExportsSelectedRunsCompletelyOrNotAtAll) {
        {Arguments{"report"}, {"table"}, {"figures"}, {"export", id, "--to", "extxyz"}}) {
     expect_refused(joined(command, {"--out", "shearcell-store/objects/x/y"}),
                    {"objects is where a store keeps its checkpoints"});
-    expect_refused(joined(command, {"--out", ""}), {"--out: is empty; name a file or folder"});
+    expect_refused(joined(command, {"--out", ""}), {"--out: is empty; give a file or folder"});
   }
 
   // The limit on file sizes kills it, or makes write() fail as on a full disk.

@@ -252,7 +252,7 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
             "smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
             "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or give a "
-            "count.");
+            "number of seeds.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");

@@ -192,7 +192,7 @@ TEST(FigureWarnings, OfPrimaryClaimsThatAreStatements) {
        {std::pair{says, std::string()},
         {std::string("own: phi at cycle 4 is the same for water and fluid=cell"), label}}) {
     EXPECT_EQ(found(statement, with), Strings{"test.yaml: primary: '" + statement +
-                                              "' is a statement. Write the claim's id, own."});
+                                              "' is the statement of a claim. Write its id, own."});
   }
   EXPECT_EQ(found(says, label), Strings{"test.yaml: primary: no claim has the statement '" + says +
                                         "'. Write one of the ids: own."});

@@ -114,7 +114,7 @@ const std::vector<BadPacking> kBad = {
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
      "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Use a complete file, "
      "or "
-     "correct the number."},
+     "correct the number of grains."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
      "a.xyz:5:1: the file continues after the 2 grains announced in line 1. Keep one frame, or "
      "correct "
@@ -173,11 +173,11 @@ const std::vector<BadPacking> kBad = {
     {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
      "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
-     "a.data:3:1: states 2 atoms, but the file has 1. Use a complete file, or correct the "
-     "number."},
+     "a.data:3:1: states 2 atoms, but the file has 1. Write the whole file, or correct the "
+     "number of atoms."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
-     "a.data:3:1: states 2 atoms, but the file has 0. Use a complete file, or correct the "
-     "number."},
+     "a.data:3:1: states 2 atoms, but the file has 0. Write the whole file, or correct the "
+     "number of atoms."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
      "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "
      "or "
@@ -202,11 +202,11 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Use a complete file, "
-     "or correct the number."},
+     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
+     "or correct the number of grains."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
-     "correct the number."},
+     "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
+     "correct the number of grains."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Use a complete dump."},
 };
@@ -351,7 +351,7 @@ const std::vector<Parts> kParts = {
      "be 1. The "
      "column R is read as radii. If this is wrong, rename or remove the column."},
     {"a.xyz", with_columns("radius:R:1", "0.0015"),
-     ":3:1: the diameter is 0.003 d. It would be right in m. Is the unit right?"},
+     ":3:1: the diameter is 0.003 d. The number would be right in m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
      ":5:7: gives the box by edge vectors, which cannot be read (got avec). Write the box as xlo "

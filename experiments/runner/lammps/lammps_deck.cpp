@@ -290,7 +290,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
   double half_step() const { return 0.5 * scene_.time_step; }
 
   void stopping() {
-    // One process checks for the file, so that all processes get the same answer.
+    // One process looks for the file `stop`, so that all processes get the same answer.
     add(text_, "variable asked atom is_file(stop)\ncompute asked wall reduce sum v_asked");
     add(text_,
         "variable stop equal c_asked\nfix stop all halt {} v_stop > 0.5 error continue "
