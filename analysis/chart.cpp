@@ -119,7 +119,7 @@ Text formula(std::string_view text) {
       take(1);
       const bool braces = text.front() == '{';
       if (braces) take(1);
-      std::size_t length = 1;  // bytes of one UTF-8 character, or of the text up to the brace
+      std::size_t length = 1;  // bytes of one UTF-8 character
       while (length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
         ++length;
       }

@@ -321,7 +321,8 @@ class Tessellation {
     note(b, a);
   }
 
-  /// Calls visit(tetrahedron, bit of its edge) for the tetrahedra around the edge from a to b.
+  /// Calls visit(tetrahedron, bit) for each tetrahedron around the edge from a to b. `bit` marks
+  /// this edge among the six edges of the tetrahedron.
   template <class Visit>
   void walk_around(std::size_t start, std::int32_t a, std::int32_t b, const Visit& visit) {
     std::size_t k = start;

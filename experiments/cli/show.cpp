@@ -313,7 +313,7 @@ void print(const FigureLineage& lineage, bool list) {
   Makers makers;
   const nlohmann::json& recorded = lineage.record.provenance;
   const nlohmann::json made = member_of(recorded, "made");
-  say("figure", "{}{}, analysis version {}", lineage.record.name, at_scale(lineage.scale),
+  say("figure", "{}, analysis version {}", lineage.record.name,
       text_at(recorded, "analysis_version"));
   say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
       made.is_object() ? ", " + makers.number(made) : "");

@@ -72,7 +72,8 @@ exit "$code"
 )sh";
 
 /// Adds the command to the job. sbatch prefers options to environment variables, and uses the last
-/// of repeated options. The user's options follow --export only, so they can replace only --export.
+/// of repeated options. The user's options come directly after --export, before all other options,
+/// so they can replace only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;

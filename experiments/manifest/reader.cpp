@@ -251,8 +251,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.show,
         {.name = "show",
          .doc = "`mean` (default), `rms`: mean or root mean square, each with a standard error; "
-                "`traces`: every run as a line; `scatter`: every value as a point. Their CSV file "
-                "has all runs, but means if `y` is a curve or `x` has one value for each run"});
+                "`traces`: every run as a line; `scatter`: every value as a point. The CSV file of "
+                "`traces` and `scatter` lists every run. It lists means instead if `y` is a curve, "
+                "or if `x` has one value for each run"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(plot.xlabel,
         {.name = "xlabel",

@@ -37,7 +37,7 @@ enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// Number of failed starts after which a stage that no process computes counts as blocked.
+// A stage is blocked after this number of failed starts, if no process is computing it.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -233,8 +233,8 @@ class Campaign {
     if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another process computes ({}); this process continues "
-                    "a stage when that process has ended or has not answered for {} s",
+        fmt::format("waiting for {} that another process is computing ({}). This process takes "
+                    "over a stage if the other one ends or does not answer for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }

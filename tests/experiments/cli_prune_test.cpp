@@ -387,7 +387,7 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
-       {"measures of pruned checkpoints: 26 absent"}}};
+       {"measures of pruned checkpoints: 26 missing"}}};
   for (const Case& one : cases) {
     SCOPED_TRACE(one.what);
     fs::remove_all(path("shearcell-store"));
@@ -542,7 +542,7 @@ TEST_F(OtherBits, AreKeptByPrune) {
   expect(0, {"prune", "--last-too", "--yes"}, {"4 checkpoints kept: not bitwise reproducible"});
   EXPECT_EQ(objects(), 4U);
   EXPECT_EQ(json({"prune", "--keep-every", "2", "--json"}).at("kept_of_other_engines"), 1);
-  expect(0, {"verify", "--replay", "9"}, {"4 checkpoints are left out"});
+  expect(0, {"verify", "--replay", "9"}, {"4 checkpoints left out"});
   expect(0, {"verify"}, {"nothing was changed"});
 }
 

@@ -45,12 +45,12 @@ TEST_F(Scales, NeverOverwriteEachOther) {
     const std::string record = "tiny/" + scale + "/S2", file = "out/tiny/" + scale + "/S2a.csv";
     EXPECT_EQ(json({"show", record, "--json"}).at("scale"), scale);
     expect(0, {"show", file}, {"matches", record, "all present and unchanged"});
-    expect(0, {"show", scale + "/table1"}, {scale + " scale"});
+    expect(0, {"show", scale + "/table1"}, {"figure       " + scale + "/table1,"});
   }
   expect(2, {"show", "S2"},
          {"several figures", "tiny/2nd_-Large/S2, tiny/large/S2, tiny/small/S2"});
   expect(2, {"show", "tiny/S2"}, {"several figures"});
-  expect(0, {"figures", "--out", "out"}, {"(large scale)"});  // of the run added last
+  expect(0, {"figures", "--out", "out"}, {"at scale large: "});  // of the run added last
   EXPECT_EQ(drawn(), before);
   EXPECT_EQ(json({"table", "--json"}).at("rows").at(0).at("scale"), "2nd_-Large");
 }
@@ -70,7 +70,7 @@ TEST_F(Scales, AReportNamesTheScalesThatItsFiguresDoNotShow) {
 
 TEST_F(Scales, WithoutScalesTheFolderIsBase) {
   campaign(tiny_manifest("", kBothFluids), {"--cycles", "1"});
-  expect(0, {"figures", "--out", "out"}, {"out/tiny/base/S2a.csv", "base scale"});
+  expect(0, {"figures", "--out", "out"}, {"out/tiny/base/S2a.csv", "tiny/S2: 2 runs"});
   EXPECT_EQ(json({"figures", "S2", "--json"}).at("figures").at(0).at("scale"), "base");
   EXPECT_EQ(json({"status", "--json"}).at("runs").at(0).at("scale"), "base");
   EXPECT_TRUE(std::filesystem::exists(path("out/base/table1.csv")));

@@ -188,7 +188,7 @@ std::vector<Case> odd_files() {
           },
           "store.sqlite-wal", "remove it"),
       reported("measures_journal_is_pipe", "figures S2", 0,
-               at("derived.sqlite-journal", pipe_instead), "S2 ("),
+               at("derived.sqlite-journal", pipe_instead), "/S2: "),
       reported("hard_link", "run m.yaml", 4, hard_link, "hard link", "cp -a"),
       reported("hard_link_to_read", "status", 4, hard_link, "hard link", "cp -a"),
       reported("hard_link_to_merge", "merge shearcell-store --store other", 4, hard_link,
@@ -199,7 +199,7 @@ std::vector<Case> odd_files() {
                     sqlite::Database(file, Access::write).execute("DELETE FROM derived");
                     linked_as_snap(file);
                   }),
-               "S2 ("),
+               "/S2: "),
   };
 }
 

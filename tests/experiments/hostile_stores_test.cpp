@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kBackup = "restore it from a backup";
+const std::string kBackup = "from a backup";
 
 std::vector<Case> damaged_logs() {
   const auto log = [](const auto& change) { return at("store.sqlite", change); };
@@ -160,7 +160,7 @@ std::vector<Case> damaged_tables() {
                    "UPDATE newest SET scale = char(27) || '[2J'"),
                "'\\x1b[2J', which cannot be a folder name"),
       reported("measures_of_garbage", "figures S2", 0, at("derived.sqlite", written("garbage")),
-               "S2 ("),
+               "/S2: "),
       reported("measures_nested_deeply", "figures S2", 0,
                measures("",
                         [](auto& m) {
