@@ -38,8 +38,9 @@ struct Followed {
 ///
 /// The first descendant is the crystallite itself. Remembered grains are all grains of descendants
 /// from the last `remembered_cycles` cycles with a descendant. A crystallite C is a descendant if C
-/// has at least `least_descendant` grains and a remembered grain, and continues no other one. C
-/// continues X, not a descendant of the previous cycle, if C has more grains of X than remembered.
+/// has at least `least_descendant` grains and a remembered grain, and does not continue another
+/// crystallite. C continues a crystallite X of the previous cycle, which is no descendant, if C has
+/// more grains of X than remembered grains.
 /// The followed crystallite has merged if there is no descendant, and at least half of the grains
 /// of the last descendants are in one crystallite that continues another crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
