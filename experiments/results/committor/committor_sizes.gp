@@ -12,7 +12,7 @@ set output 'committor_sizes.svg'
 set label '(b)' at screen 0.015, screen 0.96 left front
 set key maxcols 3 width -2
 set xlabel 'cycles without a descendant'
-set ylabel 'size of which half grow  [grains]'
+set ylabel 'crystallite size at which half grow  [grains]'
 set xtics 1
 unset mxtics
 set ytics 5
