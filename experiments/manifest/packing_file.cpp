@@ -265,9 +265,9 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains announced in line {}", found,
+                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
                               *count, at),
-                  "Write the whole file, or correct the number of grains.");
+                  "Use a complete file, or correct the number of grains.");
     }
     refuse_line(
         grains_.rows[*count],
@@ -436,7 +436,7 @@ class PackingReader {
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
                   fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
-                  "Write the whole file, or correct the number of atoms.");
+                  "Use a complete file, or correct the number of atoms.");
     }
   }
 

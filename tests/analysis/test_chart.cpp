@@ -227,7 +227,7 @@ TEST(Chart, TheCaptionNamesPanelsErrorsAndLines) {
   const Table table{.name = "t", .columns = {}, .rows = {}, .chart = std::move(chart)};
   EXPECT_EQ(caption_of("A title", std::span(&table, 1)),
             "A title. (b) overlap [d] against cycle. Bands: standard errors over runs. Verdicts "
-            "have 90 % intervals instead. Reference lines: the limit.");
+            "give 90 % intervals, not standard errors. Reference lines: the limit.");
 }
 
 TEST(Chart, TheCaptionSaysWhichPanelANoteIsOf) {

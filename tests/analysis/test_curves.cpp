@@ -210,7 +210,7 @@ TEST(Curves, NeverShareALabel) {
   std::vector<FrameRun> runs = two_parameters();
   for (FrameRun& run : runs) run.name = "the same";
   const std::string message = message_of<AnalysisError>([&] { s2(runs); });
-  EXPECT_TRUE(has(message, "in the `series` of its plot or in `labels`")) << message;
+  EXPECT_TRUE(has(message, "in `series` of the plot or in `labels`")) << message;
 }
 
 TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {

@@ -337,8 +337,8 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
         std::pair("y: stress_xy_Pa, x: shear_strain, cycles: [1, 2], show: traces",
                   "shear_strain is 0 at whole cycles"),
         std::pair("y: phi, minus: {fluid: still}",
-                  "2 variants have fluid=still; `minus` must name"),
-        std::pair("y: phi, minus: {grains: 700}", "no variant has grains=700; `minus` must name"),
+                  "2 variants have fluid=still; `minus` must select"),
+        std::pair("y: phi, minus: {grains: 700}", "no variant has grains=700; `minus` must select"),
         std::pair("y: phi, minus: {fluid: still, walls: rough}",
                   "fluid=still,walls=smooth, fluid=cell,walls=smooth have different packings from"),
         std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {

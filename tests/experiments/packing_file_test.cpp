@@ -116,9 +116,8 @@ const std::vector<BadPacking> kBad = {
      "or "
      "correct the number of grains."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file continues after the 2 grains announced in line 1. Keep one frame, or "
-     "correct "
-     "the number."},
+     "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
+     "correct the number of grains."},
     {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
     {"CountAlone", "a.xyz", "5",
      "a.xyz:1:1: the file ends after this line. It lacks the comment and the grains."},
@@ -164,7 +163,7 @@ const std::vector<BadPacking> kBad = {
     {"RadiusOfZero", "a.csv", "x,y,z,radius\n1,2,3,0\n",
      "a.csv:2:1: the diameter is 0. It must be positive."},
     {"DiameterOfAnotherRun", "a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,0.002\n",
-     "a.csv:2:1: the diameter is 0.002 m. It should be 0.003 m. Change `diameter_m`, or scale the "
+     "a.csv:2:1: the diameter is 0.002 m. The manifest has 0.003 m. Set `diameter_m`, or scale the "
      "file.",
      kUnstated},
     {"DiameterNotOne", "a.csv", "x,y,z,radius\n1,2,3,1\n",
@@ -173,10 +172,10 @@ const std::vector<BadPacking> kBad = {
     {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
      "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
-     "a.data:3:1: states 2 atoms, but the file has 1. Write the whole file, or correct the "
+     "a.data:3:1: states 2 atoms, but the file has 1. Use a complete file, or correct the "
      "number of atoms."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
-     "a.data:3:1: states 2 atoms, but the file has 0. Write the whole file, or correct the "
+     "a.data:3:1: states 2 atoms, but the file has 0. Use a complete file, or correct the "
      "number of atoms."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
      "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "
@@ -202,7 +201,7 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Write the whole file, "
+     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Use a complete file, "
      "or correct the number of grains."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
      "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
