@@ -147,10 +147,10 @@ TEST_F(Commands, StatusListsASharedRunUnderEachExperiment) {
   campaign(text, {"--cycles", "0"});
   write("twin.yaml", renamed(text, "twin"));
   expect(0, {"run", "twin.yaml", "--cycles", "0", "-q"});
-  const std::string status = expect(0, {"status"},
-                                    {"tiny", "twin at scale base", "packing N=200 ",
-                                     "packing N=300 ", "4 stages: 4 completed"})
-                                 .out;
+  const std::string status =
+      expect(0, {"status"},
+             {"tiny\n", "\ntwin\n", "packing N=200 ", "packing N=300 ", "4 stages: 4 completed"})
+          .out;
   const std::string run = last_run().substr(0, 8);
   EXPECT_NE(status.find(run), status.rfind(run)) << status;
   EXPECT_EQ(json({"status", "--json"}).at("runs").size(), 4U) << "each once";
@@ -247,7 +247,7 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
   EXPECT_EQ(both.at("stages").size(), 4U);
   EXPECT_EQ(stage(both, "shear", 1).at("cycles"), 4);
   EXPECT_EQ(both.at("particle_steps_left"), 300.0 * (3 + 1 + 4) * 10000);
-  expect(0, {"plan", "m.yaml", "twin.yaml"}, {"experiment", "tiny, twin at scale", "3 runs"});
+  expect(0, {"plan", "m.yaml", "twin.yaml"}, {"experiment", "tiny, twin: 3 runs"});
   EXPECT_EQ(json({"plan", "m.yaml", "m.yaml", "--json"}).at("experiment"), "tiny");
 }
 

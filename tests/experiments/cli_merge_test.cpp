@@ -31,11 +31,11 @@ class Split : public ProgramTest {
   /// Whether there is one warning, with the two versions of the manifest and numbers of runs.
   void expect_names(const nlohmann::json& warnings, const std::string& newest,
                     const std::string& shown, const std::string& older, const std::string& lost,
-                    const std::string& scale = "base") {
+                    const std::string& scale = "") {
     ASSERT_EQ(warnings.size(), 1U) << warnings;
     const std::string text = warnings.at(0);
     for (const std::string& part :
-         {"experiment tiny at scale " + scale + ": left out: " + lost + " of manifest version " +
+         {"experiment tiny" + scale + ": left out: " + lost + " of manifest version " +
               sha256_hex(older).substr(0, 8),
           "shown: " + shown + " of the version that was registered last, " +
               sha256_hex(newest).substr(0, 8),
@@ -78,7 +78,8 @@ TEST_F(Split, MergeNamesOnlyTheScaleThatItConcerns) {
   run_in("a", seeds("1", scales), {"--scale", "two"});
   const std::string later = seeds("[7]", "scales: {one: {cycles: 0}}\n");
   run_in("b", later, {"--scale", "one"});
-  expect_names(warnings({"b"}, "a"), later, "2 runs", seeds("1", scales), "2 runs", "one");
+  expect_names(warnings({"b"}, "a"), later, "2 runs", seeds("1", scales), "2 runs",
+               " at scale one");
 }
 
 TEST_F(Split, MergeSaysNothingIfFiguresLoseNothing) {

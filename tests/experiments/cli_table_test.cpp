@@ -147,12 +147,12 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
-  EXPECT_TRUE(has(said.err, "left out: 2 runs of another manifest version"));
+  EXPECT_TRUE(has(said.err, "left out: 2 runs of manifest version"));
   const nlohmann::json with_notes = json({"table", "--per", "run", "--json"});
   EXPECT_EQ(with_notes.at("rows"), rows);
   ASSERT_EQ(with_notes.at("notes").size(), 1U);
-  EXPECT_TRUE(has(with_notes.at("notes")[0].get<std::string>(),
-                  "left out: 2 runs of another manifest version"));
+  EXPECT_TRUE(
+      has(with_notes.at("notes")[0].get<std::string>(), "left out: 2 runs of manifest version"));
   const Outcome report = expect(0, {"report", "--out", "report.html"}, {"tiny: left out: 2 runs"});
   EXPECT_FALSE(has(report.err, "left out: experiment"));
   // A manifest that defines the runs of both versions.

@@ -74,7 +74,7 @@ TEST_F(DrawFigure, UsesTheNewestVersionOfTheManifest) {
   }
   ASSERT_EQ(newest.notes.size(), 1U);
   std::printf("%s\n", newest.notes[0].c_str());
-  EXPECT_TRUE(has(newest.notes[0], "2 runs of another manifest version"));
+  EXPECT_TRUE(has(newest.notes[0], "2 runs of manifest version"));
   EXPECT_TRUE(has(newest.notes[0], "fluid=cell, fluid=still"));
 
   compute(store_, text);
@@ -109,7 +109,7 @@ TEST_F(DrawFigure, AFilterDoesNotSelectAnOlderVersion) {
   const NewestRuns cells = newest_runs(select_runs(store_, {.variants = {"fluid=cell"}}));
   EXPECT_TRUE(cells.runs.empty());
   ASSERT_EQ(cells.notes.size(), 1U);
-  EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of another manifest version"));
+  EXPECT_TRUE(has(cells.notes[0], "left out: 1 run of manifest version"));
   EXPECT_THROW(collect_runs(store_, kS2, {.variants = {"fluid=cell"}}), NotFound);
 }
 
