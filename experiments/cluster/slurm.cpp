@@ -172,8 +172,9 @@ std::string queue_job(const Job& job, const fs::path& folder) {
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
       "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
       "--name={}",
-      sbatch.code != 0 ? failure
-                       : fmt::format("sbatch printed '{}' as job number", trimmed(sbatch.output)),
+      sbatch.code != 0
+          ? failure
+          : fmt::format("sbatch printed '{}' instead of a job number", trimmed(sbatch.output)),
       queue, job.name, job.name, job.name));
 }
 

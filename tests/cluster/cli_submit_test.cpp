@@ -207,7 +207,7 @@ TEST_F(Submit, EndsWithOneIfNoJobMerges) {
 TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
   const std::string hides = "echo \"$name|$number|1|PENDING|Priority|\" >> hidden\n";
   for (const auto& [answer, says] :
-       {std::pair(hides + "echo thanks", "no job number but 'thanks'"),
+       {std::pair(hides + "echo thanks", "printed 'thanks' instead of a job number"),
         {hides + "echo 'sbatch: error: Socket timed out' >&2; exit 1", "Socket timed out"},
         {hides + "exit 0", "no job number but ''"}}) {
     slurm_that_works(answer);
@@ -241,7 +241,7 @@ TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
 TEST_F(Submit, SaysSoIfNoJobIsQueuedThoughSlurmDidNotRefuse) {
   slurm_that_works("echo 'sbatch: Job would start tomorrow'");
   expect(1, {"submit", manifest_},
-         {"no job number but 'sbatch: Job would start tomorrow'",
+         {"printed 'sbatch: Job would start tomorrow' instead of a job number",
           "no job of this name is in the queue", "scancel --name="});
   slurm_that_works();
   EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
