@@ -209,7 +209,7 @@ TEST_F(Submit, NeverQueuesTwiceWhatItMayHaveQueued) {
   for (const auto& [answer, says] :
        {std::pair(hides + "echo thanks", "printed 'thanks' instead of a job number"),
         {hides + "echo 'sbatch: error: Socket timed out' >&2; exit 1", "Socket timed out"},
-        {hides + "exit 0", "no job number but ''"}}) {
+        {hides + "exit 0", "printed '' instead of a job number"}}) {
     slurm_that_works(answer);
     program("squeue", "echo 'slurm_load_jobs error: Unable to contact controller' >&2; exit 1\n");
     const std::string store = "store " + std::string(says);
