@@ -42,7 +42,7 @@ class Beside : public testing::Test {
     for (std::size_t k = 0; !stopped_; ++k, ++written_) {
       Words words = commands[k % commands.size()];
       if (words[0] == "run") {
-        words.insert(words.end(), {"--cycles", std::to_string(cycles_ += 10)});
+        words.insert(words.end(), {"--cycles", std::to_string(cycles_ += 2)});
       }
       const int code = run(name, words);
       // A merge is refused while a program computes.
