@@ -24,9 +24,9 @@ END = "<!-- end of results -->\n"
 # perhaps words in place of the verdict.
 HEADLINES = [
     ("S1", "S1.fall", "fall of the uncorrected phi (Eq. S2) as k grows a hundredfold", "about 2 %"),
-    ("S1", "S1.phi", "change of the corrected phi (Eq. S4) as k grows a hundredfold", "none"),
     ("S3", "S3_overlap", "mean overlap [d]", "less than 0.001"),
-    ("B5", "B5_phi", "gain of phi by pauses after each cycle, measured at rest", "positive"),
+    ("S2", "S2.percentage", "change of the percentage crystalline if the drag is of a fluid at rest", "none"),
+    ("B5", "B5.offset", "gain of phi by pauses after each cycle", "positive"),
     ("summary", "summary.percentage",
      "standard deviation of the percentage crystalline between experiments that differ in drag, time step, pauses or walls "
      "(claim chosen after the runs)",
@@ -46,7 +46,7 @@ HEADLINES = [
     ("S7", "S7.top", "share of nuclei in the upper third of the height minus the share in the lower third", "over 0.2"),
 ]
 # Beginnings of other folders than the campaign's; a claim is shown as the campaign measured it, or else the first of these.
-SOURCES = ("earlier/decide", "earlier/volume", "desk", "earlier")
+SOURCES = ("second", "earlier/decide", "earlier/volume", "desk", "earlier")
 FIGURES = ("S1", "S2", "S3", "S4", "B5", "C", "S5a", "S5b", "S6", "S7", "nucleation", "nucleation_core",
            "walls", "choices", "accuracy")
 
@@ -88,7 +88,8 @@ def measured(claim):
     width = min(abs(end - value) for end in ends)
     # The last digit is the first digit of half the way to the nearer end.
     decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
-    return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f})"
+    level = f"; {100 * claim['level']:.1f} %" if claim.get("level", 0.9) != 0.9 else ""
+    return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f}{level})"
 
 
 def margin(claim):
@@ -125,10 +126,12 @@ def verdicts(results):
 
 
 def best_of(found):
-    """Of (place, drawing, claim): as the campaign measured the claim, whose folders have the names of figures, or else
-    the first of SOURCES, and there the one with the most runs."""
+    """Of (place, drawing, claim): a primary claim as the second look measured it; else as the campaign measured the
+    claim, whose folders have the names of figures; else the first of SOURCES, and there the one with the most runs."""
     def rank(one):
         place, _, claim = one
+        if place.startswith("second/") and claim.get("primary"):
+            return claim["estimate"] is None, -2, 0
         source = next((k for k, beginning in enumerate(SOURCES) if place.startswith(beginning)), -1)
         return claim["estimate"] is None, source, -claim["runs"]
     return min(found, key=rank)
