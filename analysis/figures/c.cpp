@@ -203,7 +203,7 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
   table.columns.insert(table.columns.end(), {"supplement_grains", "runs"});
-  table.chart = {.x = {.name = "cycles over which crystallites are followed", .log = true},
+  table.chart = {.x = {.name = "cycles followed", .log = true},
                  .y = {.name = "critical size", .unit = "grains", .log = true},
                  .note = "large open symbols are critical sizes of the supplement"};
   for (const AmplitudeGrowth& one : all) {

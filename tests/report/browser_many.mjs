@@ -112,6 +112,8 @@ export function manyChecks({open, expect, report, shots, drawAllPlots}) {
     async filter() {
       const page = await open("filter");
       const table = page.locator(".runs").first();
+      await table.scrollIntoViewIfNeeded();
+      await page.waitForTimeout(300);  // drawings above the table change its place
       await table.getByLabel("fold by variant").uncheck();
       const answer = async (text) => {
         await table.getByRole("searchbox").fill(text);

@@ -11,7 +11,7 @@ set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9
 set output 'C_followed.svg'
 set label '(d)' at screen 0.015, screen 0.96 left front
 set key maxcols 3 width -2
-set xlabel 'cycles over which crystallites are followed'
+set xlabel 'cycles followed'
 set ylabel 'critical size  [grains]'
 set logscale x
 set format x '10^{%T}'
