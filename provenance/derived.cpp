@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "provenance/errors.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 
@@ -72,7 +73,7 @@ DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
 void DerivedCache::open() {
   const auto type = fs::symlink_status(file_).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
-    throw MachineError(
+    throw NotOurs(
         file_.string() +
         ": the cache of measures must be a file, but this is a folder, link or device; remove it");
   }
@@ -93,7 +94,7 @@ void DerivedCache::open() {
     lock.commit();
   }
   if (database.integer("PRAGMA application_id") != kApplicationId) {
-    throw MachineError(file_.string() + ": this database belongs to another program; remove it");
+    throw NotOurs(file_.string() + ": this database belongs to another program; remove it");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": the database has an unknown layout version");
@@ -121,6 +122,8 @@ void DerivedCache::attempt(Work&& work) {
       if (!first) return give_up(damage.what());
       database_.reset();
       set_aside(file_);
+    } catch (const NotOurs& foreign) {
+      return give_up(foreign.what());
     } catch (const std::exception& problem) {
       unread_ = true;
       return give_up(problem.what());

@@ -179,6 +179,7 @@ void Database::fail(int code, std::string_view doing) const {
 
 void Database::execute(const std::string& sql) {
   require_in_place();
+  errno = 0;
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code, "write");
 }
@@ -196,6 +197,7 @@ Database::Prepared Statement::prepared() const {
     return found;
   }
   sqlite3_stmt* handle = nullptr;
+  errno = 0;
   check(sqlite3_prepare_v2(database_->handle(), sql_.data(), static_cast<int>(sql_.size()), &handle,
                            nullptr));
   return {handle, sqlite3_finalize};

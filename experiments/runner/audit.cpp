@@ -183,9 +183,9 @@ std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCa
 
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
-  const auto note = [&](const std::string& run, const std::string& what) {
-    const auto severity = cache.is_unread() ? Finding::Severity::unread : Finding::Severity::error;
-    check.findings.push_back({severity, "measures", run, what});
+  using Severity = Finding::Severity;
+  const auto note = [&](Severity severity, const std::string& run, const std::string& what) {
+    if (!what.empty()) check.findings.push_back({severity, "measures", run, what});
   };
   for (const Stage& stage : store.stages()) {
     sources.read_run(stage.id);
@@ -193,14 +193,13 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
       if (record.state != CheckpointState::pruned) continue;
       const auto found = sources.compare_pruned(record, cache);
       if (found.named == 0) ++check.not_covered;
-      if (!found.altered.empty()) note(stage.id, found.altered);
+      note(Severity::error, stage.id, found.altered);
       check.absent += found.absent;
     }
   }
   if (check.absent == 0) return;
-  for (const std::string& why : {cache.trouble(), cache.replaced()}) {
-    if (!why.empty()) note("", why);
-  }
+  note(cache.is_unread() ? Severity::unread : Severity::error, "", cache.trouble());
+  note(Severity::error, "", cache.replaced());
   if (cache.is_unread()) check.absent = 0;  // unknown
 }
 

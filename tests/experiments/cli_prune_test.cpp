@@ -399,6 +399,13 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       expect(one.code, {"verify"});
     }
   }
+  // Something else has the name of the file, so the measures are lost: not a fault of the machine.
+  fs::remove(cache);
+  fs::create_directory(cache);
+  expect(4, {"verify"}, {"error: measures: ", "this is a folder, link or device"});
+  fs::remove(cache);
+  sqlite::Database(cache, Access::create).execute("PRAGMA application_id=7; CREATE TABLE t(x)");
+  expect(4, {"verify"}, {"error: measures: ", "belongs to another program"});
   // The remedy that the message gives.
   fs::remove_all(path("shearcell-store"));
   fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
