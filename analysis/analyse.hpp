@@ -53,7 +53,7 @@ struct Analysis {
 /// it, or if the cell is less than 1 d deep.
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// Mean of value_of(i) over interior grains i with a finite value; NaN if there are none.
+/// Mean of value_of(i) over interior grains i with a finite value; NaN if no grain has one.
 template <class Value>
 double interior_mean(const GrainMeasures& grains, const Value& value_of) {
   double sum = 0, count = 0;

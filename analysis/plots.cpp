@@ -627,7 +627,6 @@ std::vector<Series> series_of_runs(const Panel& panel) {
     std::vector<std::vector<ChartPoint>> traces;
     for (const Trace& trace : curve.traces) {
       std::vector<ChartPoint>& points = traces.emplace_back();
-      std::map<double, double> sorted;  // of a curve measure
       for (const Sample& sample : trace.samples) {
         const double y = sample.y.front();
         if (!std::isfinite(sample.x) || !std::isfinite(y)) continue;

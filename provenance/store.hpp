@@ -73,7 +73,7 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 /// machine fails or another process keeps the store locked.
 ///
 /// Between start_stage() and the end of the attempt this object holds a lease on the run. Calls of
-/// record_checkpoint() and renew_leases() renew the lease. Another program may take over the run
+/// record_checkpoint() and renew_leases() renew the lease. Another program may continue the run
 /// when the lease has expired, or at once when the process of the holder is dead. The next record
 /// of the previous holder then throws ConcurrencyConflict, and the previous holder must stop the
 /// computation. The destructor releases all leases.

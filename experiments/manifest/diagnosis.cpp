@@ -511,7 +511,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message that lists the variants whose packings differ from those of the subtracted variant
+/// A message that lists the variants whose packings the subtracted variant does not have
 /// (`minus`); "" if all variants have the same packings.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);

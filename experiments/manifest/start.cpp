@@ -120,14 +120,15 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known) {
   const Start& start = scale.start;
-  const std::string at_scale = start.scale.empty() ? scale.name : start.scale;
-  if (start.experiment == manifest.experiment && scale_name(at_scale) == scale_name(scale.name)) {
+  const std::string scale_of_start = start.scale.empty() ? scale.name : start.scale;
+  if (start.experiment == manifest.experiment &&
+      scale_name(scale_of_start) == scale_name(scale.name)) {
     refuse(manifest.file, start.at, "start", "refers to the experiment and scale of this manifest",
            "", "Choose another `experiment` for this manifest.");
   }
   const auto is_it = [&](const Membership& m) {
     return m.newest && m.place.experiment == start.experiment &&
-           scale_name(m.place.scale) == scale_name(at_scale) &&
+           scale_name(m.place.scale) == scale_name(scale_of_start) &&
            m.place.seed == variant.parameters.start_seed &&
            (start.variant.empty() || Filter(std::vector{start.variant}).passes(m.place.variant));
   };
@@ -149,8 +150,8 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   }
   const std::string what =
       start.run.empty()
-          ? fmt::format("run of {}{} with seed {}{}", start.experiment,
-                        shearcell::at_scale(at_scale), variant.parameters.start_seed,
+          ? fmt::format("run of {}{} with seed {}{}", start.experiment, at_scale(scale_of_start),
+                        variant.parameters.start_seed,
                         start.variant.empty() ? "" : " and " + printable(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {
