@@ -1360,10 +1360,11 @@ struct Reader {
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
                 fmt::format("`estimator: {}` needs this key.", named->name));
-      const bool any = claim.compare.empty() || !named->of_run;
-      reject_value_if(!any && is_of_run(claim.compare) != *named->of_run, in.find("estimator"),
+      const bool compares_run = is_of_run(claim.compare);
+      const bool takes_run = named->of_run.value_or(compares_run);
+      reject_value_if(!claim.compare.empty() && compares_run != takes_run, in.find("estimator"),
                       fmt::format("cannot be used with {}", claim.compare),
-                      *named->of_run
+                      takes_run
                           ? "Compare a measure with one value for each run, such as onset_size_phi."
                           : "Compare a measure with one value for each checkpoint, such as phi.");
     }
