@@ -52,10 +52,11 @@ std::string grains_of(Region region);
 struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
-  std::size_t events = 0;   ///< number of onsets
-  double grain_cycles = 0;  ///< grains of the region times cycles without onset, over all runs
-  double rate = 0;          ///< events per grain and cycle
-  Interval interval;        ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
+  std::size_t events = 0;  ///< number of onsets
+  double grain_cycles =
+      0;              ///< number of grains in the region, times cycles without onset, over all runs
+  double rate = 0;    ///< events per grain and cycle
+  Interval interval;  ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
 };
 
 /// Rates in ascending bins of phi. Bins in which no run spent time are left out. The time between
@@ -67,7 +68,7 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 struct Exposure {
   double phi = 0;  ///< mean over the cycles
   double cycles = 0;
-  double grain_cycles = 0;  ///< grains of the region times cycles
+  double grain_cycles = 0;  ///< number of grains in the region, times cycles
   std::size_t onsets = 0;   ///< 0 or 1
 };
 /// Exposures of a run by range of phi. Range k begins at phi = k times `width`.

@@ -552,7 +552,7 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// The axis of a measure: the axis of "largest_crystallite" is named "largest crystallite". A unit
+/// The axis of a measure. Its name is the measure's name with spaces: "largest crystallite". A unit
 /// at the end of the measure's name becomes the unit of the axis.
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
@@ -687,7 +687,7 @@ bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series
   return true;
 }
 
-/// Whether the table counts the runs that have no y.
+/// Whether the table has columns that count the runs without a value of y.
 bool counts_missing(const PlotSpec& plot) {
   return against(plot) == Against::number_of_run &&
          find_measure(plot.y, MeasureKind::run) != nullptr;
@@ -869,7 +869,7 @@ Table draw(const Panel& panel) {
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, after the end of the shortest run of the curve";
+      table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
     }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);

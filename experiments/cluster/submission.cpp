@@ -151,7 +151,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
   std::map<std::string, std::string> packing_of;  // by stage id
   std::map<std::string, Share> packings;          // what settling costs
   std::vector<Share> shares;
-  std::map<std::string, std::size_t> places;  // index in shares, by packing
+  std::map<std::string, std::size_t> places;  // packing -> index in `shares`
   for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
     const std::string packing =
