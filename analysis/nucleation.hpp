@@ -52,11 +52,10 @@ std::string grains_of(Region region);
 struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
-  std::size_t events = 0;  ///< number of onsets
-  double grain_cycles =
-      0;              ///< number of grains in the region, times cycles without onset, over all runs
-  double rate = 0;    ///< events per grain and cycle
-  Interval interval;  ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
+  std::size_t events = 0;   ///< number of onsets
+  double grain_cycles = 0;  ///< grains of the region times cycles without onset, over all runs
+  double rate = 0;          ///< events per grain and cycle
+  Interval interval;        ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
 };
 
 /// Rates in ascending bins of phi. Bins in which no run spent time are left out. The time between

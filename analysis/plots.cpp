@@ -431,7 +431,7 @@ struct Bin {
   RunStatistics x = {};
   std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
-  std::map<Missing, std::size_t> missing = {};  ///< number of runs without y, by reason
+  std::map<Missing, std::size_t> missing = {};  ///< number of runs without a y, by reason
 };
 
 /// Averages over independent runs. Runs of one packing count as one run. In a bin of phi, the value
@@ -457,7 +457,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
-      // The means of further columns include runs without y.
+      // The means of further columns include runs without a y.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {

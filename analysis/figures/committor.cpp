@@ -324,7 +324,7 @@ Verdict size_is_published(const Amplitude& one) {
 }
 
 /// Decides whether the critical size grows with the amplitude, as in the supplement. Clones at
-/// different amplitudes count as independent: at most, they come from the same packing.
+/// different amplitudes count as independent: they have at most the packing in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;

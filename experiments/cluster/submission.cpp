@@ -71,9 +71,9 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. sbatch prefers options to environment variables, and uses the last
-/// of repeated options. The user's options come directly after --export, before all other options,
-/// so they can replace only --export.
+/// Adds the command to the job. sbatch prefers options to environment variables. If an option
+/// is repeated, sbatch uses the last one. The user's options come directly after --export, before
+/// all other options, so they can replace only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;

@@ -1351,7 +1351,7 @@ struct Reader {
     };
     require_one("id", {"id", "name"});
     reject_if(!is_claim_id(claim.id), &in, "has no id",
-              "Write letters, digits, -, _ and dots: `id: S2.phi`.");
+              "Write an id of letters, digits, -, _ and dots: `id: S2.phi`.");
     const Estimator* named = find_named(all_estimators(), claim.estimator);
     const bool of_all = named != nullptr && named->one_side;
     require_one(of_all ? nullptr : "between", {"between", "published"});
