@@ -101,8 +101,8 @@ struct Fit {
   double sigma = 0;
 };
 
-/// Fits the mean of the values or, if `x` is given, the slope of the values against x. `t` is
-/// Student's quantile for the interval; with t = 0 there is no interval.
+/// Fits the mean of the values or, if `x` is given, their slope as a function of x. `t` is
+/// Student's quantile for the interval; t = 0 gives no interval.
 Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());

@@ -64,7 +64,7 @@ bool has_one_side(const ClaimSpec& claim);
 /// The figure of the claim: `figure` if given, otherwise the id up to its first dot.
 std::string figure_of(const ClaimSpec& claim);
 
-/// The groups of runs that a claim compares. The second is empty if the claim has one side.
+/// The groups of runs that a claim compares. A claim with one side has an empty second group.
 struct ClaimSides {
   std::array<std::vector<const FrameRun*>, 2> runs;
   std::array<std::string, 2> names;  ///< names for use in sentences; "" if a side has all runs

@@ -54,7 +54,7 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
     relative_fall, slope_over_cycles, first_cycle_reached, waiting_ratio, slope_against,
     spread_of_variants, spread_ratio, pooled_difference, rate_exponent;
 
-/// Whether the claim compares waiting times for an event. A run may end before the event.
+/// Whether the claim compares waiting times for an event, which may come after the end of a run.
 bool compares_waits(const ClaimSpec& claim);
 
 /// Applies `statistic` to the points (cycle, value) of a column at the whole cycles first .. last.
@@ -67,8 +67,8 @@ RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first
 /// these cycles has no value. `name`: the column's name, for use in sentences.
 Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
-/// Mean of a column over phi from `low` to `high`. The means in the run's bins of phi (binning.hpp)
-/// are joined by straight lines, which are integrated. `name`: the column's name for sentences.
+/// Mean of a column over phi from `low` to `high`. Straight lines join the means in the run's bins
+/// of phi (binning.hpp) and are integrated. `name`: the column's name, for use in sentences.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
 /// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form

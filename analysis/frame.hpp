@@ -33,7 +33,7 @@ struct FrameRun : Run {
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far; the frame may lack its checkpoint
+  double end = 0;  ///< last cycle of the run so far, even if the frame lacks its checkpoint
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -89,8 +89,8 @@ double number_of(const FrameRun& run, const std::string& key);
 class NumberColumn {
  public:
   explicit NumberColumn(std::string text);
-  /// The number in the row of the checkpoint, or in the row of the whole run if `checkpoint` is
-  /// null; NaN if the row has no such number.
+  /// The value of the column at the checkpoint, or for the whole run if `checkpoint` is null. NaN
+  /// if there is no such value.
   double operator()(const FrameRun& run, const CheckpointMeasures* checkpoint = nullptr) const;
 
  private:

@@ -118,7 +118,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {
-    std::int32_t most = 0, size = 0;  // of the main earlier crystallite: shared grains, size
+    std::int32_t most = 0, size = 0;  // grains shared with the main earlier crystallite; its size
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {

@@ -123,7 +123,7 @@ struct Provider {
   /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
   /// the measure needs.
   nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
-  std::uint64_t cycles_back = 0;  ///< also needs the checkpoint this many cycles earlier; 0: none
+  std::uint64_t cycles_back = 0;  ///< needs a second checkpoint, this many cycles earlier; 0: no
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< computing time of a simulation, in words
   /// Reads and checks the parts of a result that are not measures.

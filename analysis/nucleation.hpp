@@ -67,7 +67,7 @@ std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 struct Exposure {
   double phi = 0;  ///< mean over the cycles
   double cycles = 0;
-  double grain_cycles = 0;  ///< grains of the region times cycles
+  double grain_cycles = 0;  ///< number of grains in the region, times cycles
   std::size_t onsets = 0;   ///< 0 or 1
 };
 /// Exposures of a run by range of phi. Range k begins at phi = k times `width`.

@@ -97,7 +97,7 @@ std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
 
 using WaveVector = std::array<int, 3>;  // components in the basis of the reciprocal lattice
 
-// Largest component along each axis of wave vectors with |k| up to largest_wave_per_d.
+// For each axis, the largest component of a wave vector with |k| up to largest_wave_per_d.
 WaveVector largest_components(const InteriorRegion& region) {
   const auto within = [](double length) {
     return static_cast<int>(largest_wave_per_d * length / (2 * kPi));
@@ -164,8 +164,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
-  // Limits the computing time if a manipulated file has a far larger cell than any packing. For
-  // packings the sum of `most` is at most a third of this limit.
+  // Limits the computing time if a forged file has a cell far larger than its grains need. In a
+  // real packing, the sum of `most` is at most a third of this limit.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;

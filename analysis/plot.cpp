@@ -75,7 +75,7 @@ std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& 
   const TemporaryFolder apart;
   write_output(apart.path() / script, gnuplot_script(table));
   write_output(folder / script, gnuplot_script(table));
-  // gnuplot writes into memory, since on a full disk it truncates the file and exits with code 0.
+  // gnuplot writes into memory: on a full disk it would truncate the file and exit with code 0.
   std::filesystem::create_symlink("/dev/stdout", apart.path() / svg.filename());
   // With -d, gnuplot ignores the user's settings.
   const std::optional<ProgramOutcome> outcome =

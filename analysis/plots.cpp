@@ -431,7 +431,7 @@ struct Bin {
   RunStatistics x = {};
   std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
-  std::map<Missing, std::size_t> missing = {};  ///< number of runs without y, by reason
+  std::map<Missing, std::size_t> missing = {};  ///< number of runs without a y, by reason
 };
 
 /// Averages over independent runs. Runs of one packing count as one run. In a bin of phi, the value
@@ -457,7 +457,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
-      // The means of further columns include runs without y.
+      // The means of further columns include runs without a y.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {
@@ -552,7 +552,7 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// The axis of a measure: the axis of "largest_crystallite" is named "largest crystallite". A unit
+/// The axis of a measure. Its name is the measure's name with spaces: "largest crystallite". A unit
 /// at the end of the measure's name becomes the unit of the axis.
 Axis named_axis(std::string_view measure, std::string_view unit) {
   std::string name = column_of(measure, unit).name;
@@ -687,7 +687,7 @@ bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series
   return true;
 }
 
-/// Whether the table counts the runs that have no y.
+/// Whether the table has columns that count the runs without a value of y.
 bool counts_missing(const PlotSpec& plot) {
   return against(plot) == Against::number_of_run &&
          find_measure(plot.y, MeasureKind::run) != nullptr;
@@ -869,7 +869,7 @@ Table draw(const Panel& panel) {
     if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
     if (what == Against::cycle && !bins.empty() &&
         follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, after the end of the shortest run of the curve";
+      table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
     }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);

@@ -40,7 +40,7 @@ inline constexpr std::array published_amplitudes = {
         "our critical size, 25.3 grains from 40 runs, is near 25 grains, the upper limit of the "
         "margin; in studies with 8 runs, about as many as in the supplement, the size may be above "
         "or below this limit"}};
-/// Why the claim that the critical size grows with A cannot be decided.
+/// Why it cannot be decided whether the critical size grows with A.
 inline constexpr const char* growth_cannot_be_decided =
     "whether the size grows with A depends on the number of cycles over which crystallites are "
     "followed: with 1 cycle the size grows, with 20 cycles it falls, and with 5 cycles the "

@@ -328,7 +328,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
     if (z > 0 && k > 0) positive = std::min(positive, low);
   }
   double value = (negative + positive) / 2;
-  // If one group has no event, only a bound of the factor is known.
+  // If one group has no event, only a bound of the ratio of the waiting times is known.
   if (event_cycles(a).empty()) value = infinite;
   if (event_cycles(b).empty()) value = -infinite;
   kept = {std::min(kept.low, value), std::max(kept.high, value)};

@@ -22,7 +22,7 @@ struct RunStatistics {
 /// Statistics of one value per run. Values that are not finite are not counted.
 RunStatistics over_runs(std::span<const double> values);
 
-/// `mean` is the root mean square (rms). Its error is the error of the mean square / (2 rms).
+/// `mean` is the root mean square (rms). Its error is error(mean square) / (2 rms).
 RunStatistics rms_over_runs(std::span<const double> values);
 
 /// Slope of the least-squares line of y against x; NaN if all x are equal.

@@ -39,8 +39,8 @@ struct Look {
   Join join = Join::line;   ///< line style without symbols; dashes for a second curve of one colour
 };
 
-/// The look of a curve of one amplitude. Each amplitude of the supplement has the same look in all
-/// figures. A curve of another amplitude has the look of the k-th curve.
+/// Colour and symbol of a curve of one amplitude. For the amplitudes of the supplement, they are
+/// the same in all figures. Other amplitudes get the k-th colour and the k-th symbol.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The

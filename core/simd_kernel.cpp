@@ -48,7 +48,7 @@ HWY_INLINE V exact_beyond(V s, V series) {
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// For each grain in `own`, the separation from one of its neighbours (one slot of the list).
+// For each grain in `own`, the separation from the neighbour in one slot of its list.
 template <bool kSeam>
 HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {

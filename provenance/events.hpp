@@ -16,8 +16,8 @@
 
 namespace shearcell::events {
 
-// `fields` names each member of a payload, for reading and for writing. Members with a third
-// argument `true` may be missing, and are written only if they are not empty. All other members are
+// `fields` lists the members of a payload, for reading and for writing. A member with `true` as its
+// third argument may be missing, and is written only if it is not empty. All other members are
 // required. std::optional members may be null.
 
 struct ManifestRegistered {

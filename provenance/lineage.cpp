@@ -112,7 +112,7 @@ const CheckpointHistory* RunLineage::find(std::string_view sha256) const {
 
 std::vector<Stage> chain_of(const Store& store, const std::string& id) {
   std::vector<Stage> chain = {store.stage(id)};
-  std::set<std::string> seen = {id};  // a forged record may name itself as parent
+  std::set<std::string> seen = {id};  // a forged record may be its own parent
   while (!chain.front().parent.empty() && seen.insert(chain.front().parent).second) {
     chain.insert(chain.begin(), store.stage(chain.front().parent));
   }

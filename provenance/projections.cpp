@@ -238,7 +238,7 @@ class Projector {
   }
 
   /// Sets cycle, step and state hash of the run to those of its last recorded checkpoint. Does
-  /// nothing if the run's step is beyond checkpoint `sha256`, as later checkpoints may be pruned.
+  /// nothing if the run is past checkpoint `sha256`, because later checkpoints may be pruned.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

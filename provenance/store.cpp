@@ -532,7 +532,7 @@ std::vector<CheckpointRecord> Store::prunable(const PruneChoice& choice) const {
   const std::scoped_lock guard(mutex_);
   const std::set<std::string> needed = initial_states(log_);
   const std::vector<Stage> known = stages();
-  std::set<std::pair<std::string, double>> to_come;  // (run, cycle) of future initial states
+  std::set<std::pair<std::string, double>> to_come;  // (run, cycle) where other stages will start
   for (const Stage& stage : known) {
     if (!stage.parent.empty() && !has_ended(stage.state))
       to_come.emplace(stage.parent, start_cycle(stage));

@@ -74,15 +74,15 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 ///
 /// Between start_stage() and the end of the attempt this object holds a lease on the run. Calls of
 /// record_checkpoint() and renew_leases() renew the lease. Another program may continue the run
-/// when the lease has expired, or at once when the process of the holder is dead. The next record
-/// of the previous holder then throws ConcurrencyConflict, and the previous holder must stop the
-/// computation. The destructor releases all leases.
+/// when the lease has expired, or at once when the process of the holder is dead. If the
+/// previous holder then records anything, this throws ConcurrencyConflict, and the previous holder
+/// must stop the computation. The destructor releases all leases.
 class Store {
  public:
-  /// Throws NotFound if there is no store and `access` does not create one, UsageError if a store
-  /// cannot be created at this path, and StoreDamaged if the log is lost, is damaged or has a newer
-  /// schema, or if a store to be written lacks its folder of checkpoints. A lease expires when it
-  /// is not renewed for `lease_seconds` (at most kLongestLeaseMs).
+  /// Throws NotFound if there is no store and `access` does not create one; UsageError if a store
+  /// cannot be created at this path; StoreDamaged if the log is lost, is damaged or has a newer
+  /// schema. If the store is opened for writing, a missing folder of checkpoints is damage, too. A
+  /// lease expires when it is not renewed for `lease_seconds` (at most kLongestLeaseMs).
   Store(std::filesystem::path folder, Access access,
         double lease_seconds = static_cast<double>(kLongestLeaseMs) / 1000);
   ~Store();

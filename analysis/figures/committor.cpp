@@ -25,8 +25,8 @@ namespace {
 /// cycles_gone. The other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
-/// No critical size is defined if more than this fraction of the controls (Subject) grow, and the
-/// smallest crystallites do not grow more often than the controls. [choice]
+/// Limit of the fraction of controls (see Subject) that grow. Above it, a critical size is defined
+/// only if the smallest crystallites grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
 /// Number of clones in which a crystallite has each outcome (Fate).
@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The data behind a verdict: one row for each crystallite or control, and each of cycles_without.
+/// The data behind a verdict. A crystallite or control has one row per value of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
@@ -323,8 +323,8 @@ Verdict size_is_published(const Amplitude& one) {
       size, packings, note, fates_of({&one}));
 }
 
-/// Decides whether the critical size grows with the amplitude, as in the supplement. Clones of
-/// different amplitudes count as independent, since their states share at most the packing.
+/// Decides whether the critical size grows with the amplitude, as in the supplement. Clones at
+/// different amplitudes count as independent: they have at most the packing in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
   std::optional<Estimate> growth;

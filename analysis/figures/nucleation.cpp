@@ -38,7 +38,7 @@ std::string name_of(const Group& group) {
 }
 
 /// One curve for each group, whose name is in the table's column "group". If there are several
-/// amplitudes, colours show the amplitude, as in all figures; otherwise colours show the cell size.
+/// amplitudes, each has the same colour as in all figures. Otherwise each cell size has a colour.
 /// Within a bin of phi, the points of the groups are shifted so that they do not overlap.
 std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
   std::vector<Series> series;
@@ -120,9 +120,9 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
   return table;
 }
 
-/// The exponent a in rate ~ n^a for a rate proportional to the area of the walls, N^(2/3). n is the
-/// number of grains in the region. Computed from the smallest and the largest cells. The result
-/// is less than 2/3, since n / N grows with N. NaN unless n > 0 and n grows with N.
+/// The exponent a in rate ~ n^a if the rate is proportional to the area of the walls, N^(2/3). The
+/// cell has N grains, and the region has n. Computed from the smallest and the largest cells. The
+/// result is less than 2/3, because n / N grows with N. NaN unless n > 0 and n grows with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();

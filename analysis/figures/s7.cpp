@@ -45,7 +45,7 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   return places;
 }
 
-/// The width [d] of the narrowest cell, where `inaccessible` is the largest fraction of the width.
+/// Width [d] of the narrowest cell. In wider cells, `inaccessible` is a smaller part of the width.
 double smallest_width(RunGroup runs) {
   double width = infinite;
   for (const FrameRun* run : runs) {

@@ -242,8 +242,8 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that each run comes after the run from which it starts. Manifests that
-// start from no run come first, since a `start` may omit the name of the experiment.
+// Sorts the manifests so that each run comes after the run from which it starts. A `start` may
+// omit the experiment and mean any, so the manifests that start from no run come first.
 void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {

@@ -147,7 +147,7 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() returns the descriptor of the closed stream. In this mode, any use of it fails.
+    // open() returns the descriptor of the closed stream, in a mode in which any use of it fails.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);

@@ -41,8 +41,8 @@ struct RunOptions {
   std::string scratch;  ///< value of --scratch; see unfit_scratch()
 };
 
-// Intervals between progress reports of a task, and between copies from a node's own disk to the
-// store of the task. If a node fails, its work since the last copy is lost.
+// A task reports its progress every kReportEvery. Every kSaveEvery, it copies its results from the
+// node's own disk to the store of the task. If a node fails, work after the last copy is lost.
 constexpr std::chrono::seconds kReportEvery{10};
 constexpr std::chrono::seconds kSaveEvery{300};
 

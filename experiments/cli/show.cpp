@@ -84,7 +84,7 @@ Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& c
   return {};
 }
 
-/// The engine that the latest attempt recorded; null if this program computed the run.
+/// The engine that an attempt recorded last; null if shearcell itself computed the run.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   const RunLineage stage = run_lineage(store, run).back();

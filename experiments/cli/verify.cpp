@@ -41,7 +41,7 @@ std::optional<Head> read_head(const std::vector<std::string>& words) {
   }
   throw CLI::ValidationError(
       "--against",
-      "'" + text + "' is not a head; give SEQ and 64 hex digits, as `verify` prints them");
+      "'" + text + "' is not a head; give the number and hash of an event as `verify` prints them");
 }
 
 nlohmann::json facts(const Replay& replay) {
@@ -136,7 +136,7 @@ nlohmann::json facts(const VerifyReport& report) {
 }
 
 // Checks runs and cached measures, and adds findings to the report. Does nothing if the store is
-// damaged or a file cannot be read, since the checks read records and files.
+// damaged or a file cannot be read, because the checks read records and files.
 MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
   MeasureCheck measures;
   if (!report.ok() || report.count(Finding::Severity::unread) > 0) return measures;

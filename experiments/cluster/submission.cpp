@@ -71,9 +71,9 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. sbatch prefers options to environment variables, and uses the last
-/// of repeated options. The user's options come directly after --export, before all other options,
-/// so they can replace only --export.
+/// Adds the command to the job. sbatch prefers options to environment variables. If an option
+/// is repeated, sbatch uses the last one. The user's options come directly after --export, before
+/// all other options, so they can replace only --export.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -151,7 +151,7 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
   std::map<std::string, std::string> packing_of;  // by stage id
   std::map<std::string, Share> packings;          // what settling costs
   std::vector<Share> shares;
-  std::map<std::string, std::size_t> places;  // index in shares, by packing
+  std::map<std::string, std::size_t> places;  // packing -> index in `shares`
   for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
     const std::string packing =

@@ -73,8 +73,8 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
 /// cycle that the run's stage has reached.
 void leave_out_unmeasured(FrameRun& run);
 
-/// Measures the checkpoints of the runs. A measure over two checkpoints uses checkpoints at the
-/// cadence that the run's experiment asks for. Adds unreadable checkpoints to `outcome`.
+/// Measures the checkpoints of the runs. Earlier checkpoints at whole cycles are used only at the
+/// interval that the run's experiment requests. Adds unreadable checkpoints to `outcome`.
 void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   std::span<const std::string> providers, const MeasureOptions& options,
                   MeasureOutcome& outcome);

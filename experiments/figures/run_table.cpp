@@ -163,8 +163,8 @@ std::vector<FrameRun> select(const Store& store, const RunSelection& selection,
   return runs;
 }
 
-/// Adds a note on checkpoints that lack a measure because the file of an earlier checkpoint does
-/// not exist. Checkpoints whose own file was pruned are not counted.
+/// Adds a note on checkpoints that lack a measure because an earlier checkpoint is pruned or
+/// damaged. Checkpoints whose own file was pruned are not counted.
 void note_lacking(const std::vector<FrameRun>& runs, RunTable& table) {
   std::map<std::string, std::size_t> lacking;  // checkpoints, by provider
   for (const FrameRun& run : runs) {

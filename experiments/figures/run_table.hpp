@@ -27,7 +27,7 @@ struct RunTable : MeasureOutcome {
 
 /// Returns the table of the selected runs (see newest_runs()), sorted by run and cycle. Contains
 /// the checkpoints from checkpoints_for(). Onsets are found in the checkpoints at whole cycles, as
-/// in figures. If `simulated` names providers, the table also has columns for their measures.
+/// in figures. If `simulated` lists providers, the table also has columns for their measures.
 /// Throws NotFound as select_runs() does.
 RunTable run_table(const Store& store, const RunSelection& selection, RowPer per,
                    const MeasureOptions& options, std::span<const std::string> simulated = {});

@@ -47,8 +47,8 @@ double stability_limit_s(const Parameters& parameters);
 bool depends_on_pressure_at(const Parameters& parameters);
 
 /// Whether the pressure under a moving bottom wall can carry the grains' weight: P d^2 > 1.2 (h/d)
-/// m g, for 1.2 grains per d^3 and the nominal height h. Also true for a moving top wall, which
-/// lifts no grains, and for `pressure_at: top`, where the load includes the grains' weight.
+/// m g, for 1.2 grains per d^3 and the nominal height h. Returns true, too, if the top wall moves,
+/// because it lifts no grains, and for `pressure_at: top`, where the load includes their weight.
 bool pressure_lifts_column(const Parameters& parameters);
 
 struct TimeStep {

@@ -501,7 +501,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
     return format("it needs cycle {}, but the last cycle of the runs is {}.", last,
                   run.ask.target_cycles);
   }
-  // If any cycle of the range has no checkpoint, the first, the second or the last cycle has none.
+  // If the first, second and last cycle have checkpoints, all cycles of the range have them.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
     if (has_checkpoint(run, cycle, cycle, back)) continue;
     return format(
@@ -511,7 +511,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
   return "";
 }
 
-/// A message that lists the variants whose packings the subtracted variant does not have
+/// A message that lists the variants whose packings differ from those of the subtracted variant
 /// (`minus`); "" if all variants have the same packings.
 string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);

@@ -29,7 +29,7 @@ struct ExpandOptions {
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest defines it. Each of its stages has one Membership, with this manifest. The
+/// A run as a manifest defines it. Each of its stages has one Membership: in this manifest. The
 /// scale is "" if the manifest has no scales; the variant is "base" if nothing is swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state

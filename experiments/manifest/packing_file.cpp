@@ -801,7 +801,7 @@ class PackingReader {
 
   PackingFile packing() {
     interpret_box();
-    std::vector<string> aside = std::exchange(not_read_, {});  // listed again after the columns
+    std::vector<string> aside = std::exchange(not_read_, {});  // to be listed after unread columns
     uses_ = interpret(grains_);
     require_columns();
     rows_ = rows_of(grains_, uses_);

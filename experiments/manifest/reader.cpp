@@ -853,7 +853,7 @@ struct Reader {
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. For keys without `=`, name_series() later finds the curves.
+  // Reads the styles of curves. name_series() decides later what a key without `=` means.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -1333,7 +1333,7 @@ struct Reader {
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
     const Node* relative = in.find("relative_margin");
-    // Allows only one of these keys in a claim. Unless `lacking` is null, one of them is required.
+    // Allows only one of these keys in a claim. Requires one of them if `lacking` is not null.
     const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
                                  const string& remedy = "") {
       const Node* first = nullptr;
@@ -1351,7 +1351,7 @@ struct Reader {
     };
     require_one("id", {"id", "name"});
     reject_if(!is_claim_id(claim.id), &in, "has no id",
-              "It takes letters, digits, -, _ and dots: `id: S2.phi`.");
+              "Write an id of letters, digits, -, _ and dots: `id: S2.phi`.");
     const Estimator* named = find_named(all_estimators(), claim.estimator);
     const bool of_all = named != nullptr && named->one_side;
     require_one(of_all ? nullptr : "between", {"between", "published"});

@@ -20,7 +20,7 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  std::optional<StageKind> stage = {};     ///< first affected stage; empty: not in an id
+  std::optional<StageKind> stage = {};     ///< first stage whose id it changes; empty: none
   std::optional<ProtocolKind> under = {};  ///< recorded only under this protocol; empty: any
   /// The record omits the parameter if it has this value, written as in a manifest. All runs that
   /// are older than the parameter have this value, which may differ from the default.
@@ -62,7 +62,7 @@ struct Field {
   bool required = false;
   std::size_t longest = 0;  ///< maximum length of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null if not a parameter.
+  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null for other keys.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 

@@ -37,7 +37,7 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
 struct PlacedGrains {
   Cell cell;
   State state;       ///< at step 0; the moving wall is at rest
-  std::string read;  ///< what was read, from describe()
+  std::string read;  ///< what was read; see describe()
 };
 
 /// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions

@@ -27,8 +27,8 @@ struct Tried {
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name
-/// without the unit (`mass`), in the table of names that users try, or by its spelling, of which up
-/// to about a third may be wrong. "" if no candidate is near.
+/// without the unit (`mass`), in the table of names that users try, or as the nearest spelling
+/// (up to about a third of the letters may differ). "" if no candidate is near.
 std::string suggest_name(std::string_view unknown, std::span<const std::string_view> candidates);
 
 /// The text in lower case; only A to Z change.

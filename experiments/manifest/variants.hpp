@@ -39,11 +39,11 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the value is selected. The parts of `name`, the value's display name, count as its own
-  /// parts. Of the texts with one key, at least one must fit: for "a=1", "a=2" and "b=3", the
-  /// value must have b=3, and a=1 or a=2. Returns true if no texts were given.
+  /// Whether the value is selected. The value has its own parts and the parts of its display name,
+  /// `name`. It must fit at least one text of each key: the texts "a=1", "a=2" and "b=3" select
+  /// values with b=3 that also have a=1 or a=2. Returns true if no texts were given.
   bool passes(const std::string& value, const std::string& name = "");
-  /// The first of the given texts that has matched no value so far, or null.
+  /// The first of the given texts that no value has fitted so far, or null.
   const std::string* unfound() const;
   /// The values that were given to passes(), each once, in order. If the display name of a value
   /// has parts that the value lacks, the list has the name after the value.

@@ -599,8 +599,8 @@ void add_figures(Content& content) {
   }
 }
 
-/// Adds the stages, manifests and table of each experiment's runs. Adds a note on each experiment
-/// without a selected run.
+/// Adds the manifest of each experiment, the stages of its runs, and a table of its runs. Adds a
+/// note on each experiment without a selected run.
 void add_runs(Content& content) {
   for (Experiment& experiment : content.experiments) {
     const RegisteredManifest& manifest = experiment.manifest;

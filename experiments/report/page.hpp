@@ -37,7 +37,7 @@ struct Report : MeasureOutcome {
 };
 
 /// Makes the report. The same program, store and options give the same bytes, if static drawings
-/// use the same gnuplot. Stores nothing but measures, in derived.sqlite. Throws NotFound if the
+/// use the same gnuplot. Writes only measures to the store (derived.sqlite). Throws NotFound if the
 /// store has no experiment or a run of `packings.runs` is unknown.
 Report make_report(const Store& store, const ReportOptions& options);
 

@@ -94,8 +94,8 @@ void check_beginning(const Store& store, const Stage& stage, const std::set<std:
       continue;
     }
     throw StoreDamaged(fmt::format(
-        "event {} started this run from checkpoint {:.12}, which is not the state of run {:.12} "
-        "where this run must start; do not use the results, and compute this run in a new store",
+        "event {} started this run from the wrong state: checkpoint {:.12} is not the required "
+        "state of run {:.12}; do not use the results, and compute this run in a new store",
         event.seq, *from, stage.parent));
   }
 }

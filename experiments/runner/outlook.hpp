@@ -77,7 +77,7 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
 /// experiment are excluded, so that figures and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
-  /// Steps, ascending, of missing checkpoints that the stage has passed; at most a million.
+  /// Steps that the stage has passed without a requested checkpoint, ascending; at most a million.
   std::vector<std::uint64_t> missing = {};
   double to_come = 0;  ///< number of checkpoints not reached yet; an estimate if above 10,000
 };

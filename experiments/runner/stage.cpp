@@ -426,7 +426,7 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // The recorded end applies to all experiments, even if declared after the stage ended.
+    // The recorded end applies to all experiments, also to those declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);

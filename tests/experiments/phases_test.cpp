@@ -191,7 +191,7 @@ TEST_F(Phases, OfAForgedRecordAreRejected) {
   EXPECT_THROW(verify_by_replay(plain_, plain_.checkpoints(run.id).back()), StoreDamaged);
 }
 
-// The area of the loop of the interior stress is not the work of the walls, as the layers at the
+// The area of the loop of the interior stress is not the work of the walls: the layers at the
 // walls deform in their own way; it was 4 % from it here, which says that signs, units and volume
 // fit. Stress is positive in compression, so the loop turns the other way. The walls' own loop is
 // tested with the ledger.

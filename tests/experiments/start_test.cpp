@@ -318,7 +318,7 @@ TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
   forged.start_stage(run.id, {}, std::nullopt, states.at(2).sha256);
   const auto findings = check_runs(forged);
   ASSERT_EQ(findings.size(), 1U);
-  EXPECT_NE(findings[0].message.find("where this run must start"), std::string::npos);
+  EXPECT_NE(findings[0].message.find("from the wrong state"), std::string::npos);
 }
 
 TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
