@@ -36,11 +36,11 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< line style without symbols; dashes for a second curve of one colour
+  Join join = Join::line;   ///< line style without symbols; dashes if the colour is used twice
 };
 
-/// The look of a curve of one amplitude. Each amplitude of the supplement has the same look in all
-/// figures. A curve of another amplitude has the look of the k-th curve.
+/// Colour and symbol of a curve of one amplitude. Each amplitude of the supplement has the same
+/// colour and symbol in all figures. A curve of any other amplitude has those of the k-th curve.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
@@ -50,8 +50,8 @@ class Looks {
  public:
   explicit Looks(const Frame& frame);
 
-  /// The look of a curve. If all its runs belong to one variant, the variant's swept values decide
-  /// the look. Otherwise `key` decides: the values that all runs of the curve share.
+  /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
+  /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

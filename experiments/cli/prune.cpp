@@ -117,7 +117,7 @@ void prune(const PruneOptions& options, Context& context) {
   if (go) {
     const MeasureOptions measuring{
         .workers = usable_cores(),
-        .report = terminal_counter("measuring checkpoint before its file is deleted")};
+        .report = terminal_counter("before files are deleted: measuring checkpoint")};
     freed = free_files(store, records, measuring, options.choice.last_too, context);
     freed.bytes += store.prune(leftovers);
   }

@@ -373,7 +373,7 @@ class LammpsEngine final : public Engine {
   const ReadyStage& plan_;
   std::uint64_t stride_;
   Cell cell_;
-  State state_;  ///< of the last frame
+  State state_;  ///< initial state, later the state of the last frame from LAMMPS
   std::uint64_t first_;
   std::uint64_t step_;  ///< where LAMMPS is
   std::optional<LammpsRun> run_;
