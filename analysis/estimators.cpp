@@ -19,7 +19,7 @@ namespace {
 /// Converts a run's value to the number that is compared, such as its logarithm.
 using Number = std::function<double(double value)>;
 
-/// The numbers of the runs in one or two groups, and the reasons why some runs have no number.
+/// One number for each run of one or two groups, and the reasons why some runs have no number.
 struct Values {
   std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite if a run has no number
   std::size_t runs = 0, censored = 0;

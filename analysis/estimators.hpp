@@ -57,9 +57,9 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times for an event. A run may end before the event.
 bool compares_waits(const ClaimSpec& claim);
 
+using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 /// Applies `statistic` to the points (cycle, value) of a column at the whole cycles first .. last.
 /// A run that lacks one of these cycles has no value.
-using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
                    PointStatistic statistic);
 

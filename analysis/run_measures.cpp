@@ -70,10 +70,9 @@ json record_of(const MeasureInput& input) {
 std::vector<Provider> run_providers() {
   return {
       {.name = "drive",
-       .measures =
-           {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
-            {"shear_rate_per_s", "1/s",
-             "rate of change of shear_strain; after a pause: at the start of the next cycle"}},
+       .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
+                    {"shear_rate_per_s", "1/s",
+                     "rate of change of shear_strain; after a pause: when shear starts again"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
       // protocols/ledger.hpp defines the energy balance.

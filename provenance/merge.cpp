@@ -337,7 +337,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         std::error_code ignored;
         if (std::filesystem::equivalent(folder, folder_, ignored)) {
           throw NotFound(folder.string() +
-                         ": a store cannot be merged into itself; name another store");
+                         ": a store cannot be merged into itself; choose another store");
         }
         sources.push_back(read_source(folder, runs));
       }

@@ -156,7 +156,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {
     refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute this run first, or name the store that contains it with --store.");
+           "Compute this run first, or use --store to open the store that contains it.");
   }
   if (found.size() > 1) {
     refuse(

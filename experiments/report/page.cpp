@@ -347,7 +347,7 @@ json workflow(const Content& content, const Experiment& experiment) {
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
-                               {"waiting", "·", "to come, at most", left}}),
+                               {"waiting", "·", "or fewer to come", left}}),
           figures};
 }
 

@@ -520,8 +520,8 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the stage if `until` has ended it for all experiments, including experiments that
-  // were declared during the computation.
+  // Completes the stage if the `until` of each experiment that uses it has ended it, including
+  // experiments that were declared during the computation.
   bool ends_early() {
     const Stage now = store_.stage(id());
     const std::vector<Ask> asks = asks_of(now.memberships);

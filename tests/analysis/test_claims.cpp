@@ -242,8 +242,8 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_EQ(pooled.runs, 8U);
   EXPECT_EQ(
       pooled.note,
-      "8 and 8 runs on the two sides, in 2 of 3 groups (within a group, all other parameters are "
-      "equal); a group needs at least 3 numbers on each side");
+      "8 and 8 runs on the two sides, from 2 of 3 groups (in a group all other parameters are "
+      "equal); each side of a group needs at least 3 values");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.
