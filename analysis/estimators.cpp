@@ -64,9 +64,8 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
                  std::size_t runs, Values values, const Scalar& scalar, std::string note,
                  bool two_sides) {
   if (values.not_positive > 0) {
-    add_note(note,
-             fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
-                         values.not_positive, values.runs, scalar.reach));
+    add_note(note, fmt::format("{} of {} runs have no ratio: their value at {} is not positive",
+                               values.not_positive, values.runs, scalar.reach));
   }
   if (values.censored > 0) {
     add_note(note, fmt::format("{} of {} runs end before {} and are censored", values.censored,

@@ -588,7 +588,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
         "{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
     found.emplace_back(
-        "at_cycle has no effect, since the plot draws every cycle. Leave at_cycle out.");
+        "at_cycle has no effect, because the plot draws every cycle. Remove at_cycle.");
   }
   found.push_back(lack_of(plot, scale, runs));
   return found;
@@ -715,7 +715,7 @@ void check_variants(const Manifest& manifest) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
       problems.add(setting->second.at, path + "." + key,
-                   "has no effect, since the sweep sets this key", setting->second.value.dump(),
+                   "has no effect, because the sweep sets this key", setting->second.value.dump(),
                    "Define a separate `sweep` in this scale instead.");
     }
     const std::uint64_t variants = variant_count(scale.sweep);

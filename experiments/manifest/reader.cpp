@@ -1037,7 +1037,7 @@ struct Reader {
       }
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
-        reject_key(part, "cannot be swept, since runs with different values would be the same run",
+        reject_key(part, "cannot be swept: runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
                    : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
                             : "Set it in `base` or in a scale.");
@@ -1430,7 +1430,7 @@ struct Reader {
   // manifest does not list this figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
-    std::vector<std::pair<const Node*, string>> names, figures;  // with the figure of each
+    std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;
     for (const char* list : {"plots", "claims"}) {
       for (const Node& item : values_of(document.find(list))) {

@@ -131,10 +131,9 @@ TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
     checkpoint.measures.numbers["mean_overlap_d"] = 0;
   const Claim claim = {"overlap", 0.03};
   const Verdict one = compare(claim, overlap, pointers(a), pointers(group(4, 0)));
-  EXPECT_EQ(
-      one.note,
-      "3 and 4 independent runs; 1 of 8 runs have no ratio, since their value at cycle 1 is not "
-      "positive");
+  EXPECT_EQ(one.note,
+            "3 and 4 independent runs; 1 of 8 runs have no ratio: their value at cycle 1 is not "
+            "positive");
   EXPECT_EQ(one.runs, 3U);
   for (CheckpointMeasures& checkpoint : a[1].checkpoints)
     checkpoint.measures.numbers["mean_overlap_d"] = 0;
