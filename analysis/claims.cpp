@@ -26,7 +26,7 @@ bool is_of(const ClaimSpec& claim, const FrameRun& run) {
           (!has_one_side(claim) && has_parameters(run, claim.between[1])));
 }
 
-/// Returns the name of the estimated quantity, for use in sentences.
+/// Returns the estimated quantity in words, for sentences.
 std::string words_of(const ClaimSpec& claim) {
   const Estimator& estimator = estimator_of(claim);
   return estimator.words != nullptr ? estimator.words(claim) : estimator.scalar(claim).name;
@@ -263,8 +263,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
   const auto& [a, b] = sides.runs;
   if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {
     problems.emplace_back(
-        "both sides of `between` are the same runs, so their difference is exactly zero. Name two "
-        "variants that differ.");
+        "both sides of `between` select the same runs, so the difference is exactly zero. Choose "
+        "two different variants.");
   }
   return problems;
 }

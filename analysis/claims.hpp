@@ -46,8 +46,8 @@ struct ClaimSpec {
   /// published number is an upper or lower bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
-  /// The claim as a sentence; "": derived from keys. With `for_each: amplitude_rad`, for example,
-  /// "{amplitude_rad}" is replaced by the amplitude.
+  /// The claim as a sentence. If empty, the sentence follows from the keys. With `for_each:
+  /// amplitude_rad`, for example, "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
   bool optional = false;               ///< no verdict if a side has no runs

@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Minimum size of a descendant [grains]. In a control, all crystallites are smaller. [choice]
+/// Minimum size of a descendant [grains]. A control state has only smaller ones. [choice]
 inline constexpr std::int32_t least_descendant = 3;
 /// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;

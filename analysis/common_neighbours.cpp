@@ -99,7 +99,7 @@ int signature(const Bonds& bonds, std::size_t neighbour) {
          longest_chain(bonds, common);
 }
 
-// Numbers of neighbours with signatures `first` and `second`; {0, 0} if a neighbour has another.
+// Numbers of neighbours with the signatures `first` and `second`; {0, 0} if any has a third one.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);

@@ -51,7 +51,7 @@ struct CrystalliteMap {
   std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
   std::vector<std::int32_t> label;      ///< crystallite of each of these grains
   std::vector<std::int32_t> size;       ///< grains in each crystallite
-  std::vector<Eigen::Vector3d> centre;  ///< centres of mass [d]; see crystallite_map()
+  std::vector<Eigen::Vector3d> centre;  ///< centre of mass of each crystallite [d]
   double width = 0;                     ///< width of the cell [d]
   double bottom = 0;                    ///< y of the bottom plane [d]
   double top = 0;                       ///< y of the top plane [d]

@@ -19,7 +19,7 @@ namespace {
 /// Converts a run's value to the number that is compared, such as its logarithm.
 using Number = std::function<double(double value)>;
 
-/// The numbers of the runs in one or two groups, and the reasons why some runs have no number.
+/// One number for each run of one or two groups, and the reasons why some runs have no number.
 struct Values {
   std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite if a run has no number
   std::size_t runs = 0, censored = 0;
@@ -64,9 +64,8 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
                  std::size_t runs, Values values, const Scalar& scalar, std::string note,
                  bool two_sides) {
   if (values.not_positive > 0) {
-    add_note(note,
-             fmt::format("{} of {} runs have no ratio, since their value at {} is not positive",
-                         values.not_positive, values.runs, scalar.reach));
+    add_note(note, fmt::format("{} of {} runs have no ratio: their value at {} is not positive",
+                               values.not_positive, values.runs, scalar.reach));
   }
   if (values.censored > 0) {
     add_note(note, fmt::format("{} of {} runs end before {} and are censored", values.censored,

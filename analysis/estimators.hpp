@@ -29,7 +29,7 @@ struct Estimator {
   std::string_view name;      ///< name of the estimator in manifests
   std::string_view meaning;   ///< description in REFERENCE.md
   std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
-  /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
+  /// Claims may compare measures of runs (true), of checkpoints (false), or of either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   bool one_side = false;       ///< its claims have one group, even without a published number
@@ -38,7 +38,7 @@ struct Estimator {
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Gives the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// Returns the name of the estimated quantity, for use in sentences. If null: Scalar::name.
+  /// Returns the estimated quantity in words, for sentences. If this is null, Scalar::name is used.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 
@@ -57,9 +57,9 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times for an event, which may come after the end of a run.
 bool compares_waits(const ClaimSpec& claim);
 
+using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 /// Applies `statistic` to the points (cycle, value) of a column at the whole cycles first .. last.
 /// A run that lacks one of these cycles has no value.
-using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
 RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
                    PointStatistic statistic);
 

@@ -146,8 +146,8 @@ std::string words_of(const nlohmann::json& values);
 /// change together, only the first is kept. `variants` are objects of swept keys and values.
 std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> variants,
                                             std::vector<std::string> keys);
-/// The swept keys that distinguish the variants, by keys_telling_apart(). Of several keys that
-/// change together, `first` is kept if it is one of them.
+/// The swept keys that keys_telling_apart() keeps. If several keys change together and one of them
+/// is `first`, then `first` is kept.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");

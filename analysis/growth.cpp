@@ -14,8 +14,8 @@ using Selection = std::span<const std::size_t>;
 using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
-/// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess of growing crystallites, and the excess summed from this size upwards.
+/// Columns of GrowthCurve::Sums. In the row of each size: moments 0 to 2 of the number of
+/// crystallites, moments 0 and 1 of the excess of growing ones, and its sum from this size upwards.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -49,7 +49,7 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
-/// delta_rho > 0 at size 1 and the total excess is larger than above every rise through zero.
+/// delta_rho > 0 at size 1 and the excess of all sizes exceeds the excess above each rise.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -113,7 +113,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   }
   struct Outcome {
     std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
-    std::int32_t most = 0;                           // grains shared with crystallite `end`
+    std::int32_t most = 0;                           // number of grains shared with `end`
     std::size_t end = 0;                             // later crystallite that shares most grains
   };
   std::vector<Outcome> fates(now.size.size());

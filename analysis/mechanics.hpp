@@ -11,8 +11,8 @@
 
 namespace shearcell {
 
-/// Units are made of the spring constant k and the mass m and diameter d of a grain;
-/// MechanicalUnits has their SI values. The stress of interior grains is positive in compression:
+/// All units are products of powers of the spring constant k, the mass m and the diameter d of a
+/// grain. MechanicalUnits has them in SI. The stress of interior grains is positive in compression:
 /// sigma = 1/V sum_i sum_j f_ij (x) l_ij. V is the volume of the Voronoi cells of these grains, and
 /// l_ij points from the contact to the centre of grain i (Christoffersen, Mehrabadi, Nemat-Nasser,
 /// J. Appl. Mech. 48, 339 (1981)). sigma_xy is negative while the shear strain du_x/dy grows. Means

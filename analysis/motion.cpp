@@ -18,7 +18,7 @@ namespace {
 
 /// Largest distance of neighbours in the analysis of motion [d], near the first minimum of g(r).
 constexpr double motion_neighbour_d = 1.5;
-/// A grain has returned if it is at most this far from its earlier position [d].
+/// A grain has returned if it is at most this far from its position one cycle earlier [d].
 constexpr double reversible_d = 0.01;
 
 /// One column or entry per grain, by grain id.
@@ -177,12 +177,12 @@ std::vector<Provider> motion_providers() {
                 {"reversible_percent", "%",
                  "interior grains at most 0.01 d from their position one cycle earlier"},
                 {"msd_inside_crystal_d2", "d^2",
-                 "mean squared displacement over 1 cycle of crystalline grains inside a crystal"},
+                 "mean squared displacement in 1 cycle, for crystalline grains inside a crystal"},
                 {"msd_crystal_boundary_d2", "d^2",
-                 "mean squared displacement over 1 cycle of crystalline grains next to disordered "
+                 "mean squared displacement in 1 cycle, for crystalline grains next to disordered "
                  "grains"},
                 {"msd_disordered_d2", "d^2",
-                 "mean squared displacement over 1 cycle of disordered grains"}},
+                 "mean squared displacement in 1 cycle, for disordered grains"}},
            .compute = motion_over_one_cycle,
            .cycles_back = 1},
           {.name = "motion_10",

@@ -58,8 +58,8 @@ struct Likelihood {
   std::map<std::string, double> score_of;  ///< score of each packing
 };
 
-/// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c, in which it
-/// is concave. Newton's method halves a step that would lower the log-likelihood.
+/// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c by Newton's
+/// method. The log-likelihood is concave in them. A step that would lower it is halved.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {

@@ -33,12 +33,12 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.0667, 13, 40},
     PublishedAmplitude{
         0.0833, 16, 15,
-        "in studies with 8 runs, about as many as in the supplement, the critical size may be "
-        "above or below 12 grains, the lower limit of the margin; more of our runs do not help"},
+        "a study with 8 runs, about as many as the supplement has, can find a critical size above "
+        "or below 12 grains, the lower limit of the margin; more runs of ours cannot change this"},
     PublishedAmplitude{
         0.1, 20, 1,
         "our critical size, 25.3 grains from 40 runs, is near 25 grains, the upper limit of the "
-        "margin; in studies with 8 runs, about as many as in the supplement, the size may be above "
+        "margin; a study with 8 runs, about as many as the supplement has, can find a size above "
         "or below this limit"}};
 /// Why it cannot be decided whether the critical size grows with A.
 inline constexpr const char* growth_cannot_be_decided =
@@ -46,7 +46,7 @@ inline constexpr const char* growth_cannot_be_decided =
     "followed: with 1 cycle the size grows, with 20 cycles it falls, and with 5 cycles the "
     "ratio of the sizes is near 1, the threshold of the claim";
 
-/// Returns the published amplitude nearest to `amplitude_rad`. Its numbers are used. [choice]
+/// Returns the nearest published amplitude. Its numbers also serve for `amplitude_rad`. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);

@@ -72,7 +72,7 @@ std::vector<Provider> run_providers() {
       {.name = "drive",
        .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
                     {"shear_rate_per_s", "1/s",
-                     "rate of change of shear_strain; after a pause, the rate of the next shear"}},
+                     "rate of change of shear_strain; after a pause: when shear starts again"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
       // protocols/ledger.hpp defines the energy balance.

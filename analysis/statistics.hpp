@@ -60,7 +60,7 @@ struct Interval {
 struct Estimate {
   double value = 0;
   Interval interval;       ///< an end may be infinite
-  std::size_t runs = 0;    ///< number of runs or pairs, or of runs in the smaller group
+  std::size_t runs = 0;    ///< number of runs or pairs; for 2 groups: of runs in the smaller one
   std::size_t groups = 1;  ///< 1, or 2 independent groups
   double spread = 0;       ///< with n runs per group the standard error would be spread / sqrt(n)
 };
@@ -151,9 +151,9 @@ std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 /// between two events, returns the mean of their cycles. Empty if more than half wait at the end.
 std::optional<double> median_wait(std::span<const Waiting> runs);
 
-/// The log-rank statistic: the events of `a`, minus the events expected if both groups wait equally
-/// long, divided by the standard deviation of this difference. Positive if `a` has the earlier
-/// events; 0 without events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
+/// The log-rank statistic: the number of events of `a`, minus the number expected if both groups
+/// wait equally long, divided by the standard deviation of this difference. Positive if the events
+/// of `a` come earlier; 0 if there are no events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
 /// log2 of the factor by which `a` waits longer than `b`. If the waits of `b` are multiplied by

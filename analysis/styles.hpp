@@ -36,7 +36,7 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< line style without symbols; dashes for a second curve of one colour
+  Join join = Join::line;   ///< line style without symbols; dashes if the colour is used twice
 };
 
 /// Colour and symbol of a curve of one amplitude. For the amplitudes of the supplement, they are
@@ -50,8 +50,8 @@ class Looks {
  public:
   explicit Looks(const Frame& frame);
 
-  /// The look of a curve. If all its runs belong to one variant, the variant's swept values decide
-  /// the look. Otherwise `key` decides: the values that all runs of the curve share.
+  /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
+  /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

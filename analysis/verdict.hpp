@@ -50,7 +50,7 @@ struct Verdict {
   std::string id = {};             ///< Claim::id
   std::string claim;               ///< Claim::text
   std::string quantity;            ///< what is estimated, with its unit
-  std::optional<double> estimate;  ///< empty if too few runs have the quantity
+  std::optional<double> estimate;  ///< empty if too few runs have a value
   Interval interval;               ///< undefined without an estimate
   double level = confidence_level;
   /// The event of a claim on waiting times; "" for other claims. With an event, `estimate`,
@@ -64,7 +64,7 @@ struct Verdict {
   std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown
   double spread = 0;                       ///< Estimate::spread
   std::size_t groups = 1;                  ///< Estimate::groups
-  std::vector<std::size_t> looks = {};     ///< seeds at each planned look (interim analysis)
+  std::vector<std::size_t> looks = {};     ///< numbers of seeds at the planned interim analyses
   std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
   std::string note;      ///< how the runs were compared, and which runs are missing
   bool primary = false;  ///< the runs were made to decide this claim

@@ -46,7 +46,7 @@ struct SiteImage {
 struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
-  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
+  Eigen::Vector3d centre;                 // circumcentre; unset if no corner is a measured site
   std::uint8_t beyond;                    // bit w is 1: the centre is not inside wall w
   std::uint8_t edges_done;                // a bit for each edge whose face was measured
 };

@@ -34,8 +34,8 @@ inline constexpr double kLongestCell = 1e5;
 /// the same neighbour.
 inline constexpr double kShallowestCell = 3;
 
-/// Largest value of V / (N + 100) for a cell of volume V with N grains [d^3]. This limits the
-/// memory of the analysis, which grows with the number of layers in the cell.
+/// Largest allowed V / (N + 100) of a cell of volume V with N grains [d^3]. This limits the memory
+/// of the analysis, for example of profiles with one value for each horizontal layer of the cell.
 inline constexpr double kLoosestCell = 1e4;
 
 /// Geometry that does not change during a run. Lengths are in grain diameters d.

@@ -21,7 +21,7 @@
 
 namespace shearcell {
 
-/// Settings of the neighbour lists. They change the speed, but no bit of a result.
+/// Settings of the neighbour lists. They affect the speed, but not a single bit of the results.
 struct ListSettings {
   double outer_cutoff = 1.25;  ///< outer cutoff for two grains that move only with the shear [d]
   double inner_cutoff = 1.04;  ///< inner cutoff for two grains that move only with the shear [d]

@@ -62,8 +62,8 @@ HWY_INLINE V square_cutoff(V own_margin, V other_margin) {
   return hn::Mul(cutoff, cutoff);
 }
 
-// A contiguous copy of the sites in one grid cell and the cells around it. The search for a grain
-// is then one long loop. The ends of nine short loops would be mispredicted branches.
+// A contiguous copy of the sites in one grid cell and the cells around it. A search for
+// neighbours is then one long loop. Nine short loops would cause more branch mispredictions.
 class Surroundings {
  public:
   void copy(const CellGrid& grid, std::uint32_t cell) {

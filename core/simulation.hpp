@@ -92,7 +92,7 @@ class Simulation {
   /// Replaces the scene from the next step on. The state does not change.
   void set_scene(const Scene& scene);
 
-  /// Sets the watchdog's largest overlap [d].
+  /// Sets the largest overlap that the watchdog allows [d].
   void set_overlap_limit(double limit) { settings_.limits.overlap = limit; }
 
  private:

@@ -28,9 +28,9 @@ class NumericalFailure : public std::runtime_error {
 };
 
 struct WatchdogLimits {
-  double overlap = 0.1;  ///< largest overlap of two grains, or of a grain and a wall plane [d]
-  double escape = 0.5;   ///< largest distance of a grain centre outside a wall plane [d]
-  double time_step = 1;  ///< largest time step, divided by the stability limit (see check_grains)
+  double overlap = 0.1;  ///< allowed overlap of two grains, or of a grain and a wall plane [d]
+  double escape = 0.5;   ///< allowed distance of a grain centre outside a wall plane [d]
+  double time_step = 1;  ///< allowed time step, divided by the stability limit (see check_grains)
 };
 
 /// Input of the checks. The arrays are laid out as in kernel.hpp.

@@ -30,7 +30,7 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
 // Generalized forces of the grains on the walls. A wall point at height y is displaced in x by
 // (y - top) tan(theta). A horizontal wall moves as a rigid body, so y is the height of its plane.
 struct WallForces {
-  double on_tilt = 0;  // conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
+  double on_tilt = 0;  // force conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
   // on_height times tan(theta) is conjugate to the height of the moving wall [m d/s^2]. on_height
   // is the sum of f_x on a moving bottom wall, or of -f_x on the three other walls if the top wall
   // moves.
@@ -104,7 +104,7 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
   Simulation simulation(cell, scene, start);
-  simulation.set_overlap_limit(kLargestOverlapLimit);  // the original run has already been checked
+  simulation.set_overlap_limit(kLargestOverlapLimit);  // the original run checked the overlaps
   simulation.advance(drive, 1);
   Ledger sum;
   add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);

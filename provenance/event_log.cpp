@@ -83,7 +83,7 @@ void create_whole(const std::filesystem::path& file) {
 void require_own_schema(sqlite::Database& database) {
   sqlite::Database own = sqlite::Database::in_memory();
   create_tables(own);
-  own.execute("ANALYZE");  // creates statistics tables, which a store may also contain
+  own.execute("ANALYZE");  // creates SQLite's statistics tables, which a store may have, too
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
   constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
   std::set<std::string> known;

@@ -142,7 +142,7 @@ struct RunMerge {
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);
     }
-    // Events that reject, prune or regenerate a checkpoint are copied only for new checkpoints.
+    // Events that reject, prune or regenerate a checkpoint are copied only if `into` lacks it.
     if (!event.type.starts_with("Checkpoint")) return true;
     const nlohmann::json sha256 = member_of(event.body(), "sha256");
     return !sha256.is_string() || !known.contains(sha256.get<std::string>());
@@ -289,7 +289,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // texts that are already in the store
+  std::erase_if(streams, [&log](const auto& entry) {  // leave out texts that `into` has
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
@@ -337,7 +337,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         std::error_code ignored;
         if (std::filesystem::equivalent(folder, folder_, ignored)) {
           throw NotFound(folder.string() +
-                         ": a store cannot be merged into itself; name another store");
+                         ": a store cannot be merged into itself; choose another store");
         }
         sources.push_back(read_source(folder, runs));
       }

@@ -299,7 +299,7 @@ void make_folder(const fs::path& path) {
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::invalid_argument(path.string() +
                                 ": this must be a folder, but it is a file or a link; remove "
-                                "it, or name another folder");
+                                "it, or choose another folder");
   }
   fs::create_directory(path);
 }
@@ -311,7 +311,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   make_folder(folder);
   if (!fs::is_empty(folder) && !is_crate_of(folder, facts.stages.back().stage.id)) {
     throw std::invalid_argument(folder.string() +
-                                ": the folder is not an export of this run; name another folder");
+                                ": the folder is not an export of this run; choose another folder");
   }
   std::vector<std::string> written;
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);

@@ -101,7 +101,7 @@ void Database::require_same_file() const {
   if (stat(full_name_.c_str(), &now) == 0 && now.st_dev == device_ && now.st_ino == inode_) return;
   throw MachineError(
       fmt::format("{}: the file was moved, replaced or deleted while this program used it, so "
-                  "nothing more is written; name its new folder with --store and run again",
+                  "nothing more is written; give its new folder with --store and try again",
                   name_));
 }
 
@@ -130,7 +130,7 @@ void Database::require_journal_can_be_played_back(int code) const {
 
 void Database::require_readable(std::string_view doing) const {
   if (errno != EIO) return;
-  throw MachineError(fmt::format("{}: cannot {}: {}; check the disk and run again", name_, doing,
+  throw MachineError(fmt::format("{}: cannot {}: {}; check the disk and try again", name_, doing,
                                  std::generic_category().message(EIO)));
 }
 
@@ -152,12 +152,12 @@ void Database::fail(int code, std::string_view doing) const {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw MachineError(
-          fmt::format("{}: another process kept the store locked for {} s; run again when that "
-                      "process has ended",
+          fmt::format("{}: another process kept the store locked for {} s; try again when "
+                      "that process has ended",
                       name_, kBusyTimeoutMs / 1000));
     case SQLITE_FULL:
       throw MachineError(fmt::format(
-          "{}: the disk is full; free some space and run again. Nothing that was recorded is lost",
+          "{}: the disk is full; free some space and try again. Nothing that was recorded is lost",
           name_));
     case SQLITE_TOOBIG:
       throw StoreDamaged(fmt::format(

@@ -42,7 +42,7 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   sqlite::full_name(folder / kLogFile);  // throws before anything is made if the path is too long
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
-        fmt::format("{}: a store is a folder, but this is a file; name another one", name));
+        fmt::format("{}: a store is a folder, but this is a file; choose another path", name));
   }
   if (fs::exists(folder / kLogFile)) return folder;
   if (fs::exists(folder / "objects")) {

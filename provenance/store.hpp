@@ -209,7 +209,7 @@ class Store {
 
   /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only manifests,
   /// files of grains and these runs, and `runs` must include all parents. Throws NotFound when a
-  /// source is not a store and MachineError while a program computes a run of this store. Throws
+  /// source is not a store, and MachineError while a process computes a run of this store. Throws
   /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
   /// different states of one run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
@@ -221,7 +221,7 @@ class Store {
   /// Appends an event that only the holder of the lease may write. `release` ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
   void hold(const std::string& id, std::uint64_t attempt);
-  /// Returns the database. Throws std::logic_error with Access::read.
+  /// Returns the database. Throws std::logic_error if the store was opened with Access::read.
   sqlite::Database& must_write() const;
   /// A write transaction that also locks out other threads of this program.
   struct Writing : private std::scoped_lock<std::recursive_mutex>, sqlite::WriteTransaction {

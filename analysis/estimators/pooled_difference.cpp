@@ -88,8 +88,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
       stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
       strata.empty()
           ? std::string(no_group)
-          : fmt::format("{} and {} runs on the two sides, in {} of {} (within a group, all other "
-                        "parameters are equal); a group needs at least {} numbers on each side",
+          : fmt::format("{} and {} runs on the two sides, from {} of {} (in a group all other "
+                        "parameters are equal); each side of a group needs at least {} values",
                         runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
       std::move(entered), Counted::runs_per_variant);
   verdict.censored = censored;

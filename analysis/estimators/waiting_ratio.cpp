@@ -77,7 +77,7 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
   } else if (!estimate) {
     add_note(note,
-             fmt::format("no ratio: {} never occurs, or all are at cycle 0 in one group", event));
+             fmt::format("no ratio: {} never occurs, or all waits of a group are 0 cycles", event));
   }
   Table entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {

@@ -19,7 +19,7 @@ namespace {
 
 /// A row of Table I, or the time step, which follows from two rows.
 struct Parameter {
-  const char* name;  ///< ends in its unit
+  const char* name;  ///< name of the parameter; ends in the unit
   Text symbol;
   const char* unit;
   double published;

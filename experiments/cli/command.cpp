@@ -69,7 +69,7 @@ std::string unfit_output(const std::string& path) {
 }
 
 std::string unfit_folder(const std::string& path) {
-  return path == "-" ? "means standard output, but a folder is needed; name a folder"
+  return path == "-" ? "means standard output, but a folder is needed; give a folder"
                      : unfit_output(path);
 }
 

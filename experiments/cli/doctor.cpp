@@ -78,7 +78,7 @@ Check filesystem(const fs::path& place) {
 Check writing(const std::string& store, const fs::path& place) {
   if (std::error_code none; fs::exists(store, none) && !fs::is_directory(store, none)) {
     return {"writing", store + " is a file", "missing",
-            "a store is a folder; name a folder with --store"};
+            "a store is a folder; choose a folder with --store"};
   }
   std::string name = (place / "shearcell-doctor-XXXXXX").string();
   const int file = mkstemp(name.data());

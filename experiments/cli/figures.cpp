@@ -213,7 +213,7 @@ void add_figures(CLI::App& app, Context& context) {
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
       ->description(
-          "Draw figures of this experiment only, even if its manifest does not list the figure");
+          "Draw the figures from this experiment only, even if its manifest does not list them");
   command->get_option("--scale")->expected(1)->description(
       "Scale of the runs (default: for each experiment, the scale of the run that was added last)");
   command

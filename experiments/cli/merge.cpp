@@ -10,7 +10,7 @@
 namespace shearcell::cli {
 namespace {
 
-/// Notes on the runs of the store that figures and tables leave out.
+/// Notes on those runs of the store that are left out of figures and tables.
 std::set<std::string> left_out(const Store& store) {
   const std::vector<std::string> notes = newest_runs(select_runs(store, {})).notes;
   return {notes.begin(), notes.end()};

@@ -138,7 +138,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
           "{}: the next planned look (interim analysis) uses {} of {} seeds and needs {:.3g} more "
-          "particle-steps. The notes of a verdict say how likely this look is to decide the claim",
+          "particle-steps. The notes of a verdict give the chance that this look decides the claim",
           plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
     }
   }

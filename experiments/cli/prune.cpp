@@ -117,7 +117,7 @@ void prune(const PruneOptions& options, Context& context) {
   if (go) {
     const MeasureOptions measuring{
         .workers = usable_cores(),
-        .report = terminal_counter("measuring checkpoint before its file is deleted")};
+        .report = terminal_counter("before files are deleted: measuring checkpoint")};
     freed = free_files(store, records, measuring, options.choice.last_too, context);
     freed.bytes += store.prune(leftovers);
   }
@@ -288,7 +288,7 @@ The newest checkpoint of each run and the checkpoints that other stages start fr
 --last-too, they are kept only for unfinished stages. If all stages are finished, only events and
 measures remain. They are small enough to publish, and figures, tables and merges still work.
 Checkpoints of LAMMPS, and of versions of this program that round differently, are never deleted,
-since this program cannot recompute these checkpoints bit for bit.
+because this program cannot recompute these checkpoints bit for bit.
 Before a file is deleted, missing measures are computed: all measures that tables and plots need,
 and the simulated measures that the store's figures need. The measures are cached in derived.sqlite,
 so tables and figures do not change. A checkpoint that cannot be measured keeps its file. If a run

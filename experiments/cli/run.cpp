@@ -48,8 +48,7 @@ constexpr std::chrono::seconds kSaveEvery{300};
 
 void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
   if (options.parallel.ranks == 1 || lammps) return;
-  throw CLI::ValidationError("--mpi",
-                             "has no effect, since LAMMPS computes none of these runs. Omit --mpi");
+  throw CLI::ValidationError("--mpi", "has no effect, because no run uses LAMMPS. Omit --mpi");
 }
 
 void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {

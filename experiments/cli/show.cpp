@@ -394,7 +394,7 @@ void show_published(const Store& store, const std::filesystem::path& file, bool 
     throw NotFound(
         file.string() +
         ": this store has no record of the file. No figure of the store has a file with these "
-        "bytes or this name. If the file is from another store, name that store with --store");
+        "bytes or this name. If the file is from another store, use --store to open that store");
   }
   const FigureLineage lineage = figure_lineage(store, found->record);
   const std::vector<Finding> faults = check_inputs(store, lineage);

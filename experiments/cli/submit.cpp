@@ -69,8 +69,8 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {}, since work on their packings is already queued or running; see `shearcell "
-        "status`\n",
+        "left out: {}, because work on their packings is already queued or running; see "
+        "`shearcell status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
     fmt::print("Nothing to do: all runs are done\n");
@@ -106,7 +106,7 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
   try {
     job = queue_job(array_job(submission, store.folder(), options), folder);
   } catch (const MachineError&) {
-    throw;  // keeps the folder, since the job may be queued
+    throw;  // keeps the folder, because the job may be queued
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);

@@ -103,7 +103,7 @@ void add_table(CLI::App& app, Context& context) {
           "  shearcell table --curve pair_correlation --out g_of_r.csv\n"
           "  python3 -c 'import pandas, sys; print(pandas.read_csv(sys.stdin))' < drag.csv");
   command->get_option("--json")->excludes(format)->description(
-      "One JSON object with `rows`, as in --format json, and `notes` on what is left out");
+      "One JSON object: `rows` as in --format json, and `notes` on the data that are left out");
 }
 
 }  // namespace shearcell::cli

@@ -64,13 +64,13 @@ std::string unfit_path(const fs::path& path) {
   const bool fit =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
   if (text.size() > kLongest) {
-    return fmt::format("'{:.40}...' has {} bytes; name a folder whose path has up to {} bytes",
+    return fmt::format("'{:.40}...' has {} bytes; choose a folder whose path has up to {} bytes",
                        text, text.size(), kLongest);
   }
   if (fit) return "";
   return fmt::format(
       "{}: Slurm does not accept a path with a backslash, a line feed or another control "
-      "character; name another folder",
+      "character; choose another folder",
       text);
 }
 

@@ -73,7 +73,7 @@ struct Submission {
   std::vector<std::vector<std::string>> tasks;  ///< runs of task 1, 2, ...
   std::string job;                              ///< number of the array job; "" if not queued
   std::string merge_job;                        ///< number of the merge job (event key "fold_job")
-  std::vector<QueuedTask> queue;                ///< its jobs in the queue, from view_queue()
+  std::vector<QueuedTask> queue;                ///< this submission's tasks in Slurm's queue
 
   std::string name() const { return "shearcell-" + id; }  ///< name of the array job
   std::string merge_name() const { return name() + "-fold"; }

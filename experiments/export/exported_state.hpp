@@ -48,8 +48,8 @@ struct ExportedState : Particles {
 /// The name of a frame in file names: its cycle, or "step45600" for a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
-/// Makes a frame from a checkpoint. `sources` must have read the run (read_run()); without
-/// `sources`, measures that need earlier checkpoints are NaN. `every`: see ToMeasure. Throws like
+/// Makes a frame from a checkpoint. Call sources->read_run() for its run first. If `sources` is
+/// null, measures that need earlier checkpoints are NaN. ToMeasure explains `every`. Throws like
 /// analyse_stored().
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
                        const Run& run = {}, const MeasureSources* sources = nullptr,

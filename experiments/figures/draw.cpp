@@ -287,7 +287,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   const std::string place = place_of(made);
   const std::filesystem::path folder = options.folder / place;
   if (std::error_code failed; !std::filesystem::create_directories(folder, failed) && failed) {
-    throw UsageError(fmt::format("{}: cannot create folder: {}. Name another folder with --out.",
+    throw UsageError(fmt::format("{}: cannot create folder: {}. Choose another folder with --out.",
                                  folder.string(), failed.message()));
   }
   for (const Table& table : made.tables) require_own_files(table, folder);

@@ -207,7 +207,7 @@ struct VariantCheck {
              "A recorded state can only be sheared.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
-      refuse(start.at, "start", "lacks seed", "State the seed of the recorded run: `seed: 3`.");
+      refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
     }
     if (!start.run.empty() && find("start_seed") != nullptr) {
       report("start_seed", "cannot be used with checkpoint, which names one run", "Leave it out.");
@@ -262,7 +262,7 @@ void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // Maps as_seen(name) to the name and its label, which is null for a name without a label.
+    // Key: as_seen(name). Value: the name, and the label that gives it (null if no label does).
     std::map<string, std::pair<string, const VariantLabel*>> named;
     for (const json& variant : variants) {
       const string& name = names.at(variant);
@@ -588,7 +588,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
         "{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.", plot.y));
   } else if (plot.cycle && draws_every_cycle(plot)) {
     found.emplace_back(
-        "at_cycle has no effect, since the plot draws every cycle. Leave at_cycle out.");
+        "at_cycle has no effect, because the plot draws every cycle. Remove at_cycle.");
   }
   found.push_back(lack_of(plot, scale, runs));
   return found;
@@ -715,7 +715,7 @@ void check_variants(const Manifest& manifest) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;
       problems.add(setting->second.at, path + "." + key,
-                   "has no effect, since the sweep sets this key", setting->second.value.dump(),
+                   "has no effect, because the sweep sets this key", setting->second.value.dump(),
                    "Define a separate `sweep` in this scale instead.");
     }
     const std::uint64_t variants = variant_count(scale.sweep);

@@ -140,7 +140,7 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    // With `start`, packings are not known yet and may be shared, so the id is left empty.
+    // If a manifest has `start`, variants may share a packing, and its id is not known yet.
     if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = planned.prepare->id;
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
     if (planned.parameters.protocol == ProtocolKind::stiffen) run.ask.checkpoint_every = 1;

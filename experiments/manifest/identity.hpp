@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// The file that gives the initial grains of a packing. Without a file, the grains start loose.
+/// The file that gives the initial grains of a packing. Without a file, they are placed at random.
 struct StartFile {
   std::string sha256;                   ///< of the file's text; the store keeps the text
   std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest gives one

@@ -67,9 +67,9 @@ struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
   const char* remedy = "";  ///< remedy in the message about missing columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< name for additional values in a row; null: an error
+  const char* more = nullptr;  ///< what additional values in a row are; null: they are an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
-  double first_wall = 1;       ///< a grain with at least this kWall is a wall grain
+  double first_wall = 1;       ///< a row is a wall grain if its value of kWall is at least this
   std::vector<string_view> rows = {};
 };
 
@@ -123,9 +123,9 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. An unlisted name may also mean a
-/// diameter or a velocity. Diameters are only checked. Velocities under unlisted names are refused:
-/// earlier versions ignored them, so reading them now would change the packings of existing ids.
+/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
+/// be recognized as a diameter, which is only checked, or as a velocity, which is refused: earlier
+/// versions ignored such velocities, so reading them now would change packings with known ids.
 Meaning meaning_of(string_view column, bool units) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
@@ -435,7 +435,7 @@ class PackingReader {
     }
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
-                  fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
+                  fmt::format("declares {} atoms, but the file has {}", count, grains_.rows.size()),
                   "Use a complete file, or correct the number of atoms.");
     }
   }
@@ -491,7 +491,7 @@ class PackingReader {
     }
     grains_.columns = columns_of(columns);
     grains_.more = "image flags";
-    if (ours) grains_.columns[1].name = "wall_side";  // more than 1 for wall grains
+    if (ours) grains_.columns[1].name = "wall_side";  // type 1: grain; larger: wall grain
     grains_.first_wall = 2;
   }
 

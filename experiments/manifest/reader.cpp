@@ -1037,7 +1037,7 @@ struct Reader {
       }
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
-        reject_key(part, "cannot be swept, since runs with different values would be the same run",
+        reject_key(part, "cannot be swept: runs with different values would be the same run",
                    field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
                    : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
                             : "Set it in `base` or in a scale.");
@@ -1371,7 +1371,7 @@ struct Reader {
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
     reject_if(claim.published && !claim.published->value, published, "lacks value",
-              "State the published number.");
+              "Give the published number as `value`.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
@@ -1431,7 +1431,7 @@ struct Reader {
   // manifest does not list this figure in `figures` (`listed`).
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
-    std::vector<std::pair<const Node*, string>> names, figures;  // each name with its figure
+    std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;
     for (const char* list : {"plots", "claims"}) {
       for (const Node& item : values_of(document.find(list))) {

@@ -86,7 +86,7 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     if (fits) continue;
     const auto fraction = fraction_for_width(geometry(p), size[axis]);
     const bool in_m = grains.unit == LengthUnit::m;
-    const double outer = grains.box ? 0 : 1;  // without a box, half a grain on each side
+    const double outer = grains.box ? 0 : 1;  // the radii of the outermost grains [d]
     const double in_other = outer + (size[axis] - outer) * (in_m ? p.diameter_m : 1 / p.diameter_m);
     const bool fits_better =
         std::fabs(std::log(in_other / room)) < 0.5 * std::fabs(std::log(size[axis] / room));
@@ -156,7 +156,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {
     refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute this run first, or name the store that contains it with --store.");
+           "Compute this run first, or use --store to open the store that contains it.");
   }
   if (found.size() > 1) {
     refuse(

@@ -80,7 +80,7 @@ const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
-/// zip fastest. The scale must be completed and have at most ManifestLimits::runs variants.
+/// zip fastest. `scale` must be complete (see Scale), with at most ManifestLimits::runs variants.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell

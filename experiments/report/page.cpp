@@ -327,7 +327,7 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
 
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<CheckpointState, std::size_t> in;
-  std::size_t left = 0;  // checkpoints that unfinished runs will still record, at most
+  std::size_t left = 0;  // upper limit of the checkpoints that unfinished runs will still record
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
     // The number of checkpoints that a packing needs to settle is unknown.
@@ -347,7 +347,7 @@ json workflow(const Content& content, const Experiment& experiment) {
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
-                               {"waiting", "·", "to come, at most", left}}),
+                               {"waiting", "·", "or fewer to come", left}}),
           figures};
 }
 

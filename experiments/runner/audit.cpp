@@ -82,7 +82,7 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
 }
 
 /// Throws StoreDamaged if the stage started from a parent checkpoint whose step is not in `steps`.
-/// Accepts an unknown checkpoint after a merge, because merge() keeps only one file of a state.
+/// After a merge, accepts a checkpoint without a record: merge() keeps only one file of a state.
 void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {

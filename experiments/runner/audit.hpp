@@ -14,9 +14,9 @@
 
 namespace shearcell {
 
-/// Returns an error for each stage whose id is not the hash of its parameters; whose kind, parent,
-/// number of grains, seed, swept values or variant contradict the parameters; or that started from
-/// a wrong state. Returns a note for each stage with unreadable parameters or a missing parent.
+/// Returns an error for each stage that started from a wrong state, whose id is not the hash of its
+/// parameters, or whose record (kind, parent, number of grains, seed, swept values, variant) does
+/// not fit these. Returns a note for each stage with unreadable parameters or a missing parent.
 std::vector<Finding> check_runs(const Store& store);
 
 /// All recorded and pruned checkpoints that this program can recompute bit for bit. This excludes

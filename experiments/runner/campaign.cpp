@@ -139,7 +139,7 @@ class Campaign {
       try {
         store_.renew_leases();
       } catch (const std::exception&) {
-        // Tried again later. If another program took over a stage, the store rejects our records.
+        // The next heartbeat tries again. The store rejects records of a stage that was taken over.
       }
     });
     {

@@ -111,7 +111,7 @@ class Measuring {
       json& result = results_[k / providers_.size()][k % providers_.size()];
       if (!found[k] || !result.is_null()) continue;
       const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
-      // A result that has no digest in the log is used only if the checkpoint was not pruned.
+      // If the log has digests of other results only, the checkpoint must not be pruned.
       const bool kept = record.state != CheckpointState::pruned;
       if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
       try {

@@ -180,7 +180,7 @@ struct Work {
   double core_seconds = 0;
   double longest_seconds = 0;                ///< largest value of `chain` [s]
   double rate = 0;                           ///< mean particle-steps/s of one core
-  bool measured = true;                      ///< whether all rates were measured
+  bool measured = true;                      ///< false if any rate was assumed
   std::map<std::string, double> chain = {};  ///< time [s] of a stage and its parents, by stage id
 
   /// Adds a stage; its parent must have been added before.

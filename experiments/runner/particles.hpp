@@ -13,7 +13,7 @@
 
 namespace shearcell {
 
-/// The particles are the grains, by id, and then the wall grains, in the order of the cell. Arrays
+/// The first particles are the grains, by id; the wall grains follow, as ordered in Cell. Arrays
 /// have one entry or one column per particle. The caller of particles_of() chooses the units.
 struct Particles {
   /// Lower left corner of the cell, and its edges as columns. Only the third edge is periodic.

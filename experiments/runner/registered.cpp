@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// The Group of a packing has this text instead of a manifest. Packings of all versions of an
-// experiment are thus in one group, where different packings get different names.
+// The Group of a packing has this text in place of a manifest. The packings of all versions of an
+// experiment thus form one group, in which different packings get different names.
 const std::string kPackings = "packings";
 
 /// All registered manifests, oldest first. A manifest appears twice if it was registered again

@@ -373,7 +373,7 @@ class LammpsEngine final : public Engine {
   const ReadyStage& plan_;
   std::uint64_t stride_;
   Cell cell_;
-  State state_;  ///< of the last frame
+  State state_;  ///< initial state, later the state of the last frame from LAMMPS
   std::uint64_t first_;
   std::uint64_t step_;  ///< where LAMMPS is
   std::optional<LammpsRun> run_;
@@ -520,8 +520,8 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the stage if `until` has ended it for all experiments, including experiments that
-  // were declared during the computation.
+  // Completes the stage if the `until` of each experiment that uses it has ended it, including
+  // experiments that were declared during the computation.
   bool ends_early() {
     const Stage now = store_.stage(id());
     const std::vector<Ask> asks = asks_of(now.memberships);

@@ -141,7 +141,7 @@ void require_ours(const fs::path& path, const Recognize& ours) {
   if (failure) throw std::system_error(failure, path.string() + ": cannot write");
   if (type == fs::file_type::directory) {
     throw NotOurs(path.string() +
-                  ": this is a folder, but the output is a file; name another path with --out");
+                  ": this is a folder, but the output is a file; choose another path with --out");
   }
   if (type != fs::file_type::regular) {
     throw NotOurs(path.string() +

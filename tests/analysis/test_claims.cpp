@@ -131,10 +131,9 @@ TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
     checkpoint.measures.numbers["mean_overlap_d"] = 0;
   const Claim claim = {"overlap", 0.03};
   const Verdict one = compare(claim, overlap, pointers(a), pointers(group(4, 0)));
-  EXPECT_EQ(
-      one.note,
-      "3 and 4 independent runs; 1 of 8 runs have no ratio, since their value at cycle 1 is not "
-      "positive");
+  EXPECT_EQ(one.note,
+            "3 and 4 independent runs; 1 of 8 runs have no ratio: their value at cycle 1 is not "
+            "positive");
   EXPECT_EQ(one.runs, 3U);
   for (CheckpointMeasures& checkpoint : a[1].checkpoints)
     checkpoint.measures.numbers["mean_overlap_d"] = 0;
@@ -242,8 +241,8 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_EQ(pooled.runs, 8U);
   EXPECT_EQ(
       pooled.note,
-      "8 and 8 runs on the two sides, in 2 of 3 groups (within a group, all other parameters are "
-      "equal); a group needs at least 3 numbers on each side");
+      "8 and 8 runs on the two sides, from 2 of 3 groups (in a group all other parameters are "
+      "equal); each side of a group needs at least 3 values");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.

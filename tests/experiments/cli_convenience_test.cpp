@@ -261,7 +261,7 @@ TEST_F(Convenience, OutputGoesToStreams) {
     EXPECT_EQ(shell(script).out, expect(0, {"table"}).out) << script;
   }
   for (const Arguments& words : {Arguments{"figures"}, {"export", id, "--to", "vtk"}}) {
-    expect_refused(joined(words, {"--out", "-"}), {"a folder is needed; name a folder"});
+    expect_refused(joined(words, {"--out", "-"}), {"a folder is needed; give a folder"});
   }
   EXPECT_EQ(listing(), before);
 }

@@ -38,7 +38,7 @@ std::vector<Case> damaged_logs() {
             fs::remove_all(store);
             write_bytes(store, "x");
           },
-          "a store is a folder", "name another one"),
+          "a store is a folder", "choose another path"),
       reported("store_is_missing", "status", 2, removed, "there is no store here", "shearcell run"),
       reported(
           "store_cannot_be_created", "run m.yaml", 1,

@@ -122,7 +122,7 @@ TEST(FigureWarnings, OfAClaimBetweenVariantsThatAreTheSameRuns) {
   const Strings same = found(top + ", {gravity_m_per_s2: 0, pressure_at: moving_wall}");
   ASSERT_EQ(same.size(), 2U);
   EXPECT_TRUE(has(same[0], "share all runs (computed once)"));
-  EXPECT_TRUE(has(same[1], "claim own: both sides of `between` are the same runs"));
+  EXPECT_TRUE(has(same[1], "claim own: both sides of `between` select the same runs"));
   EXPECT_EQ(found(top + ", {gravity_m_per_s2: 9.81, pressure_at: top}").size(), 1U);
 }
 

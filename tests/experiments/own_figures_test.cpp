@@ -52,7 +52,7 @@ TEST_F(OwnFigures, ShowEveryVariantOfARun) {
   EXPECT_EQ(verdict.at("verdict"), "1 agrees");
   EXPECT_EQ(verdict.at("runs").size(), 2U) << "the variants that it compares";
   const std::string refusal = message_of<UsageError>([&] { draw("own", "none"); });
-  EXPECT_TRUE(has(refusal, "are the same runs, so their difference is exactly zero")) << refusal;
+  EXPECT_TRUE(has(refusal, "select the same runs, so the difference is exactly zero")) << refusal;
 }
 
 TEST_F(OwnFigures, SayWhichCheckpointIsMissing) {

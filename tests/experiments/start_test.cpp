@@ -324,7 +324,7 @@ TEST_F(Started, FromAnotherStateThanItNamesIsFoundOut) {
 TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   const std::string none = refusal(clones(""));
   EXPECT_NE(none.find("start: the store has no run of tiny with seed 1. Compute this "
-                      "run first, or name the store that contains it with --store."),
+                      "run first, or use --store to open the store that contains it."),
             std::string::npos)
       << none;
   compute_here(tiny_manifest("", kBothFluids));
