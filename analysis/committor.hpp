@@ -53,8 +53,8 @@ struct Ending {
   bool revived = false;  ///< a descendant reached `grown_size` after the crystallite was gone
 };
 
-/// The first event decides: a descendant has `grown_size` grains (grown), or no descendant exists
-/// for `cycles_without` consecutive cycles (gone). If neither occurs, Followed::merged decides.
+/// Grown if a descendant has `grown_size` grains, gone if `cycles_without` consecutive cycles have
+/// no descendant. The earlier of the two decides. If neither occurs, Followed::merged decides.
 Ending ending(const Followed& crystallite, std::size_t cycles_without);
 
 }  // namespace shearcell

@@ -48,7 +48,7 @@ double crystalline_percent(const GrainMeasures& grains, double least_phi_local, 
 
 /// Curves with one entry per layer. Layers are one diameter thick, from the plane of the bottom
 /// wall to the plane of the top wall. A grain counts in the layer of its centre if it is at least
-/// 1.5 d from the surfaces of the side walls. A layer without grains has NaN.
+/// 1.5 d from the surfaces of the side walls. The value of a layer without grains is NaN.
 json profiles_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const GrainMeasures& grains = input.analysis->grains;

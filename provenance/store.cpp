@@ -84,8 +84,8 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;
   throw StoreDamaged(fmt::format(
-      "{}: the log lists checkpoints, but this folder is missing or empty; mount it, or copy it "
-      "from where the store was, or choose another store with --store",
+      "{}: the log lists checkpoints, but this folder is missing or empty; mount it, copy it "
+      "from the original store, or choose another store with --store",
       objects.string()));
 }
 

@@ -69,7 +69,7 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {}, since work on their packings is already queued or running; see `shearcell "
+        "left out: {}, because a queued or running task works on the same packing; see `shearcell "
         "status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
