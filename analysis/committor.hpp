@@ -23,7 +23,7 @@ inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
 /// Number of cycles for which the grains of descendants are remembered. [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
-/// Labels of the crystallites to follow: in each size bin the one with the lowest grain id.
+/// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
 std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 
 /// The followed crystallite in one clone.

@@ -92,7 +92,7 @@ void check(const CrystalliteMap& map) {
     if (map.label[k] < 0 || label >= count.size()) refuse("a label has no crystallite");
     ++count[label];
   }
-  if (count != map.size) refuse("a size is not the number of grains with the label");
+  if (count != map.size) refuse("a size is not the number of grains with its label");
   if (std::ranges::count(count, 0) > 0) refuse("a crystallite has no grains");
   const bool finite =
       std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&

@@ -115,7 +115,7 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// The runs whose parameters match `where`. Runs that `run --engine` added are left out if
-/// the remaining runs belong to only one variant.
+/// the other matching runs belong to only one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.

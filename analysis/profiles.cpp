@@ -162,7 +162,7 @@ std::vector<Provider> profile_providers() {
                     {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
                      curve, "height_d", "d"},
                     {"coordination_profile", "1",
-                     "mean contacts of a grain in a layer, with wall grains", curve, "height_d",
+                     "contacts per grain in a layer, including wall grains", curve, "height_d",
                      "d"},
                     {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
                      "height_d", "d"}},

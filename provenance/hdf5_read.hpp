@@ -52,7 +52,7 @@ class Object {
   std::uint64_t count(const std::string& name) const;  ///< 64 bits, unsigned
   std::string text(const std::string& name) const;     ///< at most 4096 bytes
 
-  // All values of a dataset, row by row. `columns` is checked; 0 means a one-dimensional dataset.
+  // All values of a dataset with `columns` columns, row by row. 0: the dataset is one-dimensional.
   std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;  ///< finite
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 

@@ -39,7 +39,7 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder / kLogFile);  // throws before anything is made if the path is too long
+  sqlite::full_name(folder / kLogFile);  // throws if the path is too long, before files are made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; name another one", name));

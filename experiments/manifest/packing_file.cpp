@@ -435,7 +435,7 @@ class PackingReader {
     }
     if (grains_.rows.size() != count) {
       refuse_line(stated_in,
-                  fmt::format("states {} atoms, but the file has {}", count, grains_.rows.size()),
+                  fmt::format("declares {} atoms, but the file has {}", count, grains_.rows.size()),
                   "Use a complete file, or correct the number of atoms.");
     }
   }

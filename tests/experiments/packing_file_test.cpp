@@ -172,10 +172,10 @@ const std::vector<BadPacking> kBad = {
     {"IdTwice", "a.csv", "id,x,y,z\n7,1,2,3\n7,4,5,6\n",
      "a.csv:3:1: the id 7 is also in line 2. Give each grain a different id."},
     {"DataTooFew", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n"),
-     "a.data:3:1: states 2 atoms, but the file has 1. Use a complete file, or correct the "
+     "a.data:3:1: declares 2 atoms, but the file has 1. Use a complete file, or correct the "
      "number of atoms."},
     {"DataWithoutAtoms", "a.data", data(kBounds, ""),
-     "a.data:3:1: states 2 atoms, but the file has 0. Use a complete file, or correct the "
+     "a.data:3:1: declares 2 atoms, but the file has 0. Use a complete file, or correct the "
      "number of atoms."},
     {"DataOfAnotherStyle", "a.data", data(kBounds, "Atoms # full\n\n1 1 1 0 1 1 1\n"),
      "a.data:11:1: the atom style full cannot be read. Write the data file with atom_style sphere "

@@ -158,8 +158,7 @@ pair_coeff * * ${{law}})",
   }
 
   // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: the
-  // displacement from the data file, and the velocity. If `rises`, grains follow the wall in y,
-  // too.
+  // displacement from the data file, and the velocity. If `rises`, they follow the wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
