@@ -663,7 +663,7 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds a parameter and its value, list of values or range to `where`.
+  // Adds to `where` a parameter with its value, its list of values or its range.
   void read_where(const Node& in, json& where) {
     static const Field experiment = {.name = "experiment", .longest = kLongestName};
     if (in.key == experiment.name) {
@@ -1412,7 +1412,7 @@ struct Reader {
     for (const Node* list : lists) {
       for (const Node& item : values_of(list)) {
         const string id = item.text.substr(0, item.text.find('@'));
-        const bool statement = item.text.find(' ') != string::npos;  // in an older manifest
+        const bool statement = item.text.find(' ') != string::npos;  // from older manifests
         if (statement || std::ranges::count(known, id) > 0) continue;
         reject_value(
             item, with_nearest("is not the id of a claim", id, Names(known.begin(), known.end())),
